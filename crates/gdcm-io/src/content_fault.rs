@@ -42,6 +42,28 @@ pub enum ContentFault {
     MissingKey { key: String },
     #[error("duplicate key {}; remove one", quoted(key))]
     DuplicateKey { key: String },
+    /// Lists of numbers that must have the same length differ.
+    #[error(
+        "expected {expected} entries, as in the first of these lists, found {found} (line {line}, \
+        column {column})"
+    )]
+    ListLength {
+        expected: usize,
+        found: usize,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
+    /// Reading ended at the entry after the permitted number of entries.
+    #[error("expected at most {most} entries, found more (line {line}, column {column})")]
+    TooLong {
+        most: usize,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column in bytes, counted from 1.
+        column: usize,
+    },
     /// Any other fault in the text.
     #[error("{reason} (line {line}, column {column})")]
     Text {
@@ -79,6 +101,28 @@ pub enum ContentFault {
     /// A study contains an invalid decision.
     #[error("{}", sanitized(&.0.to_string()))]
     Refused(#[from] EditRefusal),
+}
+
+impl ContentFault {
+    /// Returns the stable code by which scripts and tests distinguish faults.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Type { .. } => "wrong-type",
+            Self::NotFinite { .. } => "number-not-finite",
+            Self::TooDeep { .. } => "values-too-deep",
+            Self::MissingKey { .. } => "missing-key",
+            Self::DuplicateKey { .. } => "duplicate-key",
+            Self::ListLength { .. } => "list-length",
+            Self::Text { .. } => "invalid-entry",
+            Self::TooLong { .. } | Self::TooMany { .. } => "too-many-entries",
+            Self::Word { .. } => "unknown-word",
+            Self::Tolerance(error) => error.code(),
+            Self::Band(error) => error.code(),
+            Self::Dataset(fault) => fault.code(),
+            Self::DuplicateCondition { .. } => "duplicate-condition",
+            Self::Refused(refusal) => refusal.code(),
+        }
+    }
 }
 
 /// A fault in a file, with its place. Both are boxed to keep `Result`s small.

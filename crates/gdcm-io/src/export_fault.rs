@@ -77,6 +77,24 @@ pub enum ExportFault {
 }
 
 impl ExportFault {
+    /// Returns the stable code by which scripts and tests distinguish the reasons.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Curve { .. } => "curve-not-finite",
+            Self::Breakpoints => "breakpoints",
+            Self::FunctionName { .. } => "function-name",
+            Self::ModelsFormat => "models-format",
+            Self::Variables(fault) => fault.code(),
+            Self::Schedule(error) => error.code(),
+            Self::NoCouplings { .. } => "no-couplings",
+            Self::NoResult { .. } => "no-result",
+            Self::NoCondition { .. } => "no-condition",
+            Self::NoModel { .. } => "no-model",
+            Self::NoMatrices { .. } => "no-matrices",
+            Self::Model { .. } => "corrected-model",
+        }
+    }
+
     /// Returns whether the analysis lacks the requested content; all other faults are in the
     /// request.
     pub fn is_of_analysis(&self) -> bool {

@@ -111,7 +111,7 @@ pub enum FileError {
         line: Option<usize>,
     },
     /// Variables in a file for MATLAB, Octave or NumPy cannot be read or written.
-    #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
+    #[error("{}: {}", sanitized_path(path), variables_words(path, fault))]
     Variables { path: PathBuf, fault: VariableFault },
     /// Folders are nested more deeply than the search for files descends.
     #[error(
@@ -206,26 +206,52 @@ impl FileError {
         }
     }
 
-    /// Creates the error for variables that cannot be read or written, and inserts the file name
-    /// into its remedy.
-    pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
-        if let VariableFault::Unsupported { remedy, .. } = &mut fault {
-            *remedy = remedy
-                .replace("{file}", &file_name(path))
-                .replace("{stem}", &file_name(&path.with_extension("")));
-        }
+    /// Creates the error for variables that cannot be read or written.
+    pub(super) fn variables(path: &Path, fault: VariableFault) -> Self {
         FileError::Variables {
             path: path.to_owned(),
             fault,
         }
     }
 
-    /// Returns the stable code by which scripts distinguish errors; `None` if this error has no
-    /// code.
+    /// Returns the stable code by which scripts and tests distinguish errors; there is always one.
     pub fn code(&self) -> Option<&'static str> {
+        let code = match self {
+            Self::Missing { .. } => "missing-file",
+            Self::Directory { .. } => "input-is-a-directory",
+            Self::NotAFile { .. } => "input-not-a-file",
+            Self::OutputNotAFile { .. } => "output-not-a-file",
+            Self::Unreadable { .. } => "unreadable-file",
+            Self::TooLarge { .. } => "file-too-large",
+            Self::Gzip { .. } => "damaged-gzip",
+            Self::GzipCutOff { .. } => "gzip-cut-off",
+            Self::CutOff { .. } => "json-cut-off",
+            Self::NotJson { .. } => "not-json",
+            Self::Format { .. } => "other-format",
+            Self::Version { .. } => "other-version",
+            Self::Content { fault, .. } => fault.code(),
+            Self::Variables { fault, .. } => fault.code(),
+            Self::FolderTooDeep { .. } => "folder-too-deep",
+            Self::NoRecord { .. } => "no-such-record",
+            Self::TooManyFiles { .. } => "too-many-files",
+            Self::StudyDataset { .. } => "dataset-of-study",
+            Self::NotADirectory { .. } => "output-directory-is-a-file",
+            Self::Exists { .. } => "output-exists",
+            Self::Input { .. } => "output-is-an-input",
+            Self::FigureFormat { .. } => "figure-format",
+            Self::FigureWithoutNumbers { .. } => "figure-without-numbers",
+            Self::Export { fault, .. } => fault.code(),
+            Self::Unwritable { .. } => "not-writable",
+        };
+        Some(code)
+    }
+
+    /// Returns the place in the content of a file; `None` if the error concerns the whole file.
+    pub fn place(&self) -> Option<&Location> {
         match self {
-            Self::NotAFile { .. } => Some("input-not-a-file"),
-            Self::OutputNotAFile { .. } => Some("output-not-a-file"),
+            Self::CutOff { place, .. }
+            | Self::NotJson { place, .. }
+            | Self::Content { place, .. } => Some(place),
             _ => None,
         }
     }
@@ -268,6 +294,13 @@ impl FileError {
             fault: error.fault,
         }
     }
+}
+
+/// Returns the message of a fault; its remedy mentions the file name.
+fn variables_words(path: &Path, fault: &VariableFault) -> String {
+    let file = file_name(path);
+    let stem = file_name(&path.with_extension(""));
+    sanitized(&fault.words_for_file(&file, &stem))
 }
 
 fn file_name(path: &Path) -> String {

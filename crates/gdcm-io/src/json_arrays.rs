@@ -12,6 +12,10 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 
 use crate::json_lists::too_long;
 
+/// Text between the expected and the found length in the message about lists of different lengths,
+/// from which `json_errors.rs` recognises it.
+pub(super) const DIFFERENT_LENGTHS: &str = " entries, as in the first of these lists, found ";
+
 /// A rectangular array with `DEPTH` dimensions; the last index runs fastest: `[[1, 2], [3, 4]]` has
 /// the shape 2 x 2.
 ///
@@ -124,7 +128,7 @@ impl<'de, const DEPTH: usize> Visitor<'de> for ListReader<'_, DEPTH> {
         let expected = *self.array.lengths[self.depth].get_or_insert(length);
         if length != expected {
             return Err(A::Error::custom(format!(
-                "expected {expected} entries, as in the first of these lists, found {length}"
+                "expected {expected}{DIFFERENT_LENGTHS}{length}"
             )));
         }
         Ok(())
@@ -194,15 +198,11 @@ mod tests {
     #[test]
     fn a_ragged_list_is_refused_at_any_depth() {
         for text in ["[[1, 2], [3]]", "[[], [3]]", "[[1], []]"] {
-            assert!(
-                read::<2>(text).unwrap_err().contains("as in the first"),
-                "{text}"
-            );
+            let message = read::<2>(text).unwrap_err();
+            assert!(message.contains(DIFFERENT_LENGTHS), "{text}: {message}");
         }
-        assert!(
-            read::<3>("[[[1], [2]], [[3]]]")
-                .unwrap_err()
-                .contains("expected 2 entries")
-        );
+        let lengths = format!("expected 2{DIFFERENT_LENGTHS}1");
+        let message = read::<3>("[[[1], [2]], [[3]]]").unwrap_err();
+        assert_eq!(message.split(" at line ").next(), Some(lengths.as_str()));
     }
 }

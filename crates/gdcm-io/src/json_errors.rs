@@ -16,6 +16,7 @@ use gdcm_model::units::number;
 
 use crate::content_fault::{ContentError, ContentFault};
 use crate::file_error::FileError;
+use crate::json_arrays::DIFFERENT_LENGTHS;
 
 /// Line and column in a text, counted from 1; the column in bytes.
 #[derive(Clone, Copy)]
@@ -139,6 +140,19 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
             found: found.to_owned(),
         };
     }
+    if let Some(lengths) = list_lengths(reason) {
+        return ContentFault::ListLength {
+            expected: lengths.expected,
+            found: lengths.found,
+            line,
+            column,
+        };
+    }
+    if let Some(most) = text_between(reason, "expected at most ", " entries, found more")
+        && let Ok(most) = most.parse()
+    {
+        return ContentFault::TooLong { most, line, column };
+    }
     if let Some((found, expected)) = mismatch(reason) {
         return ContentFault::Type {
             expected: expected_words(expected),
@@ -152,6 +166,22 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
         line,
         column,
     }
+}
+
+/// Lengths of lists that must be the same.
+struct ListLengths {
+    expected: usize,
+    found: usize,
+}
+
+/// Parses the message of `json_arrays.rs` about lists of different lengths.
+fn list_lengths(reason: &str) -> Option<ListLengths> {
+    let rest = reason.strip_prefix("expected ")?;
+    let (expected, found) = rest.split_once(DIFFERENT_LENGTHS)?;
+    Some(ListLengths {
+        expected: expected.parse().ok()?,
+        found: found.parse().ok()?,
+    })
 }
 
 /// Splits a message about a value of the wrong type, value or length: "invalid type: string "x",

@@ -37,7 +37,7 @@ pub mod relative_folder;
 pub mod report;
 mod unknown_keys;
 pub mod user_paths;
-mod variable_fault;
+pub mod variable_fault;
 
 pub use gdcm_model::dataset::limits::LARGEST_TEXT;
 

@@ -409,11 +409,15 @@ mod tests {
             file.write_all(b"half of it")?;
             Err(io::Error::from(ErrorKind::StorageFull))
         });
+        let error = result.unwrap_err();
+        assert_eq!(error.code(), Some("not-writable"));
         assert!(
-            result
-                .unwrap_err()
-                .to_string()
-                .ends_with("corrections.json: cannot be written: the disk is full")
+            matches!(
+                &error,
+                FileError::Unwritable { path: named, reason }
+                    if *named == path && *reason == crate::file_error::system_words(&ErrorKind::StorageFull.into())
+            ),
+            "{error:?}"
         );
         assert_eq!(fs::read_to_string(&path).unwrap(), "before");
         assert_eq!(names(directory.path()), ["corrections.json"]);
@@ -430,11 +434,12 @@ mod tests {
         )
         .unwrap();
         fs::create_dir(&blocked).unwrap();
-        let message = set.persist().unwrap_err().to_string();
+        let error = set.persist().unwrap_err();
         assert!(
-            message.contains("blocked: ") && !message.contains(PREFIX),
-            "{message}"
+            matches!(&error, FileError::Unwritable { path, .. } if *path == blocked),
+            "{error:?}"
         );
+        assert!(!error.to_string().contains(PREFIX), "{error}");
         assert_eq!(fs::read_to_string(&old).unwrap(), "before");
         assert_eq!(names(directory.path()), ["blocked", "old"]);
     }
@@ -563,11 +568,11 @@ mod tests {
     #[test]
     fn a_missing_directory_is_reported() {
         let directory = tempfile::tempdir().unwrap();
-        let error = write_whole(&directory.path().join("no/such/file"), |_| Ok(())).unwrap_err();
+        let missing = directory.path().join("no/such/file");
+        let error = write_whole(&missing, |_| Ok(())).unwrap_err();
         assert!(
-            error
-                .to_string()
-                .ends_with("file: cannot be written: its directory does not exist")
+            matches!(&error, FileError::Unwritable { path, .. } if *path == missing),
+            "{error:?}"
         );
     }
 }

@@ -114,3 +114,28 @@ fn change_words(
         signed(mean, 1)
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::dataset::ConditionId;
+
+    use super::*;
+    use crate::reference_tests::reference_dataset;
+
+    #[test]
+    fn a_sentence_sums_an_assessment_up() {
+        let dataset = reference_dataset();
+        let pair = dataset.find_pair("Q", "LON").unwrap();
+        let mut summary = AssessmentSummary {
+            better: 48,
+            compared: 50,
+            worst: Some((ConditionId(3), pair, 0.26)),
+        };
+        assert_eq!(
+            summary_text(&summary, &dataset),
+            "better in 48 of 50, worst LON → Q in condition 3: +0.3"
+        );
+        summary.worst = None;
+        assert_eq!(summary_text(&summary, &dataset), "nothing to assess");
+    }
+}

@@ -15,3 +15,30 @@ pub fn time_skew_text(skew: &ChannelTimeSkew, channel: &str, physics: &str) -> S
         correction then contains a delay for it"
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::dataset::channel::ChannelSide;
+
+    use super::*;
+
+    #[test]
+    fn words_say_what_is_seen_and_what_else_it_may_be() {
+        let late = ChannelTimeSkew {
+            role: ChannelSide::Output,
+            index: 1,
+            delay_s: -0.0401,
+        };
+        let words = time_skew_text(&late, "Q", "nominal");
+        assert!(
+            words.starts_with(
+                "Q seems to be logged 40 ms early in all records: compared with the physics model \"nominal\""
+            ),
+            "{words}"
+        );
+        assert!(
+            words.contains("Keep it if the sensor or servo really has this lag"),
+            "{words}"
+        );
+    }
+}

@@ -313,3 +313,196 @@ impl ConflictText<'_> {
         format!("{symbol}_{}", channel.name(self.inputs, self.outputs))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::correction::{Bounds, GainObjective};
+    use gdcm_model::dataset::Pair;
+
+    use super::*;
+
+    const GAIN: Quantity = Quantity::Gain(GainObjective::Ratio);
+    const BOUNDS: Bounds = Bounds {
+        lower: 0.7,
+        upper: 1.4,
+    };
+
+    fn inputs() -> Vec<String> {
+        ["LON", "LAT", "PED", "COL"].map(str::to_owned).to_vec()
+    }
+
+    fn outputs() -> Vec<String> {
+        ["P", "Q", "R", "NX", "NY", "NZ"]
+            .map(str::to_owned)
+            .to_vec()
+    }
+
+    fn conflict(quantity: Quantity, entries: &[Pair], kind: ConflictKind) -> Conflict {
+        Conflict {
+            quantity,
+            entries: entries.to_vec(),
+            bounds: BOUNDS,
+            kind,
+        }
+    }
+
+    fn text(conflict: &Conflict) -> String {
+        conflict_text(conflict, &inputs(), &outputs())
+    }
+
+    fn loop_conflict(mismatch: f64) -> Conflict {
+        let entries =
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair::new(output, input));
+        conflict(GAIN, &entries, ConflictKind::Loop { mismatch })
+    }
+
+    #[test]
+    fn products_and_ratios_beyond_the_bounds_have_their_limits_and_remedies() {
+        let above = ConflictKind::AboveUpper {
+            channels: [Channel::Input(1), Channel::Output(0)],
+            asked: 2.5,
+            upper: 1.59,
+        };
+        assert_eq!(
+            text(&conflict(GAIN, &[Pair::new(0, 1)], above)),
+            "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, but 2.500 is required; set \
+             the upper bound to 1.59 or release it."
+        );
+        let little = ConflictKind::AboveUpper {
+            channels: [Channel::Input(1), Channel::Output(0)],
+            asked: 1.960_1,
+            upper: 1.41,
+        };
+        let words = text(&conflict(GAIN, &[Pair::new(0, 1)], little));
+        assert!(
+            words.contains("is at most 1.9600, but 1.9601 is required;"),
+            "{words}"
+        );
+        let apart = ConflictKind::TooFarApart {
+            greater: Channel::Output(4),
+            lesser: Channel::Output(2),
+            asked: 2.5,
+            upper: 1.75,
+            lower: Some(0.56),
+        };
+        assert_eq!(
+            text(&conflict(GAIN, &[Pair::new(2, 2), Pair::new(4, 2)], apart)),
+            "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, but 2.500 is \
+             required; set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
+        );
+    }
+
+    #[test]
+    fn loops_have_their_deviation_to_the_digits_that_show_it() {
+        let words = text(&loop_conflict(0.06));
+        assert!(
+            words.contains("form a loop: their ratios disagree by 0.060 dB")
+                && words.ends_with("release one of them."),
+            "{words}"
+        );
+        let words = text(&loop_conflict(-0.002));
+        assert!(words.contains("disagree by 0.0020 dB"), "{words}");
+        let words = agreement_text(&loop_conflict(0.04), &inputs(), &outputs());
+        assert!(
+            words.contains("form a loop: their ratios agree to 0.040 dB"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn misses_have_the_value_the_wish_and_what_remains() {
+        let miss = |target: f64, delta: f64| Unmatched {
+            quantity: GAIN,
+            pair: Pair::new(2, 2),
+            delta,
+            target,
+            excess: 20.0 * (target / delta).log10(),
+            why: loop_conflict(0.06),
+        };
+        assert_eq!(
+            miss_text(
+                &miss(0.6 * 1.25_f64.sqrt(), 0.6),
+                12.0,
+                &inputs(),
+                &outputs()
+            ),
+            "PED → R is held at 0.671 instead of 0.600 (+1.0 dB)."
+        );
+        let words = miss_text(&miss(1.000_06, 1.0), 12.0, &inputs(), &outputs());
+        let figures: Vec<&str> = words
+            .split(' ')
+            .filter(|word| word.starts_with("1.0"))
+            .collect();
+        assert!(
+            figures.len() == 2 && figures[0] != figures[1] && !words.contains("0.0 dB"),
+            "{words}"
+        );
+        let pair = Pair::new(0, 1);
+        let lead = ConflictKind::BelowLower {
+            channels: [Channel::Input(1), Channel::Output(0)],
+            asked: -0.034,
+            lower: None,
+        };
+        let miss = Unmatched {
+            quantity: Quantity::Delay,
+            pair,
+            delta: -0.034,
+            target: 0.0,
+            excess: 0.034,
+            why: conflict(Quantity::Delay, &[pair], lead),
+        };
+        assert_eq!(
+            miss_text(&miss, 12.0, &inputs(), &outputs()),
+            "LAT → P needs 34.0 ms of lead, which a delay cannot provide; a phase error of 23° remains at 12 rad/s."
+        );
+    }
+
+    #[test]
+    fn the_limit_of_the_gain_of_the_leads_is_named_with_its_remedies() {
+        let pair = Pair::new(0, 1);
+        let lead = ConflictKind::BelowLower {
+            channels: [Channel::Input(1), Channel::Output(0)],
+            asked: -0.25,
+            lower: Some(-0.125),
+        };
+        let conflict = Conflict {
+            bounds: Bounds {
+                lower: -0.095_6,
+                upper: 0.1,
+            },
+            ..conflict(Quantity::SignedDelay, &[pair], lead)
+        };
+        let miss = Unmatched {
+            quantity: Quantity::SignedDelay,
+            pair,
+            delta: -0.25,
+            target: -0.191_2,
+            excess: 0.058_8,
+            why: conflict.clone(),
+        };
+        let words = miss_text(&miss, 12.0, &inputs(), &outputs()) + &text(&conflict);
+        for part in [
+            "of lead that it needs",
+            "R_max limits",
+            "191.2 ms of lead together",
+            "increase R_max or reduce n",
+        ] {
+            assert!(words.contains(part), "{words}");
+        }
+    }
+
+    #[test]
+    fn every_remedy_is_listed() {
+        let remedy = Remedy {
+            quantity: GAIN,
+            upper: Some(1.75),
+            lower: Some(0.56),
+            free: vec![Pair::new(2, 2), Pair::new(4, 2)],
+        };
+        assert_eq!(
+            remedy_text(&remedy, &inputs(), &outputs()),
+            "Any one of these changes allows all responses to be held: an upper bound of 1.75; a lower bound of 0.56; releasing PED → R; \
+             releasing PED → NY."
+        );
+    }
+}

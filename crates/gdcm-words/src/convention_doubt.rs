@@ -89,3 +89,47 @@ fn is_near(factor: f64, known: f64) -> bool {
     };
     (1.0 / NEAR_FACTOR..=NEAR_FACTOR).contains(&ratio)
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::correction::Channel;
+
+    use super::*;
+    use crate::reference_tests::reference_dataset;
+
+    #[test]
+    fn a_sign_is_described_with_its_response_and_the_question() {
+        let dataset = reference_dataset();
+        let doubt = ConventionDoubt {
+            convention: Convention::Sign,
+            channel: Channel::Output(5),
+            pairs: vec![dataset.find_pair("NZ", "COL").unwrap()],
+            all_responses: true,
+            conditions: dataset.ids().collect(),
+        };
+        let words = doubt_text(&doubt, &dataset);
+        assert!(
+            words.starts_with("COL → NZ differs by half a turn"),
+            "{words}"
+        );
+        assert!(
+            words.ends_with("NZ of the identified models has the opposite sign. Reverse it?"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn units_are_named_by_their_factor() {
+        for (factor, units) in [
+            (1.0 / 9.806_65, "1/9.81: g and m/s²"),
+            (0.1, "1/9.81: g and m/s²"),
+            (1.0 / 32.174, "1/32.2: g and ft/s²"),
+            (1e-3, "1/1000: a unit and its thousandth"),
+            (180.0 / PI, "57.3: radians and degrees"),
+            (100.0, "100: a fraction and percent"),
+        ] {
+            let words = known_units_text(factor);
+            assert!(words.contains(units), "{words}");
+        }
+    }
+}

@@ -146,3 +146,36 @@ pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         .map(|remark| remark_text(remark, &study.dataset))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::dataset::ConditionId;
+
+    use super::*;
+    use crate::example_tests::EXAMPLE;
+
+    #[test]
+    fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
+        let result = EXAMPLE.condition(ConditionId(1)).unwrap();
+        let study = &EXAMPLE.study;
+        let words = lead_words(study, result, None);
+        // Reference values: P from LAT requires a lead of 65.4 ms, of which 24.1 ms on P and 41.2 ms on
+        // LAT.
+        assert!(
+            words.iter().any(|of| of.starts_with(
+                "P from LAT needs 65 ms of lead over the band: 24 on P, 41 on LAT; +"
+            )),
+            "{words:?}"
+        );
+        assert!(
+            words.iter().any(|of| of.starts_with(
+                "LAT: as if a servo of 18 rad/s were replaced by one of 36 rad/s; +11.6 dB"
+            )),
+            "{words:?}"
+        );
+        assert_eq!(
+            words.last().unwrap(),
+            "The leads add 20 states. Do not use the corrected model above 12 rad/s."
+        );
+    }
+}

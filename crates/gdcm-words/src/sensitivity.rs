@@ -95,3 +95,61 @@ pub fn toggle_text(toggle: &Toggle, inputs: &[String], outputs: &[String]) -> St
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::correction::{Channel, GainObjective};
+    use gdcm_model::dataset::Pair;
+
+    use super::*;
+
+    #[test]
+    fn the_change_that_lowers_the_objective_is_named() {
+        for (per_unit, change) in [(0.01, "lowering"), (-0.01, "raising")] {
+            let sensitivity = Sensitivity {
+                quantity: Quantity::Gain(GainObjective::Ratio),
+                constraint: ActiveConstraint::Held(Pair::new(0, 0)),
+                per_unit,
+                share_per_unit: per_unit,
+            };
+            let words = sensitivity_text(&sensitivity, &["LON".to_owned()], &["Q".to_owned()]);
+            assert_eq!(
+                words,
+                format!(
+                    "LON → Q is held: {change} its gain by 1 dB would lower the objective by about 1.00 %."
+                )
+            );
+        }
+    }
+
+    #[test]
+    fn no_constraint_is_said_to_cost_more_than_the_whole_objective() {
+        let words = |share_per_unit: f64| {
+            let constraint = ActiveConstraint::LowerBound(Channel::Input(0));
+            let per_unit = 1e-6 * share_per_unit;
+            let sensitivity = Sensitivity {
+                quantity: Quantity::Delay,
+                constraint,
+                per_unit,
+                share_per_unit,
+            };
+            (
+                sensitivity.step(),
+                sensitivity_text(&sensitivity, &["LON".to_owned()], &[]),
+            )
+        };
+        let (step, of_much) = words(1.2156);
+        assert_eq!(step, 0.1);
+        assert_eq!(
+            of_much,
+            "τ_LON is 0: 0.1 ms of lead would lower the objective by about 12.16 %."
+        );
+        assert_eq!(
+            words(0.3).1,
+            "τ_LON is 0: 1 ms of lead would lower the objective by about 30.00 %."
+        );
+        let (least, of_all) = words(1e12);
+        assert_eq!(least, 1e-6);
+        assert!(of_all.ends_with("by about 100.00 %."), "{of_all}");
+    }
+}

@@ -85,7 +85,7 @@ mod tests {
         let path = folder.path().join("levels.json");
         let read = |text: &str| {
             std::fs::write(&path, text).unwrap();
-            read_levels(&path).map_err(|error| error.to_string())
+            read_levels(&path)
         };
         let levels =
             read(r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
@@ -96,18 +96,23 @@ mod tests {
         let cases = [
             (
                 r#"[{"name": "L", "axis": "P", "points": [[2, 0]]}]"#,
-                "expected at least 2 points, found 1",
+                "invalid-entry",
+                "found 1",
             ),
-            (r#"[{"name": "L", "points": [[2, 0], [1, 1]]}]"#, "axis"),
-            (r#"{"levels": []}"#, "a list"),
-            ("[{", "end"),
+            (
+                r#"[{"name": "L", "points": [[2, 0], [1, 1]]}]"#,
+                "missing-key",
+                "\"axis\"",
+            ),
+            (r#"{"levels": []}"#, "wrong-type", ""),
+            ("[{", "json-cut-off", ""),
         ];
-        for (text, words) in cases {
+        for (text, code, value) in cases {
             let error = read(text).unwrap_err();
-            assert!(
-                error.contains("levels.json") && error.contains(words),
-                "{error}"
-            );
+            assert_eq!(error.code(), Some(code), "{error}");
+            let message = error.to_string();
+            assert!(message.contains("levels.json"), "{message}");
+            assert!(message.contains(value), "{message}");
         }
     }
 
@@ -131,23 +136,31 @@ mod tests {
     fn faults_in_a_table_are_reported_with_their_row() {
         let (_folder, path) = written(&ToleranceTable::default());
         let right = std::fs::read_to_string(&path).unwrap();
-        for (from, to, words) in [
+        for (from, to, code, value) in [
             (
                 "\"absolute\": 3.0",
                 "\"absolute\": 0.0",
-                "tolerance 1, \"roll rate\": expected absolute above zero, found 0",
+                "tolerance-not-positive",
+                "tolerance 1, \"roll rate\"",
             ),
             (
                 "\"channel\": \"P\"",
                 "\"channel\": \"\"",
-                "tolerance 1, \"roll rate\": expected the name of an output",
+                "tolerance-without-channel",
+                "tolerance 1, \"roll rate\"",
             ),
-            ("\"absolute\": 3.0,", "", "\"absolute\" is missing"),
-            ("gdcm-tolerances", "gdcm-rules", "gdcm-tolerances"),
+            ("\"absolute\": 3.0,", "", "missing-key", "\"absolute\""),
+            (
+                "gdcm-tolerances",
+                "gdcm-rules",
+                "other-format",
+                "gdcm-tolerances",
+            ),
         ] {
             std::fs::write(&path, right.replacen(from, to, 1)).unwrap();
-            let error = load_tolerances(&path).unwrap_err().to_string();
-            assert!(error.contains(words), "{error}");
+            let error = load_tolerances(&path).unwrap_err();
+            assert_eq!(error.code(), Some(code), "{error}");
+            assert!(error.to_string().contains(value), "{error}");
         }
         std::fs::write(&path, right.replacen("\"source\"", "\"sauce\"", 1)).unwrap();
         let (table, cautions) = load_tolerances(&path).unwrap();

@@ -330,7 +330,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("r.json");
         let start = r#"{"format": "gdcm-rules", "version": 1, "name": "", "inputs": [], "outputs": [], "band_rad_s": [1, 2], "#;
-        for (rest, expected) in [
+        for (rest, place) in [
             (r#""patterns": ["("]}"#, "patterns, entry 1"),
             (r#""models": {"a.mat": {"role": "trim"}}}"#, "a.mat"),
             (r#""signs": {"NZ": -2}}"#, "signs, NZ"),
@@ -353,8 +353,9 @@ mod tests {
             (r#""role_signs": {"nominal": {"NZ": -1}}}"#, "role_signs"),
         ] {
             std::fs::write(&path, format!("{start}{rest}")).unwrap();
-            let error = load_rules(&path).unwrap_err().to_string();
-            assert!(error.contains(expected), "{error}");
+            let error = load_rules(&path).unwrap_err();
+            let found = error.place().map(ToString::to_string).unwrap_or_default();
+            assert!(found.contains(place), "{error}");
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::file_error::FileError;
 use crate::formats::Importer;
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// An unsupported format, with export instructions.
 struct Foreign {
@@ -103,9 +104,13 @@ pub(super) const FOREIGN_FORMAT: Importer = Importer {
 /// Returns the error for a file of an unsupported format.
 fn unsupported(bytes: &[u8]) -> VariableFault {
     match find_foreign(bytes) {
-        Some(Foreign { name, remedy, .. }) => VariableFault::unsupported("", *name, *remedy),
-        None => VariableFault::unsupported("", "a file", AS_TABLE),
+        Some(Foreign { name, remedy, .. }) => foreign_file(name, remedy),
+        None => foreign_file("a file", AS_TABLE),
     }
+}
+
+fn foreign_file(format: &'static str, remedy: &'static str) -> VariableFault {
+    VariableFault::unsupported("", UnsupportedContent::ForeignFile { format, remedy })
 }
 
 /// Returns the format with which the bytes begin.
@@ -132,18 +137,18 @@ mod tests {
             Path::new("logs/flight 7.parquet"),
             &ReadingBudget::new(1 << 20),
         );
-        let words = read
-            .err()
-            .map(|error| error.to_string())
-            .unwrap_or_default();
-        assert!(
-            words.contains("a Parquet file cannot be read; save it as CSV"),
-            "{words}"
-        );
-        assert!(
-            words.ends_with("pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"),
-            "{words}"
-        );
+        let Err(FileError::Variables {
+            fault: VariableFault::Unsupported { content, .. },
+            ..
+        }) = read
+        else {
+            panic!("a Parquet file is read")
+        };
+        let parquet = UnsupportedContent::ForeignFile {
+            format: "a Parquet file",
+            remedy: FROM_PARQUET,
+        };
+        assert_eq!(content, parquet);
         assert!(!(FOREIGN_FORMAT.recognises)(b"omega,re,im\n", "csv"));
     }
 }

@@ -6,6 +6,7 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::line_fault::LineFault;
 
 /// Overhead per allocation, and the initial capacity of a list \[bytes\].
 const ALLOCATION: usize = 64;
@@ -39,7 +40,13 @@ impl Tree {
             .and_then(|tree| json.end().map(|()| tree));
         read.map_err(|error| match refused.take() {
             Some(fault) => fault,
-            None => VariableFault::line("", error.line(), format!("invalid JSON: {error}")),
+            None => VariableFault::line(
+                "",
+                error.line(),
+                LineFault::Json {
+                    message: error.to_string(),
+                },
+            ),
         })
     }
 }

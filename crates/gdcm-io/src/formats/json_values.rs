@@ -198,7 +198,11 @@ mod tests {
 
     #[test]
     fn syntax_errors_give_the_line() {
-        let error = read_variables(b"{\"A\":\n [1,,2]}", &ReadingBudget::new(1 << 20)).unwrap_err();
-        assert!(error.to_string().contains("line 2"), "{error}");
+        let fault = read_variables(b"{\"A\":\n [1,,2]}", &ReadingBudget::new(1 << 20)).unwrap_err();
+        assert!(
+            matches!(fault, VariableFault::Line { line: 2, .. }),
+            "{fault:?}"
+        );
+        assert_eq!(fault.code(), "invalid-json");
     }
 }

@@ -25,6 +25,7 @@ pub mod mat;
 pub(crate) mod mat73;
 pub mod npy;
 pub(crate) mod octave;
+pub mod reading_note;
 pub(crate) mod recorded_columns;
 pub(crate) mod sparse_matrix;
 pub(crate) mod stored_number;
@@ -49,6 +50,7 @@ use crate::formats::mat::MAT;
 use crate::formats::mat73::HDF5;
 use crate::formats::npy::NPY;
 use crate::formats::octave::{OCTAVE_BINARY, OCTAVE_TEXT};
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::text::{MATLAB_STATEMENTS, TEXT};
 use crate::formats::zip_files::ZIP;
@@ -94,7 +96,7 @@ pub(crate) enum Contents {
     Variables {
         variables: Vec<Variable>,
         /// Remarks on interpretations that are not obvious.
-        notes: Vec<String>,
+        notes: Vec<ReadingNote>,
         /// Whether, in arrays with three dimensions, the first index selects a matrix, as in NumPy.
         pages_first: bool,
     },

@@ -1,5 +1,6 @@
 //! Columns of a flight record as read from a file, without the name and the hash of the file.
 
+use crate::formats::reading_note::{ReadingNote, note_texts};
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
 /// Maximum number of records in a file.
@@ -15,7 +16,7 @@ pub(crate) struct Columns {
     /// Sample time \[s\]; `None` if the file does not give it.
     pub(crate) sample_time_s: Option<f64>,
     /// Notes for the user on how the file was read.
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<ReadingNote>,
     /// Flight modes over time, as logged.
     pub(crate) modes: Vec<ModeSpan>,
 }
@@ -56,7 +57,7 @@ impl Columns {
                 sha256: sha256.to_owned(),
                 variable,
             },
-            notes: self.notes,
+            notes: note_texts(&self.notes),
             modes: self.modes,
             ..RecordTable::new(record_name, self.columns)
         }

@@ -3,6 +3,8 @@
 //! All readers of such files (MATLAB, NumPy, text) return these values; what they mean for models
 //! and records is determined elsewhere.
 
+use crate::variable_fault::unread::Unread;
+
 /// Memory charged for a record in addition to its fields \[bytes\]; positive also for records
 /// without fields.
 pub(crate) const RECORD_MEMORY: u64 = 64;
@@ -78,7 +80,7 @@ pub enum Value {
         /// Class name, or a description of the value.
         class: String,
         /// Reason why the value could not be read.
-        why: String,
+        why: Box<Unread>,
     },
 }
 
@@ -152,10 +154,10 @@ impl Value {
     }
 
     /// Creates an opaque value; `why` is the reason why it could not be read.
-    pub fn opaque(class: impl Into<String>, why: impl Into<String>) -> Self {
+    pub fn opaque(class: impl Into<String>, why: Unread) -> Self {
         Self::Opaque {
             class: class.into(),
-            why: why.into(),
+            why: Box::new(why),
         }
     }
 
@@ -198,7 +200,9 @@ impl Value {
             Self::Object(object) => {
                 size_of_val(object.records.shape.as_slice()) + text_memory(&object.class)
             }
-            Self::Opaque { class, why } => text_memory(class) + text_memory(why),
+            Self::Opaque { class, why } => {
+                text_memory(class) + size_of::<Unread>() + why.to_string().len()
+            }
         };
         (size_of::<Self>() + bytes) as u64
     }

@@ -12,6 +12,8 @@ use crate::formats::npy::read_npy;
 use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Maximum ratio of decompressed to compressed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
@@ -140,7 +142,7 @@ fn visit_files(
     let mut entries = archive.entries();
     loop {
         let entry = entries.next_entry().map_err(|error| {
-            VariableFault::damaged("", error.to_string(), archive.directory_offset())
+            VariableFault::damaged("", library_damage(&error), archive.directory_offset())
         })?;
         let Some(entry) = entry else {
             return Ok(());
@@ -151,7 +153,7 @@ fn visit_files(
         let path = entry.file_path();
         let offset = entry.local_header_offset();
         let path = std::str::from_utf8(path.as_bytes())
-            .map_err(|_| VariableFault::damaged("", "a file name is not UTF-8", offset))?;
+            .map_err(|_| VariableFault::damaged("", Damage::FileNameNotUtf8, offset))?;
         visit(&ZipFile {
             path,
             offset,
@@ -166,16 +168,19 @@ impl ZipFile<'_, '_> {
     /// expand to gigabytes; `name` is the file name in errors.
     fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
-            return Err(unsupported(name, "an encrypted entry"));
+            return Err(VariableFault::unsupported(
+                name,
+                UnsupportedContent::EncryptedEntry,
+            ));
         }
         let found = self
             .archive
             .get_entry(self.entry.wayfinder())
-            .map_err(|error| self.damaged(name, error.to_string()))?;
+            .map_err(|error| self.damaged(name, library_damage(&error)))?;
         let packed = found.data();
         let length = self.entry.uncompressed_size_hint();
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-            return Err(self.damaged(name, "it claims to expand to more bytes than is possible"));
+            return Err(self.damaged(name, Damage::ArchiveExpansion));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
@@ -186,26 +191,28 @@ impl ZipFile<'_, '_> {
                 budget,
             )?,
             method => {
-                let what = format!("an entry compressed with method {}", method.as_u16());
-                return Err(unsupported(name, &what));
+                return Err(VariableFault::unsupported(
+                    name,
+                    UnsupportedContent::CompressionMethod {
+                        method: method.as_u16(),
+                    },
+                ));
             }
         };
-        unpacked.map_err(|error| self.damaged(name, error.to_string()))
+        unpacked.map_err(|error| self.damaged(name, library_damage(&error)))
     }
 
     /// Returns the error for a damaged entry.
-    fn damaged(&self, name: &str, what: impl Into<String>) -> VariableFault {
-        VariableFault::damaged(name, what, self.offset)
+    fn damaged(&self, name: &str, damage: Damage) -> VariableFault {
+        VariableFault::damaged(name, damage, self.offset)
     }
 }
 
-/// Returns the error for an entry that cannot be unpacked, with a remedy.
-fn unsupported(name: &str, what: &str) -> VariableFault {
-    VariableFault::unsupported(
-        name,
-        what,
-        "compress it again with deflate, without a password",
-    )
+/// Returns the damage that the library reports.
+fn library_damage(error: &impl ToString) -> Damage {
+    Damage::Library {
+        message: error.to_string(),
+    }
 }
 
 /// Reads a whole entry and compares its length; stops at the first byte beyond `length`. The

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::model::Provenance;
 
+use super::recognise::recognition_fault::{FoundFault, RecognitionFault};
 use super::recognise::{Found, recognise};
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::ReadingBudget;
@@ -91,16 +92,23 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
         Ok(recognised) => {
             found.items = recognised.items;
             for fault in recognised.faults {
-                found.faults.push(format!("{group}: {fault}"));
+                found.faults.push(FoundFault {
+                    files: group.to_owned(),
+                    ..fault
+                });
             }
         }
-        Err(fault) => found.faults.push(format!("{group}: {fault}")),
+        Err(fault) => found.faults.push(FoundFault {
+            files: group.to_owned(),
+            ..FoundFault::new("", RecognitionFault::Variables(fault))
+        }),
     }
     if found.items.is_empty() && found.faults.is_empty() {
         let names: Vec<&str> = matrices.iter().map(|matrix| matrix.file.as_str()).collect();
-        found
-            .faults
-            .push(format!("{}: a model needs A, B and C", names.join(", ")));
+        found.faults.push(FoundFault {
+            files: names.join(", "),
+            ..FoundFault::new("", RecognitionFault::MissingMatrices)
+        });
     }
     let hashes: Vec<String> = matrices
         .iter()
@@ -146,7 +154,11 @@ mod tests {
         let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
         let names: Vec<&str> = found.items.iter().map(|model| model.file()).collect();
         assert_eq!(names, ["c1", "c1/nom"]);
-        assert_eq!(found.faults, ["c1/lone_A.csv: a model needs A, B and C"]);
+        let [fault] = found.faults.as_slice() else {
+            panic!("{:?}", found.faults)
+        };
+        assert_eq!(fault.files, "c1/lone_A.csv");
+        assert_eq!(fault.fault, RecognitionFault::MissingMatrices);
     }
 
     #[test]

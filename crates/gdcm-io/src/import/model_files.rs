@@ -11,6 +11,7 @@ use super::loose_matrices::{LooseMatrix, matrix_letter, models_of_matrices};
 use super::recognise::{Found, recognise};
 use super::response_tables::models_of_table;
 use crate::file_error::FileError;
+use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::text::{
     TextTable, UnsaidUnit, read_matrices, read_matrix, read_table, split_complex,
 };
@@ -18,6 +19,7 @@ use crate::formats::variables::Variable;
 use crate::formats::{
     Contents, FolderProgress, ImportedFile, import, import_bytes, with_file_name,
 };
+use crate::import::recognise::recognition_fault::fault_messages;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Key in [`Headings`] for all tables with as many columns as there are headings; any other key is
@@ -224,7 +226,7 @@ impl<'h> ModelReading<'h> {
     fn recognise(
         &mut self,
         variables: &[Variable],
-        notes: &[String],
+        notes: &[ReadingNote],
         identity: FileIdentity<'_>,
         pages_first: bool,
         budget: &ReadingBudget<'_>,
@@ -236,7 +238,7 @@ impl<'h> ModelReading<'h> {
         }
         let mut found = recognise(variables, pages_first, budget)?;
         for model in &mut found.items {
-            model.notes.extend(notes.iter().cloned());
+            model.notes.extend(note_texts(notes));
         }
         Ok(found)
     }
@@ -283,7 +285,9 @@ impl<'h> ModelReading<'h> {
                 .or_default()
                 .extend(found.unused);
         }
-        self.found.faults.extend(with_file_name(name, found.faults));
+        self.found
+            .faults
+            .extend(with_file_name(name, fault_messages(found.faults)));
         self.found
             .ignored
             .extend(with_file_name(name, found.ignored));
@@ -293,7 +297,7 @@ impl<'h> ModelReading<'h> {
     fn finish(mut self) -> FoundModels {
         let separate = models_of_matrices(self.matrices);
         self.found.models.extend(separate.items);
-        self.found.faults.extend(separate.faults);
+        self.found.faults.extend(fault_messages(separate.faults));
         self.found
     }
 }
@@ -302,7 +306,7 @@ impl<'h> ModelReading<'h> {
 enum TextContents {
     Variables {
         variables: Vec<Variable>,
-        notes: Vec<String>,
+        notes: Vec<ReadingNote>,
     },
     Table(TextTable),
 }

@@ -8,6 +8,7 @@ use gdcm_model::dataset::model::{Origin, Provenance};
 
 use super::recognise::Found;
 use crate::files::model_collection::bare_draft;
+use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit,
 };
@@ -45,12 +46,10 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
     };
     for (response, points) in columns.responses.iter().zip(values) {
         let mut model = response_model(response, points, has_several);
-        model.notes.extend(columns.notes.iter().cloned());
-        model.notes.extend(table.notes.iter().cloned());
+        model.notes.extend(note_texts(&columns.notes));
+        model.notes.extend(note_texts(&table.notes));
         if response.coherence.is_some() {
-            model
-                .notes
-                .push("coherence interpreted as magnitude-squared (γ²)".to_owned());
+            model.notes.push(ReadingNote::CoherenceSquared.to_string());
         }
         found.items.push(model);
     }

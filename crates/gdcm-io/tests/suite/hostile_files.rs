@@ -8,24 +8,43 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_io::import::model_files::models_of_bytes;
 use gdcm_io::import::record_files::records_of_bytes;
-use gdcm_io::reading_budget::ReadingBudget;
+use gdcm_io::reading_budget::{ReadingBudget, VariableFault};
 use gdcm_io::{FileError, FolderProgress, load_any, load_dataset, read_models};
 
 /// Memory limit \[bytes\] for the variables of a file in these tests.
 const MOST: u64 = 64 << 20;
 
-/// Returns the errors for a file that exceeds the budget, read as models and as records; "read" for
+/// Returns the errors for a file that exceeds the budget, read as models and as records; `None` for
 /// a success.
-fn refusals(name: &str, bytes: &[u8]) -> [String; 2] {
+fn refusals(name: &str, bytes: &[u8]) -> [Option<FileError>; 2] {
     refusals_within(MOST, name, bytes)
 }
 
-fn refusals_within(most: u64, name: &str, bytes: &[u8]) -> [String; 2] {
-    let refusals = [
-        models_of_bytes(bytes, name, &ReadingBudget::new(most)).map(drop),
-        records_of_bytes(bytes, name, &ReadingBudget::new(most)).map(drop),
-    ];
-    refusals.map(|refusal| refusal.map_or_else(|error| error.to_string(), |()| "read".to_owned()))
+fn refusals_within(most: u64, name: &str, bytes: &[u8]) -> [Option<FileError>; 2] {
+    [
+        models_of_bytes(bytes, name, &ReadingBudget::new(most)).err(),
+        records_of_bytes(bytes, name, &ReadingBudget::new(most)).err(),
+    ]
+}
+
+/// Asserts that reading failed because of this memory limit, and that the message is a single line
+/// that begins with the name of the file.
+#[track_caller]
+fn assert_too_large(refusal: Option<FileError>, name: &str, limit_mib: u64) {
+    let error = refusal.expect("the file is not read");
+    assert!(
+        matches!(
+            error,
+            FileError::Variables {
+                fault: VariableFault::TooLarge { most_mib, .. },
+                ..
+            } if most_mib == limit_mib
+        ),
+        "{error:?}"
+    );
+    let message = error.to_string();
+    assert!(message.starts_with(name), "{message}");
+    assert_eq!(message.lines().count(), 1);
 }
 
 #[test]
@@ -41,11 +60,8 @@ fn things_without_content_count_and_are_refused_in_one_sentence_with_the_limit()
                 .join(name),
         )
         .unwrap();
-        for words in refusals(name, &bytes) {
-            assert!(
-                words.starts_with(name) && words.contains("would take more than 64 MiB of memory"),
-                "{words}"
-            );
+        for refusal in refusals(name, &bytes) {
+            assert_too_large(refusal, name, 64);
         }
     }
 }
@@ -55,11 +71,8 @@ fn json_of_any_shape_takes_no_more_memory_than_it_may() {
     let chain = format!("{}0{}", "{\"\":".repeat(100), "}".repeat(100));
     for item in [chain.as_str(), "{\"\":0}", "[]", "\"\"", "[0]", "0"] {
         let text = format!("[{}]", vec![item; (3 << 20) / (item.len() + 1)].join(","));
-        for words in refusals_within(16 << 20, "x.json", text.as_bytes()) {
-            assert!(
-                words.contains("would take more than 16 MiB of memory"),
-                "{item}: {words}"
-            );
+        for refusal in refusals_within(16 << 20, "x.json", text.as_bytes()) {
+            assert_too_large(refusal, "x.json", 16);
         }
     }
 }
@@ -119,22 +132,30 @@ fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_the
         .concat(),
     );
     archive.extend([0, 0]);
-    for words in refusals("same.zip", &archive) {
-        assert!(
-            words.starts_with("same.zip")
-                && words.contains("would take more than 64 MiB of memory"),
-            "{words}"
-        );
+    for refusal in refusals("same.zip", &archive) {
+        assert_too_large(refusal, "same.zip", 64);
     }
 }
 
 #[test]
 fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() {
     let members: Vec<String> = (0..100_000).map(|at| format!("\"A{at}\":0")).collect();
-    for words in refusals("x.json", format!("{{{}}}", members.join(",")).as_bytes()) {
+    for refusal in refusals("x.json", format!("{{{}}}", members.join(",")).as_bytes()) {
+        let Some(error) = refusal else {
+            continue;
+        };
         assert!(
-            words == "read" || words.contains("would take more than 4000 million steps of work"),
-            "{words}"
+            matches!(
+                error,
+                FileError::Variables {
+                    fault: VariableFault::TooMuchWork {
+                        most_millions: 4000,
+                        ..
+                    },
+                    ..
+                }
+            ),
+            "{error:?}"
         );
     }
 }
@@ -176,10 +197,7 @@ fn every_reader_stops_when_it_is_asked_to() {
                 records_of_bytes(bytes, name, &budget).err(),
             ];
             assert!(
-                found
-                    .iter()
-                    .flatten()
-                    .all(|error| error.to_string().contains("stopped")),
+                found.iter().flatten().all(FileError::is_stopped),
                 "{name}: {found:?}"
             );
             assert!(
@@ -282,13 +300,10 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
                 count, stopped_at,
                 "{name}: it takes memory after it was stopped"
             );
-            let words = outcome
-                .err()
-                .map(|error| error.to_string())
-                .unwrap_or_default();
+            let error = outcome.err();
             assert!(
-                words.ends_with("stopped"),
-                "{name}, stopped at {stopped_at} of {all}: {words}"
+                error.as_ref().is_some_and(FileError::is_stopped),
+                "{name}, stopped at {stopped_at} of {all}: {error:?}"
             );
         }
     }
@@ -299,13 +314,8 @@ fn a_dataset_and_its_study_are_read_within_a_budget_that_can_be_ended() {
     let path = crate::program_folder().join("tests/data/small-dataset.json");
     let stopped = ReadingBudget::default().stopped_by(Arc::new(true.into()));
     assert!(load_any(&path, &stopped).is_err_and(|error| error.is_stopped()));
-    let small = load_any(&path, &ReadingBudget::new(1 << 10))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        small.contains("would take more than 0 MiB of memory"),
-        "{small}"
-    );
+    let small = load_any(&path, &ReadingBudget::new(1 << 10)).unwrap_err();
+    assert_eq!(small.code(), Some("too-much-memory"), "{small}");
     assert!(load_any(&path, &ReadingBudget::default().with_work(100)).is_err());
     assert!(load_any(&path, &ReadingBudget::default()).is_ok());
 }
@@ -353,11 +363,16 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
         load_dataset(&pipe),
         Err(FileError::NotAFile { .. })
     ));
-    let device = load_dataset(std::path::Path::new("/dev/zero"))
-        .unwrap_err()
-        .to_string();
-    assert_eq!(
-        device,
-        "/dev/zero: this is a device, not a file; save its content as a file, and give the name of that file"
+    let device = load_dataset(std::path::Path::new("/dev/zero")).unwrap_err();
+    assert_eq!(device.code(), Some("input-not-a-file"), "{device}");
+    assert!(
+        matches!(
+            device,
+            FileError::NotAFile {
+                kind: "a device",
+                ..
+            }
+        ),
+        "{device:?}"
     );
 }

@@ -80,6 +80,16 @@ pub enum CorrectedModelError {
 }
 
 impl CorrectedModelError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::PartOfSample { .. } => "part-of-a-sample",
+            Self::SlowSamples { .. } => "slow-samples",
+            Self::TooManyStates { .. } => "too-many-states",
+            Self::Matrices(..) => "corrected-matrices",
+        }
+    }
+
     /// Describes the error, with the given channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {

@@ -60,6 +60,22 @@ pub enum ProblemError {
     Stopped,
 }
 
+impl ProblemError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Shape { .. } => "problem-shape",
+            Self::ConstrainedUndefined { .. } => "constrained-undefined",
+            Self::Gain { .. } => "held-gain",
+            Self::Delay { .. } => "held-delay",
+            Self::Bounds { .. } => "bounds",
+            Self::Alpha { .. } => "alpha",
+            Self::Program { .. } => "program",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
 /// Returns the message about invalid bounds.
 fn bounds_error(quantity: Quantity, bounds: Bounds) -> String {
     let Bounds { lower, upper } = bounds;

@@ -46,6 +46,16 @@ pub enum CoupledModelError {
 }
 
 impl CoupledModelError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::AlgebraicLoop { .. } => "algebraic-loop",
+            Self::Channels { .. } => "channels-differ",
+            Self::Delays(error) => error.code(),
+            Self::Matrices(error) => error.code(),
+        }
+    }
+
     /// Returns the reason in words, with channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {

@@ -59,6 +59,19 @@ pub enum CouplingError {
 }
 
 impl CouplingError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NothingToFit { .. } => "nothing-to-fit",
+            Self::TooFewConditions { .. } => "too-few-conditions",
+            Self::Shape { .. } => "coupling-shape",
+            Self::SingularLoop { .. } => "singular-loop",
+            Self::SingularNormalMatrix { .. } => "singular-normal-matrix",
+            Self::ReversedInput { .. } => "reversed-input",
+            Self::Cancelled(..) => "stopped",
+        }
+    }
+
     /// Describes the error, with the name of a reversed input instead of its index.
     pub fn words(&self, inputs: &[String]) -> String {
         match self {

@@ -57,6 +57,16 @@ pub enum PoleShiftError {
     Modes(#[from] ModesError),
 }
 
+impl PoleShiftError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Model(error) => error.code(),
+            Self::Modes(error) => error.code(),
+        }
+    }
+}
+
 impl PoleShift {
     /// Returns the distance between both poles \[rad/s\]; `None` for an additional state.
     pub fn distance_rad_s(&self) -> Option<f64> {

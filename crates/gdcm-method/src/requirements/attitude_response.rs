@@ -60,6 +60,16 @@ pub enum AttitudeResponseError {
     },
 }
 
+impl AttitudeResponseError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotAnAttitude { .. } => "not-an-attitude",
+            Self::NoResponse { .. } => "no-response",
+        }
+    }
+}
+
 impl AttitudeOutput {
     /// Classifies an output by its unit.
     ///

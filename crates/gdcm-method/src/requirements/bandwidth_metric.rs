@@ -77,3 +77,16 @@ pub enum NoMetric {
         top: f64,
     },
 }
+
+impl NoMetric {
+    /// Returns the stable code by which scripts and tests distinguish the reasons.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoCrossing { .. } => "no-phase-crossing",
+            Self::BelowFromStart { .. } => "below-from-start",
+            Self::NoGainCrossing { .. } => "no-gain-crossing",
+            Self::ResponseEnds { .. } => "response-ends",
+            Self::AboveBand { .. } => "above-band",
+        }
+    }
+}

@@ -161,11 +161,6 @@ fn an_output_is_a_rate_or_an_attitude_by_its_unit() {
             })
         );
     }
-    let error = AttitudeOutput::classify(&Channel::new("NZ", "m/s^2")).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "\"NZ\" in \"m/s^2\" has no bandwidth: it is neither a rate (deg/s, rad/s) nor an attitude (deg, rad)"
-    );
 }
 
 #[test]
@@ -190,10 +185,6 @@ fn a_phase_that_never_falls_through_a_level_has_no_crossing() {
         up_to: 48.0,
     };
     assert_eq!(found.omega_180, Err(no_crossing));
-    assert_eq!(
-        no_crossing.to_string(),
-        "the phase does not fall through -180 deg up to 48 rad/s"
-    );
     assert!(found.phase_delay_s.is_err() && found.omega_gain.is_err());
     assert_eq!(found.phase_line, None);
     assert!(
@@ -373,10 +364,10 @@ fn a_zero_response_is_refused() {
     let zero = at_frequencies(|_| Complex::new(0.0, 0.0));
     let frequencies = search_frequencies(band());
     let refused = AttitudeResponse::new(&zero, AttitudeOutput::Rate, &frequencies, band()).err();
-    assert_eq!(
-        refused.unwrap().to_string(),
-        "there is no response between 0.125 and 48 rad/s"
-    );
+    let Some(AttitudeResponseError::NoResponse { from, to }) = refused else {
+        panic!("a zero response is used")
+    };
+    assert!((from - 0.125).abs() < 1e-12 && (to - 48.0).abs() < 1e-9);
     assert!(AttitudeResponse::new(&zero, AttitudeOutput::Rate, &[], band()).is_err());
 }
 

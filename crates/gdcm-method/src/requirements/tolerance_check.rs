@@ -40,6 +40,18 @@ pub enum ToleranceCheckError {
     NoOutput { output: usize },
 }
 
+impl ToleranceCheckError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoSamples => "no-samples",
+            Self::Lengths { .. } => "lengths-differ",
+            Self::NotFinite { .. } => "not-finite",
+            Self::NoOutput { .. } => "no-output",
+        }
+    }
+}
+
 /// An output over a manoeuvre, compared with its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceCheck {

@@ -306,8 +306,13 @@ fn a_tolerance_that_fits_no_channel_is_refused() {
         ..bank
     };
     assert_eq!(
-        in_g.of_outputs(&outputs()).unwrap_err().to_string(),
-        "\"bank angle\" is not compared: the tolerance is in \"g\", but \"P\" is in \"deg/s\""
+        in_g.of_outputs(&outputs()).unwrap_err(),
+        ToleranceError::Unit {
+            quantity: "bank angle".into(),
+            unit: "g".into(),
+            channel: "P".into(),
+            compared_unit: "deg/s".into()
+        }
     );
 }
 
@@ -320,27 +325,37 @@ fn a_table_comes_back_as_it_was_and_a_wrong_row_is_refused_with_its_place() {
         table
     );
     assert!(text.contains(r#"{"quantity":"normal acceleration","channel":"NZ","integrated":false,"absolute":0.1,"unit":"g","entry":"2.b.3.d, 2.c.3.b"}"#), "{text}");
-    for (from, to, words) in [
+    let not_positive = |row, quantity: &str, name, found| ToleranceError::NotPositive {
+        row,
+        quantity: quantity.to_owned(),
+        name,
+        found,
+    };
+    for (from, to, error) in [
         (
             "\"absolute\":2.0",
             "\"absolute\":0.0",
-            "tolerance 3, \"pitch rate\": expected absolute above zero, found 0",
+            not_positive(3, "pitch rate", "absolute", 0.0),
         ),
         (
             "\"relative\":0.1",
             "\"relative\":-0.1",
-            "tolerance 1, \"roll rate\": expected relative above zero, found -0.1",
+            not_positive(1, "roll rate", "relative", -0.1),
         ),
         (
             "\"channel\":\"NZ\"",
             "\"channel\":\" \"",
-            "tolerance 7, \"normal acceleration\": expected the name of an output",
+            ToleranceError::NoChannelName {
+                row: 7,
+                quantity: "normal acceleration".to_owned(),
+            },
         ),
     ] {
-        let error = serde_json::from_str::<ToleranceTable>(&text.replacen(from, to, 1))
-            .unwrap_err()
-            .to_string();
-        assert!(error.starts_with(words), "{error}");
+        let wrong = text.replacen(from, to, 1);
+        assert!(serde_json::from_str::<ToleranceTable>(&wrong).is_err());
+        let file: serde_json::Value = serde_json::from_str(&wrong).unwrap();
+        let rows = serde_json::from_value(file["tolerances"].clone()).unwrap();
+        assert_eq!(ToleranceTable::new(String::new(), rows).unwrap_err(), error);
     }
 }
 

@@ -17,3 +17,14 @@ pub enum ScheduleError {
     )]
     NotToldApart(SecondVariable),
 }
+
+impl ScheduleError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoCondition => "no-condition-to-schedule",
+            Self::NoSecondValue(..) => "no-second-value",
+            Self::NotToldApart(..) => "too-few-distinct-values",
+        }
+    }
+}

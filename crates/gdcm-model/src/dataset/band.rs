@@ -30,6 +30,13 @@ pub struct BandError {
     pub max: f64,
 }
 
+impl BandError {
+    /// Returns the stable code by which scripts and tests distinguish the error.
+    pub fn code(&self) -> &'static str {
+        "band"
+    }
+}
+
 impl TryFrom<[f64; 2]> for Band {
     type Error = BandError;
 

@@ -71,6 +71,20 @@ pub enum ConditionError {
     },
 }
 
+impl ConditionError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::FlightState(..) => "flight-state",
+            Self::EmptyBundle(..) => "empty-bundle",
+            Self::DuplicateName { .. } => "duplicate-name",
+            Self::Nominal { .. } => "no-nominal",
+            Self::DuplicateRecord { .. } => "duplicate-record",
+            Self::Record { .. } => "record-of-model",
+        }
+    }
+}
+
 impl Condition {
     /// Creates a condition without flight records from its models in file order.
     ///

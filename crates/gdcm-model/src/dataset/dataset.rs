@@ -62,6 +62,19 @@ pub enum DatasetError {
     },
 }
 
+impl DatasetError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Empty(..) => "empty-dataset",
+            Self::DuplicateChannel { .. } => "duplicate-channel",
+            Self::DuplicateId { .. } => "duplicate-condition",
+            Self::OnAxisShape { .. } => "on-axis-shape",
+            Self::ModelShape { .. } => "model-shape",
+        }
+    }
+}
+
 /// Description of a dataset, without its conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DatasetHeader {

@@ -51,6 +51,28 @@ pub enum DraftFault {
     Dataset(#[from] DatasetError),
 }
 
+impl DraftFault {
+    /// Returns the stable code by which scripts and tests distinguish the faults.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::TooMany { .. } => "too-many-entries",
+            Self::Shape { .. } => "table-shape",
+            Self::UnknownChannel { .. } => "unknown-channel",
+            Self::DuplicatePair { .. } => "duplicate-pair",
+            Self::MissingMatrix(..) => "missing-matrix",
+            Self::BothDynamics => "matrices-and-response",
+            Self::NoDynamics => "neither-matrices-nor-response",
+            Self::TimedResponse => "timed-response",
+            Self::MeasuredPhysics => "measured-physics",
+            Self::Band(error) => error.code(),
+            Self::StateSpace(error) => error.code(),
+            Self::MeasuredResponse(error) => error.code(),
+            Self::Condition(error) => error.code(),
+            Self::Dataset(error) => error.code(),
+        }
+    }
+}
+
 /// A fault in a dataset draft, with its location; boxed to keep `Result` small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DraftError {

@@ -94,6 +94,20 @@ pub enum MeasuredResponseError {
     },
 }
 
+impl MeasuredResponseError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::TooFewFrequencies(..) => "too-few-frequencies",
+            Self::Frequency { .. } => "response-frequency",
+            Self::Length { .. } => "response-length",
+            Self::ValidBand { .. } => "valid-band",
+            Self::Estimate { .. } => "response-estimate",
+            Self::Value { .. } => "response-value",
+        }
+    }
+}
+
 impl MeasuredResponse {
     /// Creates the response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\],
     /// both p x m tables with `N` values per response.

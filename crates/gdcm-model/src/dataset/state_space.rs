@@ -45,6 +45,17 @@ pub enum StateSpaceError {
     Timing(#[from] TimingError),
 }
 
+impl StateSpaceError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Shape { .. } => "matrix-shape",
+            Self::NotFinite { .. } => "matrix-not-finite",
+            Self::Timing(error) => error.code(),
+        }
+    }
+}
+
 impl StateSpace {
     /// Creates the continuous-time model (A, B, C, D). `A` determines the number of states; `D`
     /// determines the numbers of outputs and inputs.
@@ -186,10 +197,15 @@ mod tests {
             DMatrix::zeros(3, 1),
         )
         .unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "matrix C, row 3, column 2: expected a finite number, found NaN"
-        );
+        assert!(matches!(
+            error,
+            StateSpaceError::NotFinite {
+                matrix: 'C',
+                row: 3,
+                column: 2,
+                value,
+            } if value.is_nan()
+        ));
     }
 
     #[test]

@@ -39,6 +39,17 @@ pub enum TimingError {
     },
 }
 
+impl TimingError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::SampleTime(..) => "sample-time",
+            Self::Count { .. } => "delay-count",
+            Self::Delay { .. } => "delay-value",
+        }
+    }
+}
+
 impl Timing {
     /// Returns whether the timing is plain: continuous time without delays.
     pub fn is_plain(&self) -> bool {
@@ -155,18 +166,33 @@ mod timing_tests {
 
     #[test]
     fn invalid_sample_times_and_delays_are_named() {
-        let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
-        assert!(error(timing(Some(0.0), &[])).contains("omit it for continuous time"));
-        assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
+        let error = |timing: Timing| timing.checked(1, 2).unwrap_err();
+        assert_eq!(error(timing(Some(0.0), &[])), TimingError::SampleTime(0.0));
+        assert_eq!(
+            error(timing(Some(f64::INFINITY), &[0.0; 2])),
+            TimingError::SampleTime(f64::INFINITY)
+        );
+        let list = "input_delays_s";
         assert_eq!(
             error(timing(None, &[0.0])),
-            "input_delays_s: expected 2 delays, one for each channel, found 1"
+            TimingError::Count {
+                list,
+                expected: 2,
+                found: 1
+            }
         );
         assert_eq!(
             error(timing(None, &[0.0, -0.1])),
-            "input_delays_s, entry 2: expected a delay from 0 to 60 s, found -0.1"
+            TimingError::Delay {
+                list,
+                entry: 2,
+                value: -0.1
+            }
         );
-        assert!(error(timing(None, &[f64::NAN, 61.0])).contains("entry 1"));
+        assert!(matches!(
+            error(timing(None, &[f64::NAN, 61.0])),
+            TimingError::Delay { entry: 1, .. }
+        ));
     }
 
     #[test]

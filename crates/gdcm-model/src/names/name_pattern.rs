@@ -63,6 +63,16 @@ pub enum PatternError {
     Group { pattern: String, group: String },
 }
 
+impl PatternError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Syntax { .. } => "pattern-syntax",
+            Self::Group { .. } => "pattern-group",
+        }
+    }
+}
+
 impl NamePattern {
     /// Compiles a pattern; case is ignored.
     ///

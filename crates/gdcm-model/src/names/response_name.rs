@@ -35,6 +35,16 @@ pub enum ResponseNameError {
     },
 }
 
+impl ResponseNameError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Several { .. } => "several-channels",
+            Self::OtherChannel { .. } => "other-channel",
+        }
+    }
+}
+
 impl ResponseName {
     /// Finds the channels named in a text.
     ///

@@ -50,6 +50,16 @@ pub enum ModesError {
     NotConverged,
 }
 
+impl ModesError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::TooLarge(..) => "too-large",
+            Self::NotConverged => "not-converged",
+        }
+    }
+}
+
 impl Mode {
     fn new(
         pole: Complex<f64>,

@@ -139,3 +139,17 @@ pub enum ValidationError {
     #[error("the simulated outputs are not finite")]
     NotFinite,
 }
+
+impl ValidationError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoSegments => "no-segments",
+            Self::ChannelsDiffer(..) => "channels-differ",
+            Self::NotSimulated => "not-simulated",
+            Self::NoWindow => "no-window",
+            Self::TooShort(..) => "too-short",
+            Self::NotFinite => "not-finite",
+        }
+    }
+}

@@ -32,6 +32,16 @@ pub enum NothingToIdentify {
     AllHeldOut,
 }
 
+impl NothingToIdentify {
+    /// Returns the stable code by which scripts and tests distinguish the reasons.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoRecord => "no-record",
+            Self::AllHeldOut => "all-held-out",
+        }
+    }
+}
+
 /// Flight records, and the options of their identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentificationRequest {

@@ -12,6 +12,7 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 use gdcm_model::simulation::{FirstOrderHold, FlightRecord, validate};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::spectra::preparation::segments_of;
+use gdcm_sysid::spectra::preparation_settings::PreparationError;
 
 use super::couplings_tests::{COUPLED, EXAMPLE};
 use super::job::Job;
@@ -176,7 +177,8 @@ fn what_is_not_compared_is_said() {
     assert!(reasons(&found).iter().any(|why| matches!(
         why,
         MissingReason::RecordNotPrepared { record, why }
-            if record == "sweep" && why.to_string().contains("less than 2.0 s")
+            if record == "sweep"
+                && matches!(why, PreparationError::NothingLeft { least_s: 2.0, .. })
     )));
     let others = found
         .missing

@@ -73,6 +73,19 @@ pub enum RoleModelError {
     Coupled(#[from] CoupledModelError),
 }
 
+impl RoleModelError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Measured { .. } => "measured-response",
+            Self::Discrete { .. } => "discrete-model",
+            Self::NoSchedule(error) => error.code(),
+            Self::Delays(error) => error.code(),
+            Self::Coupled(error) => error.code(),
+        }
+    }
+}
+
 impl Analysis {
     /// Returns the model of a role in continuous time, with delays as states: the physics
     /// representative, uncorrected or with the study's couplings and a correction (`M_O H~ M_I`);

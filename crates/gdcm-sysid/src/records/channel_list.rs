@@ -36,6 +36,16 @@ pub enum ChannelListError {
     Twice(String),
 }
 
+impl ChannelListError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoChannel(..) => "no-channel",
+            Self::Twice(..) => "given-twice",
+        }
+    }
+}
+
 impl SaidChannel {
     /// Returns the rule for this channel, column and unit.
     pub fn rule(&self) -> ChannelRule {

@@ -79,6 +79,7 @@ impl LaidOutRecord {
             cautions,
             flight,
         };
+        let notes = notes.iter().map(ToString::to_string).collect();
         (record, notes)
     }
 

@@ -168,6 +168,29 @@ pub enum LayoutProblem {
 }
 
 impl LayoutProblem {
+    /// Returns the stable code by which scripts and tests distinguish the problems.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoTime(..) => "no-time",
+            Self::NoSuchColumn { .. } => "no-such-column",
+            Self::TimeOrder { .. } => "time-order",
+            Self::TimeStep { .. } => "time-step",
+            Self::SampleTime(..) => "sample-time",
+            Self::NoColumn { .. } => "no-column",
+            Self::SeveralColumns { .. } => "several-columns",
+            Self::Unnamed { .. } => "unnamed-columns",
+            Self::Sign { .. } => "sign",
+            Self::UnsaidUnit { .. } => "unit-not-given",
+            Self::Conversion { .. } => "unit-conversion",
+            Self::OneColumn { .. } => "one-column",
+            Self::Empty { .. } => "empty-table",
+            Self::Factor { .. } => "factor",
+            Self::Delay { .. } => "delay",
+            Self::Magnitude { .. } => "magnitude",
+            Self::Topics(error) => error.code(),
+        }
+    }
+
     /// Returns whether a channel has no column.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::NoColumn { .. } | Self::Unnamed { .. })
@@ -210,4 +233,17 @@ pub enum LayoutCaution {
         count: usize,
         samples: usize,
     },
+}
+
+impl LayoutCaution {
+    /// Returns the stable code by which scripts and tests distinguish the cautions.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Constant { .. } => "constant-column",
+            Self::Same { .. } => "same-column",
+            Self::Copy { .. } => "copied-channel",
+            Self::Missing { .. } => "missing-samples",
+            Self::MissingTime { .. } => "missing-time",
+        }
+    }
 }

@@ -3,11 +3,11 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::names::signed_name::sign_between;
-use gdcm_model::units::number;
 use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::column_candidates::{candidates, without_sign_mark};
 use super::column_use::ColumnUse;
+use super::layout_note::{ColumnConversion, LayoutNote};
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::plausible_units::possible_units;
 use super::record_channels::{RecordChannels, SaidConversion};
@@ -31,7 +31,7 @@ pub struct LayoutProposal {
     /// The layout; columns that are not determined remain open.
     pub layout: RecordLayout,
     /// Choices with their reasons.
-    pub notes: Vec<String>,
+    pub notes: Vec<LayoutNote>,
     /// Problems that make the layout unusable.
     pub problems: Vec<LayoutProblem>,
     /// Unusual features that may be correct.
@@ -97,7 +97,7 @@ impl RecordLayout {
 struct Proposer<'r> {
     table: &'r RecordTable,
     channels: &'r RecordChannels,
-    notes: Vec<String>,
+    notes: Vec<LayoutNote>,
     problems: Vec<LayoutProblem>,
 }
 
@@ -138,14 +138,11 @@ impl Proposer<'_> {
     fn time(&mut self, wish: &TimeWish) -> Option<TimeBase> {
         let table = self.table;
         if table.has_topics() {
-            self.notes
-                .push("time from the stamps of each topic".to_owned());
+            self.notes.push(LayoutNote::TopicStamps);
             return Some(TimeBase::Topics);
         }
         if let Some(step_s) = wish.sample_time_s {
-            let step = number(step_s);
-            self.notes
-                .push(format!("sample time {step} s, as requested"));
+            self.notes.push(LayoutNote::RequestedStep { step_s });
             return Some(TimeBase::SampleTime(step_s));
         }
         let column = match &wish.column {
@@ -167,9 +164,7 @@ impl Proposer<'_> {
             return Some(TimeBase::from_column(table, column));
         }
         if let Some(step_s) = table.sample_time_s {
-            let step = number(step_s);
-            self.notes
-                .push(format!("sample time {step} s, from the file"));
+            self.notes.push(LayoutNote::StepOfFile { step_s });
             return Some(TimeBase::SampleTime(step_s));
         }
         self.problems
@@ -197,10 +192,10 @@ impl Proposer<'_> {
         let is_unmatched = candidates_of_rules.iter().all(Vec::is_empty);
         let mut uses = Vec::with_capacity(rules.len());
         if is_unmatched && marked.len() == rules.len() && !rules.is_empty() {
-            self.notes.push(format!(
-                "the file marks {} columns with other names as {side}s: assigned in order",
-                rules.len()
-            ));
+            self.notes.push(LayoutNote::MarkedInOrder {
+                side,
+                count: rules.len(),
+            });
             for (rule, column) in rules.iter().zip(marked) {
                 uses.push(self.column_use(rule, column));
             }
@@ -257,16 +252,11 @@ impl Proposer<'_> {
         if sign > 0.0 {
             return Some(used);
         }
-        let reason = if marked_alias.is_some() {
-            "as requested"
-        } else {
-            "as its name indicates"
-        };
-        self.notes.push(format!(
-            "{}: sign of column {} reversed, {reason}",
-            rule.name,
-            self.table.quoted(column)
-        ));
+        self.notes.push(LayoutNote::SignReversed {
+            channel: rule.name.clone(),
+            column: self.table.quoted(column),
+            is_requested: marked_alias.is_some(),
+        });
         Some(ColumnUse {
             factor: -used.factor,
             ..used
@@ -293,19 +283,17 @@ impl Proposer<'_> {
     /// Returns the column with the factor to the unit of the channel (step 3), and adds a note.
     fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let table = self.table;
-        let quoted = table.quoted(column);
         let unit = match self.channels.said.get(&rule.name) {
             Some(SaidConversion::Factor(factor)) => {
-                let note = format!("column {quoted}, × {} as requested", number(*factor));
-                self.note(rule, &note);
+                self.note(rule, column, ColumnConversion::RequestedFactor(*factor));
                 return Some(ColumnUse::times(column, *factor));
             }
             Some(SaidConversion::Unit(unit)) => Some(unit.as_str()),
             None => table.columns[column].said_unit(),
         };
         if rule.unit.is_empty() {
-            let suffix = unit.map_or_else(String::new, |unit| format!(", in {unit}"));
-            self.note(rule, &format!("column {quoted} unchanged{suffix}"));
+            let unit = unit.map(str::to_owned);
+            self.note(rule, column, ColumnConversion::NoUnitOfChannel(unit));
             return Some(ColumnUse::as_it_is(column));
         }
         if let Some(unit) = unit {
@@ -325,26 +313,29 @@ impl Proposer<'_> {
         unit: &str,
         source: UnitSource,
     ) -> Option<ColumnUse> {
-        let quoted = self.table.quoted(column);
         let to = &rule.unit;
         let Some(factor) = conversion_factor(unit, to) else {
             self.problems.push(LayoutProblem::Conversion {
                 channel: rule.name.clone(),
-                column: quoted,
+                column: self.table.quoted(column),
                 from: unit.to_owned(),
                 to: to.clone(),
             });
             return None;
         };
-        let note = if factor != 1.0 {
-            format!("column {quoted}, {unit} → {to} (× {})", number(factor))
+        let conversion = if factor != 1.0 {
+            ColumnConversion::Converted {
+                from: unit.to_owned(),
+                to: to.clone(),
+                factor,
+            }
         } else {
             match source {
-                UnitSource::Known => format!("column {quoted}, in {unit}"),
-                UnitSource::Rule => format!("column {quoted}, in {unit} as set for the channel"),
+                UnitSource::Known => ColumnConversion::SameUnit(unit.to_owned()),
+                UnitSource::Rule => ColumnConversion::UnitOfRule(unit.to_owned()),
             }
         };
-        self.note(rule, &note);
+        self.note(rule, column, conversion);
         Some(ColumnUse::times(column, factor))
     }
 
@@ -355,29 +346,25 @@ impl Proposer<'_> {
         if used.is_unit_open {
             return used;
         }
-        let quoted = table.quoted(column);
         let possible = possible_units(&table.columns[column], &rule.unit);
-        let note = match possible.as_slice() {
-            [only] => {
-                let factor = if used.factor == 1.0 {
-                    String::new()
-                } else {
-                    format!(" (× {})", number(used.factor))
-                };
-                format!(
-                    "column {quoted}, assumed to be in {only}: the file gives no unit, and the \
-                    samples are plausible in no other unit{factor}"
-                )
-            }
-            _ => format!("column {quoted} unchanged: the file gives no unit"),
+        let conversion = match possible.as_slice() {
+            [only] => ColumnConversion::OnlyPlausibleUnit {
+                unit: only.to_string(),
+                factor: used.factor,
+            },
+            _ => ColumnConversion::NoUnitOfFile,
         };
-        self.note(rule, &note);
+        self.note(rule, column, conversion);
         used
     }
 
-    /// Adds a note about a channel.
-    fn note(&mut self, rule: &ChannelRule, note: &str) {
-        self.notes.push(format!("{}: {note}", rule.name));
+    /// Adds a note about the column of a channel.
+    fn note(&mut self, rule: &ChannelRule, column: usize, conversion: ColumnConversion) {
+        self.notes.push(LayoutNote::Column {
+            channel: rule.name.clone(),
+            column: self.table.quoted(column),
+            conversion,
+        });
     }
 }
 

@@ -7,6 +7,7 @@ use gdcm_model::names::ChannelRule;
 
 use super::column_use::ColumnUse;
 use super::laid_out_record::LaidOutRecord;
+use super::layout_note::{ColumnConversion, LayoutNote};
 use super::layout_problem::LayoutProblem;
 use super::layout_proposal::{LayoutProposal, TimeWish};
 use super::record_channels::{RecordChannels, SaidConversion};
@@ -81,14 +82,40 @@ fn channels_are_found_by_synonyms_and_converted_with_notes() {
         (0, 0),
         "{proposal:?}"
     );
+    let note = |channel: &str, column: &str, conversion| LayoutNote::Column {
+        channel: channel.to_owned(),
+        column: format!("\"{column}\""),
+        conversion,
+    };
+    let converted = |from: &str, to: &str, factor| ColumnConversion::Converted {
+        from: from.to_owned(),
+        to: to.to_owned(),
+        factor,
+    };
+    let percent = "%".to_owned();
     assert_eq!(
         proposal.notes,
         [
-            "time from column \"Time (s)\", in s",
-            "LON: column \"delta_b\", assumed to be in %: the file gives no unit, and the samples are plausible in no other unit",
-            "LAT: column \"lateral\", in %",
-            "P: column \"roll rate\", rad/s → deg/s (× 57.29577951308232)",
-            "NZ: column \"nz\", g → m/s² (× 9.80665)",
+            LayoutNote::TimeColumn {
+                column: "\"Time (s)\"".to_owned(),
+                unit: "s",
+                reason: String::new(),
+            },
+            note(
+                "LON",
+                "delta_b",
+                ColumnConversion::OnlyPlausibleUnit {
+                    unit: percent.clone(),
+                    factor: 1.0
+                }
+            ),
+            note("LAT", "lateral", ColumnConversion::SameUnit(percent)),
+            note(
+                "P",
+                "roll rate",
+                converted("rad/s", "deg/s", 57.29577951308232)
+            ),
+            note("NZ", "nz", converted("g", "m/s²", 9.80665)),
         ]
     );
     let flight = proposal.layout.flight_record(&table, &channels).unwrap();
@@ -169,7 +196,13 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
     );
     let taken = with_roll_rate("", 7.1, "deg/s");
     assert!(
-        taken.notes[3].ends_with("and the samples are plausible in no other unit"),
+        matches!(
+            &taken.notes[3],
+            LayoutNote::Column {
+                conversion: ColumnConversion::OnlyPlausibleUnit { unit, factor: 1.0 },
+                ..
+            } if unit == "deg/s"
+        ),
         "{:?}",
         taken.notes
     );

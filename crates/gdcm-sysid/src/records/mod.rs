@@ -7,7 +7,7 @@
 //! | several records in a table | [`separation`] |
 //! | topics in separate tables (M14.11) | [`topic_tables`], `topic_join`, `topic_names`, `side_by_side_tables` |
 //! | channels to read | [`record_channels`], [`channel_list`], `channel_units`, [`dataset_of_records`] |
-//! | columns for time and channels | [`layout_proposal`], `column_candidates`, `position_columns`, [`column_use`] |
+//! | columns for time and channels | [`layout_proposal`], [`layout_note`], `column_candidates`, `position_columns`, [`column_use`] |
 //! | chosen columns, edited by the user | [`record_layout`], `layout_transfer` |
 //! | checks | `layout_checks`, `plausible_units`, [`layout_problem`] |
 //! | flight record | `layout_samples`, `channel_delay`, [`laid_out_record`] |
@@ -28,6 +28,7 @@ pub mod laid_out_record;
 #[cfg(test)]
 mod laid_out_tests;
 mod layout_checks;
+pub mod layout_note;
 pub mod layout_problem;
 pub mod layout_proposal;
 mod layout_samples;

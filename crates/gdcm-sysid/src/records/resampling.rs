@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::FlightRecord;
-use gdcm_model::units::telling;
 
 use super::common_clock::CommonClock;
+use super::layout_note::{LayoutNote, LoggedRate};
 use super::record_channels::{RecordChannels, ResamplingWish};
 use super::record_layout::{ChannelUse, RecordLayout};
 use super::record_table::{RecordColumn, RecordTable};
@@ -104,24 +104,23 @@ impl Resampling {
     }
 
     /// Returns notes on the sample rates, the low-pass filter and the held inputs.
-    pub(super) fn notes(&self) -> Vec<String> {
-        let rates: Vec<String> = self
-            .channels
-            .iter()
-            .map(|channel| format!("{} {} Hz", channel.name, telling(channel.rate_hz, 1)))
-            .collect();
-        let mut notes = vec![format!(
-            "resampled to {} Hz; every channel is filtered by the same low-pass at {} rad/s \
-            (logged: {})",
-            telling(self.clock.rate_hz, 2),
-            telling(self.clock.cutoff, 1),
-            rates.join(", ")
-        )];
+    pub(super) fn notes(&self) -> Vec<LayoutNote> {
+        let mut logged = Vec::with_capacity(self.channels.len());
+        for channel in &self.channels {
+            logged.push(LoggedRate {
+                channel: channel.name.clone(),
+                rate_hz: channel.rate_hz,
+            });
+        }
+        let mut notes = vec![LayoutNote::Resampled {
+            rate_hz: self.clock.rate_hz,
+            cut_off_rad_s: self.clock.cutoff,
+            logged,
+        }];
         if !self.held.is_empty() {
-            notes.push(format!(
-                "{}: treated as held between samples, and therefore moved half a sample later",
-                self.held.join(", ")
-            ));
+            notes.push(LayoutNote::Held {
+                channels: self.held.clone(),
+            });
         }
         notes
     }
@@ -282,12 +281,30 @@ mod tests {
         proposal.layout.flight_record(table, channels).unwrap()
     }
 
+    /// Asserts the names and the rates \[Hz\] of channels, to 0.05 Hz.
+    fn assert_rates(logged: &[LoggedRate], expected: [(&str, f64); 2]) {
+        assert_eq!(logged.len(), expected.len());
+        for (found, (channel, rate_hz)) in logged.iter().zip(expected) {
+            assert_eq!(found.channel, channel);
+            assert!((found.rate_hz - rate_hz).abs() < 0.05, "{found:?}");
+        }
+    }
+
     #[test]
     fn topics_with_separate_clocks_become_a_record_with_a_note() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.3), topic("q", 100.0, 0.0)]);
         let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
-        let expected = "resampled to 50.93 Hz; every channel is filtered by the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
-        assert!(notes.iter().any(|note| note == expected), "{notes:?}");
+        let Some(LayoutNote::Resampled {
+            rate_hz,
+            cut_off_rad_s,
+            logged,
+        }) = notes.last()
+        else {
+            panic!("{notes:?}")
+        };
+        assert!((rate_hz - 50.93).abs() < 0.005, "{rate_hz}");
+        assert!((cut_off_rad_s - 80.0).abs() < 0.05, "{cut_off_rad_s}");
+        assert_rates(logged, [("M", 250.0), ("q", 100.0)]);
         let flight = flight(&table, &channels());
         assert_eq!(flight.time_s[0], 0.3);
         let middle = flight.time_s.len() / 2;
@@ -342,12 +359,11 @@ mod tests {
         ];
         let table = RecordTable::new("joined", columns);
         let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
-        assert!(
-            notes
-                .iter()
-                .any(|note| note.contains("M 125.0 Hz, q 50.0 Hz")),
-            "{notes:?}"
-        );
+        let resampled = notes.iter().find_map(|note| match note {
+            LayoutNote::Resampled { logged, .. } => Some(logged),
+            _ => None,
+        });
+        assert_rates(resampled.unwrap(), [("M", 125.0), ("q", 50.0)]);
         let flight = flight(&table, &channels());
         assert!(flight.outputs.iter().all(|value| value.is_finite()));
         assert!(flight.inputs.iter().all(|value| value.is_finite()));

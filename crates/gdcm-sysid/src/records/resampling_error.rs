@@ -37,3 +37,15 @@ pub enum ResamplingError {
     )]
     TooMany(f64),
 }
+
+impl ResamplingError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::TooFew { .. } => "too-few-samples",
+            Self::TooSlow { .. } => "sampled-too-slowly",
+            Self::NoCommonTime { .. } => "no-common-time",
+            Self::TooMany(..) => "too-many-samples",
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 use gdcm_model::names::time_name::time_name_rank;
 
+use super::layout_note::LayoutNote;
 use super::record_table::RecordTable;
 use super::sample_step::median_step;
 use super::stamp_unit::StampUnit;
@@ -90,10 +91,13 @@ impl TimeBase {
     }
 
     /// Describes a stamp column, with the reason for its unit.
-    pub(super) fn column_note(table: &RecordTable, column: usize) -> String {
+    pub(super) fn column_note(table: &RecordTable, column: usize) -> LayoutNote {
         let unit = StampUnit::new(&table.columns[column]);
-        let quoted = table.quoted(column);
-        format!("time from column {quoted}, in {}{}", unit.name, unit.reason)
+        LayoutNote::TimeColumn {
+            column: table.quoted(column),
+            unit: unit.name,
+            reason: unit.reason,
+        }
     }
 
     /// Finds the time column by its name; in a table without column names, the first column if it

@@ -26,3 +26,15 @@ pub enum LocalPolynomialError {
         needed: usize,
     },
 }
+
+impl LocalPolynomialError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Nothing => "no-spectra",
+            Self::ChannelsDiffer(..) => "channels-differ",
+            Self::NotFinite => "not-finite",
+            Self::TooFewLines { .. } => "too-few-lines",
+        }
+    }
+}

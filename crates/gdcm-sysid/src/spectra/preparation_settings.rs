@@ -234,3 +234,22 @@ pub enum PreparationError {
     #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
     Constant(Vec<Signal>),
 }
+
+impl PreparationError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoRecords => "no-records",
+            Self::NoChannels(..) => "no-channels",
+            Self::ChannelsDiffer { .. } => "channels-differ",
+            Self::LengthsDiffer { .. } => "lengths-differ",
+            Self::Shift { .. } => "channel-shift",
+            Self::LeastSegment(..) => "least-segment",
+            Self::Bridge(..) => "bridge",
+            Self::TimeNotIncreasing { .. } => "time-not-increasing",
+            Self::UnevenSampling { .. } => "uneven-sampling",
+            Self::NothingLeft { .. } => "nothing-left",
+            Self::Constant(..) => "constant-channels",
+        }
+    }
+}

@@ -39,6 +39,18 @@ pub enum ScalingError {
     Constant { role: ChannelSide, index: usize },
 }
 
+impl ScalingError {
+    /// Returns the stable code by which scripts and tests distinguish the errors.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoSegments => "no-segments",
+            Self::ChannelsDiffer(..) => "channels-differ",
+            Self::NotFinite(..) => "not-finite",
+            Self::Constant { .. } => "constant-channels",
+        }
+    }
+}
+
 impl Scales {
     /// Computes the channel scales for `segments`.
     ///

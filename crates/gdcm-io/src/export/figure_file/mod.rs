@@ -126,9 +126,10 @@ mod tests {
         )
         .unwrap_err();
         assert!(
-            refusal
-                .to_string()
-                .contains("\"Error of LON → Q\" has no values to write"),
+            matches!(
+                &refusal,
+                FileError::FigureWithoutNumbers { title, .. } if title == "Error of LON → Q"
+            ),
             "{refusal}"
         );
         assert!(!path.exists());

@@ -14,7 +14,6 @@
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
 
-use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::file_error::FileError;
@@ -24,9 +23,12 @@ use crate::formats::logs::blackbox_header::Header;
 use crate::formats::logs::blackbox_integers::PackedBytes;
 use crate::formats::logs::documented_channels::{BETAFLIGHT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Beginning of the header of a flight.
 const MARK: &[u8] = b"H Product:Blackbox";
@@ -81,14 +83,18 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     if flights.is_empty() {
         return Err(VariableFault::damaged(
             "",
-            format!("no flight with at least {FEWEST_FRAMES} frames"),
+            Damage::NoFlight {
+                fewest: FEWEST_FRAMES,
+            },
             0,
         ));
     }
     if ignored > 0 {
-        flights[0].notes.push(format!(
-            "{ignored} of {count} flights in the file omitted: fewer than {FEWEST_FRAMES} frames"
-        ));
+        flights[0].notes.push(ReadingNote::FlightsOmitted {
+            omitted: ignored,
+            count,
+            fewest: FEWEST_FRAMES,
+        });
     }
     Ok(flights)
 }
@@ -158,11 +164,7 @@ impl Flight {
                 let version: String = version.chars().take(9).collect();
                 Err(VariableFault::unsupported(
                     name,
-                    format!(
-                        "a blackbox log of data version \"{version}\", or with fields of a later \
-                        version"
-                    ),
-                    "save it as CSV: blackbox_decode \"{file}\"",
+                    UnsupportedContent::BlackboxVersion { version },
                 ))
             }
         }
@@ -259,8 +261,7 @@ impl Flight {
         name: String,
         budget: &ReadingBudget<'_>,
     ) -> Result<Columns, VariableFault> {
-        let mut notes =
-            vec!["a Betaflight log; axisSum is the sum of the controller terms".to_owned()];
+        let mut notes = vec![ReadingNote::BetaflightLog];
         let names = self.header.main_fields();
         let mut columns = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
@@ -281,16 +282,12 @@ impl Flight {
         if self.header.value("gyro_scale") == ONE {
             notes.extend(assign_documented_meanings(&mut columns, &BETAFLIGHT));
         } else {
-            notes.push(
-                "gyro_scale is not 1: the unit of gyroADC is unknown, so no channels are proposed"
-                    .to_owned(),
-            );
+            notes.push(ReadingNote::GyroScale);
         }
         if self.damaged > 0 {
-            notes.push(format!(
-                "{}: the frames up to the next intra frame are omitted",
-                counted(self.damaged, "damaged frame")
-            ));
+            notes.push(ReadingNote::DamagedFrames {
+                count: self.damaged,
+            });
         }
         let modes = flight_modes(&self.modes);
         notes.extend(modes_note(&modes));
@@ -439,12 +436,12 @@ mod tests {
             (Some("P"), Some("deg/s"))
         );
         assert!(columns[4].values.iter().all(|sum| *sum == 7.0));
-        assert!(
-            flights[0]
-                .notes
-                .iter()
-                .any(|note| note.starts_with("1 of 3 flights"))
-        );
+        let omitted = ReadingNote::FlightsOmitted {
+            omitted: 1,
+            count: 3,
+            fewest: FEWEST_FRAMES,
+        };
+        assert!(flights[0].notes.contains(&omitted));
     }
 
     #[test]
@@ -456,13 +453,26 @@ mod tests {
         let stamps = &flights[0].columns[0].values;
         assert!((70..100).contains(&stamps.len()), "{}", stamps.len());
         assert!(stamps.windows(2).all(|pair| pair[1] > pair[0]));
-        assert!(flights[0].notes.iter().any(|note| note.contains("damaged")));
+        let damaged = ReadingNote::DamagedFrames { count: 1 };
+        assert!(
+            flights[0].notes.contains(&damaged),
+            "{:?}",
+            flights[0].notes
+        );
     }
 
     #[test]
     fn another_version_is_refused_with_the_conversion_command() {
         let text = String::from_utf8_lossy(b"H Product:Blackbox\nH Data version:1\nI").into_owned();
-        let words = read(text.as_bytes()).err().unwrap().to_string();
-        assert!(words.contains("blackbox_decode"), "{words}");
+        let fault = read(text.as_bytes()).err().unwrap();
+        let version = "1".to_owned();
+        assert!(
+            matches!(
+                &fault,
+                VariableFault::Unsupported { content, .. }
+                    if *content == UnsupportedContent::BlackboxVersion { version }
+            ),
+            "{fault:?}"
+        );
     }
 }

@@ -13,12 +13,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use gdcm_model::number_format::counted;
-
 use crate::file_error::FileError;
 use crate::formats::logs::array;
 use crate::formats::logs::dataflash_layouts::{FieldKind, Layouts, MessageLayout};
 use crate::formats::logs::dataflash_topics::{SampleFields, Topics};
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::{Contents, Importer};
@@ -74,11 +73,9 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
         }
     }
 
-    let mut notes =
-        vec!["an ArduPilot log; time in seconds since the start of the autopilot".to_owned()];
+    let mut notes = vec![ReadingNote::ArduPilotLog];
     if skipped > 0 {
-        let bytes = counted(skipped, "byte");
-        notes.push(format!("{bytes} between messages skipped"));
+        notes.push(ReadingNote::BytesSkipped { count: skipped });
     }
     topics.into_columns(notes)
 }
@@ -391,8 +388,7 @@ pub(super) mod tests {
         assert!(
             columns
                 .notes
-                .iter()
-                .any(|note| note.contains("bytes between messages")),
+                .contains(&ReadingNote::BytesSkipped { count: 4 }),
             "{:?}",
             columns.notes
         );

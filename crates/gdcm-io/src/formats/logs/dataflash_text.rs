@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use crate::file_error::FileError;
 use crate::formats::logs::dataflash_layouts::{Layouts, MessageLayout};
 use crate::formats::logs::dataflash_topics::{SampleFields, Topics};
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
@@ -55,9 +56,7 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         let cells: Vec<&str> = cells.collect();
         topics.add(fields, |index| cells.get(index)?.parse().ok(), budget)?;
     }
-    topics.into_columns(vec![
-        "an ArduPilot log as text; time in seconds since the start of the autopilot".to_owned(),
-    ])
+    topics.into_columns(vec![ReadingNote::ArduPilotText])
 }
 
 /// Reads the message layouts from the lines that describe messages.

@@ -12,8 +12,10 @@ use crate::formats::logs::dataflash_layouts::{FieldKind, Layouts, MessageLayout}
 use crate::formats::logs::documented_channels::{ARDUPILOT, assign_documented_meanings};
 use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Names of messages that describe the log and hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
@@ -141,7 +143,7 @@ impl Topics {
 
     /// Returns the columns, with their documented channels and units, and the flight modes over
     /// time.
-    pub(super) fn into_columns(self, notes: Vec<String>) -> Result<Columns, VariableFault> {
+    pub(super) fn into_columns(self, notes: Vec<ReadingNote>) -> Result<Columns, VariableFault> {
         let modes = self.flight_modes();
         let columns = self
             .by_name
@@ -153,11 +155,7 @@ impl Topics {
             ..Columns::new(String::new(), columns)
         };
         if columns.columns.is_empty() {
-            return Err(VariableFault::damaged(
-                "",
-                "a log without a message that has time stamps and numbers",
-                0,
-            ));
+            return Err(VariableFault::damaged("", Damage::NoTimedMessage, 0));
         }
         columns
             .notes

@@ -1,5 +1,6 @@
 //! Channels and units of logged columns, according to the documentation of each logging system.
 
+use crate::formats::reading_note::{ChannelAssignment, ReadingNote};
 use gdcm_sysid::records::RecordColumn;
 
 /// A column whose channel and unit are documented.
@@ -114,9 +115,9 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
 pub(super) fn assign_documented_meanings(
     columns: &mut [RecordColumn],
     meanings: &Meanings,
-) -> Option<String> {
+) -> Option<ReadingNote> {
     let mut channels: Vec<&str> = Vec::new();
-    let mut assignments: Vec<String> = Vec::new();
+    let mut assignments: Vec<ChannelAssignment> = Vec::new();
     for documented in meanings.columns {
         let DocumentedColumn {
             name,
@@ -132,17 +133,19 @@ pub(super) fn assign_documented_meanings(
         if varies(column) && !channels.contains(&channel) {
             column.meaning = Some(channel);
             channels.push(channel);
-            assignments.push(format!("{channel} = {name}"));
+            assignments.push(ChannelAssignment {
+                channel,
+                column: name,
+            });
         }
     }
     if assignments.is_empty() {
         return None;
     }
-    Some(format!(
-        "according to the documentation of the logging system: {}; {}",
-        assignments.join(", "),
-        meanings.signs
-    ))
+    Some(ReadingNote::DocumentedChannels {
+        assignments,
+        signs: meanings.signs,
+    })
 }
 
 /// Returns whether a column has two different values.
@@ -166,17 +169,18 @@ mod tests {
                 ..RecordColumn::new("IMU.GyrY", moving)
             },
         ];
-        let words = assign_documented_meanings(&mut columns, &ARDUPILOT).unwrap();
+        let note = assign_documented_meanings(&mut columns, &ARDUPILOT).unwrap();
         let found: Vec<_> = columns.iter().map(|column| column.meaning).collect();
-        assert_eq!(found, [Some("Q"), Some("P"), None, None], "{words}");
+        assert_eq!(found, [Some("Q"), Some("P"), None, None], "{note}");
         assert_eq!(
             columns[3].unit.as_deref(),
             Some("deg"),
             "the unit in the file is kept"
         );
-        assert!(
-            words.starts_with("according to the documentation of the logging system: P = RATE.R, Q = RATE.P; signs"),
-            "{words}"
-        );
+        let ReadingNote::DocumentedChannels { assignments, .. } = note else {
+            panic!("{note:?}")
+        };
+        let assignments: Vec<String> = assignments.iter().map(ToString::to_string).collect();
+        assert_eq!(assignments, ["P = RATE.R", "Q = RATE.P"]);
     }
 }

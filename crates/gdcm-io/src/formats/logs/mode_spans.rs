@@ -1,11 +1,10 @@
 //! Time spans of the flight modes in a log.
 
+use crate::formats::reading_note::ReadingNote;
 use gdcm_sysid::records::ModeSpan;
 
 /// Maximum number of spans per log; later spans are ignored.
 const MOST_SPANS: usize = 1000;
-/// Maximum number of spans listed in a note.
-const SHOWN: usize = 8;
 
 /// Returns the time spans during which `values` is constant; `name` returns the name of a value, or
 /// `None` if the value needs no span.
@@ -39,22 +38,12 @@ pub(super) fn mode_spans(
     spans
 }
 
-/// Describes the spans: "armed 3.2 to 88.1 s"; `None` if there are none.
-pub(super) fn modes_note(spans: &[ModeSpan]) -> Option<String> {
+/// Returns the note on flight modes; `None` if there are none.
+pub(super) fn modes_note(spans: &[ModeSpan]) -> Option<ReadingNote> {
     if spans.is_empty() {
         return None;
     }
-    let shown: Vec<String> = spans.iter().take(SHOWN).map(span_words).collect();
-    let mut note = shown.join(", ");
-    if spans.len() > SHOWN {
-        note.push_str(&format!(" and {} more", spans.len() - SHOWN));
-    }
-    Some(note)
-}
-
-fn span_words(span: &ModeSpan) -> String {
-    let [begin_s, end_s] = span.ends_s;
-    format!("{} {begin_s:.1} to {end_s:.1} s", span.name)
+    Some(ReadingNote::FlightModes(spans.to_vec()))
 }
 
 #[cfg(test)]
@@ -67,6 +56,10 @@ mod tests {
         let spans = mode_spans(&[0.0, 1.0, 2.0, 5.0, 6.0], [1.0, 2.0, 2.0, 1.0, 2.0], name);
         let ends: Vec<[f64; 2]> = spans.iter().map(|span| span.ends_s).collect();
         assert_eq!(ends, [[1.0, 5.0], [6.0, 6.0]]);
-        assert_eq!(modes_note(&spans[..1]).unwrap(), "armed 1.0 to 5.0 s");
+        assert_eq!(
+            modes_note(&spans),
+            Some(ReadingNote::FlightModes(spans.clone()))
+        );
+        assert_eq!(modes_note(&[]), None);
     }
 }

@@ -13,8 +13,6 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use gdcm_model::number_format::counted;
-
 use crate::file_error::FileError;
 use crate::formats::logs::array;
 use crate::formats::logs::documented_channels::{PX4, assign_documented_meanings};
@@ -22,9 +20,11 @@ use crate::formats::logs::mode_spans::modes_note;
 use crate::formats::logs::topic_samples::{TopicField, TopicSamples};
 use crate::formats::logs::ulog_layouts::{LayoutTexts, Place, places_in_message};
 use crate::formats::logs::ulog_modes::flight_modes;
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// First bytes of a file.
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
@@ -124,8 +124,7 @@ fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
         if *flag & !known != 0 {
             return Err(VariableFault::unsupported(
                 "",
-                "a ULog of a later version",
-                "save its topics as CSV: ulog2csv \"{file}\"",
+                UnsupportedContent::UlogVersion,
             ));
         }
     }
@@ -264,25 +263,19 @@ impl<'b> Messages<'b> {
             return Err(VariableFault::cut_off("", HEADER));
         }
         let notes = &mut columns.notes;
-        notes.push("a PX4 log; time in seconds since the start of the autopilot".to_owned());
+        notes.push(ReadingNote::Px4Log);
         notes.extend(assign_documented_meanings(&mut columns.columns, &PX4));
         if self.dropouts > 0 {
-            let lost_s = self.lost_ms as f64 * 1e-3;
-            notes.push(format!(
-                "{} of the logger, {lost_s:.2} s in total: the columns have gaps",
-                counted(self.dropouts, "dropout")
-            ));
+            notes.push(ReadingNote::Dropouts {
+                count: self.dropouts,
+                lost_s: self.lost_ms as f64 * 1e-3,
+            });
         }
         if self.unread > 0 {
-            notes.push(format!(
-                "{} omitted: no topic, or too short for their topic",
-                counted(self.unread, "message")
-            ));
+            notes.push(ReadingNote::MessagesOmitted { count: self.unread });
         }
         if is_cut {
-            notes.push(
-                "the file is truncated: it was read up to the last complete message".to_owned(),
-            );
+            notes.push(ReadingNote::Truncated);
         }
         notes.extend(modes_note(&modes));
         columns.modes = modes;
@@ -356,13 +349,11 @@ mod tests {
             (Some("P"), Some("rad/s"), 7.0)
         );
         assert!((rate.topic.as_ref().unwrap().time_s[1] - 1.004).abs() < 1e-12);
-        assert!(
-            columns
-                .notes
-                .iter()
-                .any(|note| note
-                    == "1 dropout of the logger, 0.25 s in total: the columns have gaps")
-        );
+        let dropouts = ReadingNote::Dropouts {
+            count: 1,
+            lost_s: 0.25,
+        };
+        assert!(columns.notes.contains(&dropouts), "{:?}", columns.notes);
         let modes: Vec<&str> = columns
             .modes
             .iter()
@@ -375,7 +366,7 @@ mod tests {
     fn a_log_that_is_cut_off_is_read_up_to_its_end() {
         let bytes = log(40);
         let columns = read(&bytes[..bytes.len() - 20]).unwrap();
-        assert!(columns.notes.iter().any(|note| note.contains("truncated")));
+        assert!(columns.notes.contains(&ReadingNote::Truncated));
         assert!(read(&bytes[..16]).is_err() && read(&bytes[..8]).is_err());
     }
 
@@ -383,6 +374,10 @@ mod tests {
     fn a_flag_of_a_later_version_is_refused() {
         let mut bytes = log(3);
         bytes[16 + 3 + 8] = 2;
-        assert!(read(&bytes).err().unwrap().to_string().contains("ulog2csv"));
+        let fault = read(&bytes).err().unwrap();
+        assert_eq!(
+            fault,
+            VariableFault::unsupported("", UnsupportedContent::UlogVersion)
+        );
     }
 }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Maximum message length \[bytes\]; the length field has 16 bits.
 const LARGEST: usize = 65_535;
@@ -82,8 +83,8 @@ struct LayoutField<'f> {
 }
 
 impl Flattening<'_> {
-    fn damaged(&self, what: String) -> VariableFault {
-        VariableFault::damaged(self.message, what, 0)
+    fn damaged(&self, damage: Damage) -> VariableFault {
+        VariableFault::damaged(self.message, damage, 0)
     }
 
     /// Adds the numbers in a layout, down to `deeper` levels of nested layouts.
@@ -92,7 +93,7 @@ impl Flattening<'_> {
             return Err(VariableFault::too_deep(self.message));
         }
         let Some(fields) = self.layouts.get(name) else {
-            return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
+            return Err(self.damaged(Damage::LayoutMissing { name: short(name) }));
         };
         for field in fields.split(';').map(str::trim) {
             if !field.is_empty() {
@@ -105,7 +106,7 @@ impl Flattening<'_> {
 
     fn parse_field<'f>(&self, field: &'f str) -> Result<LayoutField<'f>, VariableFault> {
         let Some((kind, name)) = field.split_once(' ') else {
-            return Err(self.damaged(format!("\"{}\" is not a field", short(field))));
+            return Err(self.damaged(Damage::LayoutField { name: short(field) }));
         };
         let array = kind.strip_suffix(']').and_then(|kind| kind.split_once('['));
         let Some((kind, length)) = array else {
@@ -121,7 +122,7 @@ impl Flattening<'_> {
                 name,
                 length: Some(length),
             }),
-            _ => Err(self.damaged(format!("\"{}\" has no valid length", short(name)))),
+            _ => Err(self.damaged(Damage::LayoutFieldLength { name: short(name) })),
         }
     }
 
@@ -148,10 +149,7 @@ impl Flattening<'_> {
             }
             // Reject fields of length zero, which could be repeated without limit.
             if self.offset == begin || self.offset > LARGEST {
-                return Err(self.damaged(format!(
-                    "the field \"{}\" is empty or too long",
-                    short(name)
-                )));
+                return Err(self.damaged(Damage::LayoutFieldSize { name: short(name) }));
             }
         }
         Ok(())

@@ -31,6 +31,9 @@ use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::sparse_matrix::CompressedColumns;
 use crate::formats::variables::{Array, CellArray, Object, RECORD_MEMORY, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::ObjectFault;
+use crate::variable_fault::unread::Unread;
 
 /// Reads arrays within a budget.
 ///
@@ -46,7 +49,7 @@ pub(super) struct ArrayReader<'a> {
 pub(super) enum Objects {
     Read(Subsystem),
     /// The objects cannot be read, for this reason; references to them become opaque values.
-    Unread(String),
+    Unread(ObjectFault),
 }
 
 impl ArrayReader<'_> {
@@ -149,7 +152,7 @@ impl ArrayReader<'_> {
     ) -> Result<Array, VariableFault> {
         let start = *contents;
         let &[height, width] = header.shape.as_slice() else {
-            return Err(start.damaged("a sparse array that is not a matrix"));
+            return Err(start.damaged(Damage::SparseArrayNotMatrix));
         };
         let rows = read_sizes(&Element::read(contents)?, self.budget)?;
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
@@ -171,10 +174,10 @@ impl ArrayReader<'_> {
             im,
         };
         let Some(entries) = columns.into_entries() else {
-            return Err(start.damaged("a sparse matrix whose columns do not match its numbers"));
+            return Err(start.damaged(Damage::SparseColumns));
         };
         entries.full_matrix("", self.budget, || {
-            start.damaged("an element outside its sparse matrix")
+            start.damaged(Damage::ElementOutsideSparse)
         })
     }
 
@@ -262,7 +265,10 @@ impl ArrayReader<'_> {
     /// bytes can hold at eight bytes each.
     fn take_values(&self, count: usize, contents: &Cursor<'_>) -> Result<(), VariableFault> {
         if count > contents.len() / 8 {
-            return Err(contents.damaged(format!("{count} values in {} bytes", contents.len())));
+            return Err(contents.damaged(Damage::ValueCount {
+                count,
+                bytes: contents.len(),
+            }));
         }
         // The factor 2: vectors grow by doubling.
         self.budget
@@ -280,26 +286,23 @@ impl ArrayReader<'_> {
         let class = Element::read(contents)?.name()?;
         if system != CLASS_SYSTEM {
             Element::pass_all(contents)?;
-            let why = "only objects of MATLAB classes are supported; in MATLAB, save its data as \
-                numbers or text";
-            return Ok(Value::opaque(format!("{class} ({system})"), why));
+            return Ok(Value::opaque(
+                format!("{class} ({system})"),
+                Unread::ClassSystem,
+            ));
         }
         let contents = self.read_nested_value(contents, path)?;
         let variable = path.text();
         let objects = match self.objects {
             Objects::Read(objects) => objects,
-            Objects::Unread(why) => return Ok(unreadable(&class, why, &variable)),
+            Objects::Unread(why) => return Ok(unreadable(&class, why.clone(), &variable)),
         };
         if let Some(reference) = Reference::from_value(&contents) {
             return objects.resolve(&reference, path, self.budget);
         }
         match &contents {
             Value::Struct(records) => objects.enumeration(records, &class, path, self.budget),
-            _ => Ok(unreadable(
-                &class,
-                "its reference points to no object",
-                &variable,
-            )),
+            _ => Ok(unreadable(&class, ObjectFault::NoTarget, &variable)),
         }
     }
 }
@@ -311,9 +314,7 @@ pub(super) fn read_field_names(
 ) -> Result<Vec<String>, VariableFault> {
     let lengths = Element::read(contents)?;
     let &[length] = read_sizes(&lengths, budget)?.as_slice() else {
-        return Err(lengths
-            .data
-            .damaged("records without a length for their field names"));
+        return Err(lengths.data.damaged(Damage::FieldNamesWithoutLength));
     };
     let names = Element::read(contents)?;
     let bytes = names.data.rest();
@@ -323,9 +324,7 @@ pub(super) fn read_field_names(
         bytes.len().is_multiple_of(length)
     };
     if !fits {
-        return Err(names
-            .data
-            .damaged("field names that do not match their length"));
+        return Err(names.data.damaged(Damage::FieldNamesLength));
     }
     let length = length.max(1);
     budget.take((bytes.len() / length) as u64, 128, "")?;
@@ -393,7 +392,7 @@ mod matrix_tests {
             panic!()
         };
         assert_eq!(class, "function_handle");
-        assert!(why.contains("func2str(f)"));
+        assert!(matches!(*why, Unread::Object { command, .. } if command.contains("func2str(f)")));
     }
 
     #[test]
@@ -505,8 +504,11 @@ mod opaque_tests {
     use crate::formats::mat::sample_tests::{element, file, opaque, reference};
     use crate::formats::variables::Value;
     use crate::reading_budget::ReadingBudget;
+    use crate::variable_fault::VariableFault;
+    use crate::variable_fault::damage::Damage;
+    use crate::variable_fault::unread::{ObjectFault, Unread};
 
-    fn first(bytes: &[u8]) -> (String, String) {
+    fn first(bytes: &[u8]) -> (String, Box<Unread>) {
         match read(bytes, &ReadingBudget::new(1 << 16))
             .unwrap()
             .remove(0)
@@ -521,10 +523,23 @@ mod opaque_tests {
     fn an_object_without_its_part_of_the_file_comes_with_the_way_to_save_it() {
         let (class, why) = first(&file(&opaque("sys", "tf", reference(&[1], 1))));
         assert_eq!(class, "tf");
-        assert!(
-            why.contains("has no object part")
-                && why.ends_with("[num,den,Ts] = tfdata(sys); save out.mat num den Ts"),
-            "{why}"
+        let Unread::Object {
+            fault: ObjectFault::ObjectPart(fault),
+            command,
+        } = *why
+        else {
+            panic!("{why:?}")
+        };
+        assert!(matches!(
+            *fault,
+            VariableFault::Damaged {
+                damage: Damage::NoObjectPart,
+                ..
+            }
+        ));
+        assert_eq!(
+            command,
+            "[num,den,Ts] = tfdata(sys); save out.mat num den Ts"
         );
     }
 

@@ -14,6 +14,7 @@ use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::numbers::read_sizes;
 use crate::formats::variables::ElementKind;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Bits of the first word that hold the class number.
 const CLASS_BITS: u32 = 0xff;
@@ -60,15 +61,13 @@ impl ArrayHeader {
     ) -> Result<Self, VariableFault> {
         let flags = Element::read(contents)?;
         if flags.kind != DataKind::U32 {
-            return Err(flags.data.damaged("an array without flags"));
+            return Err(flags.data.damaged(Damage::ArrayWithoutFlags));
         }
         let mut words = flags.data;
         let bits = words.read_u32()?;
         let number = bits & CLASS_BITS;
         let Some(class) = ArrayClass::from_number(number) else {
-            return Err(flags
-                .data
-                .damaged(format!("an array of unknown class {number}")));
+            return Err(flags.data.damaged(Damage::UnknownArrayClass { number }));
         };
         let shape = if class == ArrayClass::Opaque {
             vec![1, 1]

@@ -5,6 +5,7 @@ use crate::formats::mat::element::{DataKind, Element};
 use crate::formats::mat::numbers::read_numbers;
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Reads a character array, stored as encoded text or as numeric character codes.
 pub(super) fn read_text(
@@ -21,9 +22,10 @@ pub(super) fn read_text(
     }
     if codes.len() != wanted {
         let found = codes.len();
-        return Err(element
-            .data
-            .damaged(format!("{found} characters instead of {wanted}")));
+        return Err(element.data.damaged(Damage::CharacterCount {
+            found,
+            expected: wanted,
+        }));
     }
     text_rows(&codes, shape, "", budget)
 }

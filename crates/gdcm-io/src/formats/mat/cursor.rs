@@ -3,6 +3,7 @@
 //! A cursor is a copy: `let start = cursor;` keeps a position, to which reading can return.
 
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::damage::Damage;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
@@ -141,8 +142,8 @@ impl<'b> Cursor<'b> {
     }
 
     /// Returns the error for bytes at this position that contradict the format.
-    pub(super) fn damaged(&self, what: impl Into<String>) -> VariableFault {
-        VariableFault::damaged("", what, self.offset)
+    pub(super) fn damaged(&self, damage: Damage) -> VariableFault {
+        VariableFault::damaged("", damage, self.offset)
     }
 
     /// Returns the error for a section that ends too early.
@@ -152,9 +153,7 @@ impl<'b> Cursor<'b> {
                 variable: String::new(),
                 offset: self.offset,
             },
-            Section::Element | Section::Unpacked => {
-                self.damaged("an element is longer than the element that contains it")
-            }
+            Section::Element | Section::Unpacked => self.damaged(Damage::ElementLength),
         }
     }
 }

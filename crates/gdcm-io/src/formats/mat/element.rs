@@ -12,6 +12,7 @@
 use crate::formats::mat::cursor::{ByteOrder, Cursor};
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::damage::Damage;
 
 /// Length of the tag of an element that is not small \[bytes\].
 pub(super) const TAG_BYTES: usize = 8;
@@ -140,7 +141,7 @@ impl<'b> Element<'b> {
     pub(super) fn number_type(&self) -> Result<StoredNumber, VariableFault> {
         self.kind
             .number_type(self.data.order)
-            .ok_or_else(|| self.data.damaged("an array instead of numbers"))
+            .ok_or_else(|| self.data.damaged(Damage::ArrayForNumbers))
     }
 
     /// Returns how many numbers the element holds.
@@ -151,9 +152,7 @@ impl<'b> Element<'b> {
         let width = self.number_type()?.size();
         let length = self.data.len();
         if !length.is_multiple_of(width) {
-            return Err(self
-                .data
-                .damaged(format!("{length} bytes for numbers of {width} bytes each")));
+            return Err(self.data.damaged(Damage::NumberWidth { length, width }));
         }
         Ok(length / width)
     }
@@ -162,7 +161,7 @@ impl<'b> Element<'b> {
     pub(super) fn name(&self) -> Result<String, VariableFault> {
         match self.kind {
             DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Ok(decode_name(self.data.rest())),
-            _ => Err(self.data.damaged("numbers instead of a name")),
+            _ => Err(self.data.damaged(Damage::NumbersForName)),
         }
     }
 
@@ -170,15 +169,14 @@ impl<'b> Element<'b> {
     pub(super) fn array_contents(self) -> Result<Cursor<'b>, VariableFault> {
         match self.kind {
             DataKind::Matrix => Ok(self.data),
-            _ => Err(self.data.damaged("another element instead of an array")),
+            _ => Err(self.data.damaged(Damage::ElementForArray)),
         }
     }
 }
 
 /// Returns the data type for the number in the tag at `tag`; rejects an unknown number.
 fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
-    DataKind::from_number(number)
-        .ok_or_else(|| tag.damaged(format!("an element of unknown data type {number}")))
+    DataKind::from_number(number).ok_or_else(|| tag.damaged(Damage::UnknownDataType { number }))
 }
 
 /// Decodes a name up to the first zero byte; bytes that are not UTF-8 are read as Latin-1, the

@@ -8,6 +8,7 @@ use flate2::read::ZlibDecoder;
 
 use crate::formats::mat::cursor::Cursor;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Maximum ratio of decompressed to compressed bytes, rounded up (RFC 1951: 258 bytes from two
 /// bits).
@@ -58,8 +59,8 @@ impl Inflater<'_> {
                 .take(chunk)
                 .read_to_end(&mut self.bytes)
                 .map_err(|error| match error.kind() {
-                    ErrorKind::UnexpectedEof => packed.damaged("the compressed data end too early"),
-                    _ => packed.damaged("the compressed data are corrupt"),
+                    ErrorKind::UnexpectedEof => packed.damaged(Damage::CompressedDataEnd),
+                    _ => packed.damaged(Damage::CompressedData),
                 })?;
             if (found as u64) < chunk {
                 // Accept fewer bytes, because GNU Octave announces too many; if bytes are really
@@ -79,10 +80,10 @@ impl Inflater<'_> {
         tag.pass(4)?;
         let length = u64::from(tag.read_u32()?);
         if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
-            return Err(packed.damaged(format!(
-                "{} compressed bytes that claim to expand to {length}",
-                packed.len()
-            )));
+            return Err(packed.damaged(Damage::Expansion {
+                packed: packed.len(),
+                length,
+            }));
         }
         Ok(length)
     }
@@ -94,9 +95,9 @@ impl Inflater<'_> {
         let more = self
             .decoder
             .read(&mut [0])
-            .map_err(|_| packed.damaged("the compressed data are corrupt"))?;
+            .map_err(|_| packed.damaged(Damage::CompressedData))?;
         if more != 0 {
-            return Err(packed.damaged("more compressed data than announced"));
+            return Err(packed.damaged(Damage::CompressedDataLength));
         }
         Ok(())
     }

@@ -22,6 +22,7 @@ use crate::formats::sparse_matrix::SparseEntries;
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Header of a matrix.
 struct MatrixHeader {
@@ -182,13 +183,13 @@ impl MatrixHeader {
 }
 
 /// Returns the error for `found` at `start`, where a matrix was expected.
-fn no_matrix(start: Cursor<'_>, found: &str) -> VariableFault {
-    start.damaged(format!("{found} at the expected start of a matrix"))
+fn no_matrix(start: Cursor<'_>, found: &'static str) -> VariableFault {
+    start.damaged(Damage::NoMatrix { found })
 }
 
 /// Returns the error for an invalid sparse matrix at `start`.
 fn sparse_damage(start: Cursor<'_>) -> VariableFault {
-    start.damaged("a sparse matrix with inconsistent numbers")
+    start.damaged(Damage::SparseNumbers)
 }
 
 /// Converts indices that count from 1 to indices that count from 0; `None` if an index is negative,

@@ -23,6 +23,7 @@ use crate::formats::mat::object_part::read_objects;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Variable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::unread::ObjectFault;
 
 /// Length of the file header \[bytes\].
 const HEADER_BYTES: usize = 128;
@@ -95,15 +96,11 @@ fn objects_or_reason(
     order: ByteOrder,
     budget: &ReadingBudget<'_>,
 ) -> Result<Objects, VariableFault> {
-    let reason = match read_objects(bytes, objects_at(bytes, order), order, budget) {
-        Ok(objects) => return Ok(Objects::Read(objects)),
-        Err(fault) if fault.is_of_the_budget() => return Err(fault),
-        Err(VariableFault::Damaged { what, .. }) => what,
-        Err(fault) => fault.to_string(),
-    };
-    Ok(Objects::Unread(format!(
-        "the objects of this file cannot be read: {reason}"
-    )))
+    match read_objects(bytes, objects_at(bytes, order), order, budget) {
+        Ok(objects) => Ok(Objects::Read(objects)),
+        Err(fault) if fault.is_of_the_budget() => Err(fault),
+        Err(fault) => Ok(Objects::Unread(ObjectFault::ObjectPart(Box::new(fault)))),
+    }
 }
 
 /// Reads the offset of the objects in the file; `None` if the field is blank, as in files of old

@@ -23,6 +23,7 @@ use super::variables::Variable;
 use crate::formats::mat::level5::FileVersion;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::found_content::FoundContent;
 
 pub(crate) use crate::formats::mat::characters::text_rows;
 pub(crate) use crate::formats::mat::subsystem::{LongWords, Subsystem};
@@ -51,10 +52,7 @@ pub(crate) const MAT: Importer = Importer {
 /// that contradict the format are an error for the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
-        return Err(VariableFault::format(
-            EXPECTED,
-            "an HDF5 file, as written by MATLAB with -v7.3",
-        ));
+        return Err(VariableFault::format(EXPECTED, FoundContent::Hdf5));
     }
     // A level-5 file begins with text: none of its first four bytes is zero, unlike in a level-4
     // file.
@@ -67,7 +65,7 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
         _ if level4::begins(bytes) => level4::read(bytes, budget),
         Some(FileVersion { major, .. }) if begins_with_text => Err(VariableFault::format(
             EXPECTED,
-            format!("a .mat file of unknown version {major}"),
+            FoundContent::MatVersion { major },
         )),
         _ => Err(VariableFault::format(EXPECTED, describe_start(bytes))),
     }
@@ -94,22 +92,22 @@ pub fn is_hdf5(bytes: &[u8]) -> bool {
 }
 
 /// Describes the first bytes of a file of unknown format.
-fn describe_start(bytes: &[u8]) -> String {
+fn describe_start(bytes: &[u8]) -> FoundContent {
     let start = bytes.get(..bytes.len().min(8)).unwrap_or_default();
     if start.is_empty() {
-        return "an empty file".to_owned();
+        return FoundContent::EmptyFile;
     }
     let is_text = start
         .iter()
         .all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
     if is_text {
-        return format!(
-            "a text that begins with {:?}",
-            String::from_utf8_lossy(start)
-        );
+        return FoundContent::Text {
+            start: String::from_utf8_lossy(start).into_owned(),
+        };
     }
-    let bytes: Vec<String> = start.iter().map(|byte| format!("{byte:02x}")).collect();
-    format!("a file that begins with the bytes {}", bytes.join(" "))
+    FoundContent::Bytes {
+        bytes: start.to_vec(),
+    }
 }
 
 #[cfg(test)]
@@ -249,10 +247,12 @@ mod tests {
             Err(VariableFault::Format { found, .. }) => found,
             other => panic!("{other:?}"),
         };
-        assert!(found(&hdf5).contains("HDF5"));
-        assert_eq!(found(b""), "an empty file");
-        assert!(found(b"t, u, y\n1, 2, 3\n").starts_with("a text that begins with"));
-        assert!(found(&[0; 300]).contains("00 00 00"));
+        assert_eq!(found(&hdf5), FoundContent::Hdf5);
+        assert_eq!(found(b""), FoundContent::EmptyFile);
+        let start = "t, u, y\n".to_owned();
+        assert_eq!(found(b"t, u, y\n1, 2, 3\n"), FoundContent::Text { start });
+        let bytes = vec![0; 8];
+        assert_eq!(found(&[0; 300]), FoundContent::Bytes { bytes });
     }
 
     #[test]

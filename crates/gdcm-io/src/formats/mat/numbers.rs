@@ -4,6 +4,7 @@
 
 use crate::formats::mat::element::{DataKind, Element};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Memory of a number, a size or a word \[bytes\].
 const NUMBER_BYTES: u64 = 8;
@@ -19,9 +20,10 @@ pub(super) fn read_numbers(
 ) -> Result<Vec<f64>, VariableFault> {
     let found = element.count()?;
     if found != count {
-        return Err(element
-            .data
-            .damaged(format!("{found} numbers instead of {count}")));
+        return Err(element.data.damaged(Damage::NumberCount {
+            found,
+            expected: count,
+        }));
     }
     budget.take(count as u64, NUMBER_BYTES, "")?;
     Ok(element.number_type()?.decode_all(element.data.rest()))
@@ -33,9 +35,7 @@ pub(super) fn read_sizes(
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<usize>, VariableFault> {
     if !matches!(element.kind, DataKind::I32 | DataKind::U32) {
-        return Err(element
-            .data
-            .damaged("sizes that are not stored as 32-bit integers"));
+        return Err(element.data.damaged(Damage::SizesNotIntegers));
     }
     let count = element.count()?;
     // Memory of the sizes; `read_numbers` takes that of the numbers from which they are converted.
@@ -44,7 +44,7 @@ pub(super) fn read_sizes(
     // 32-bit integers are exact as floats.
     for number in read_numbers(element, count, budget)? {
         if number < 0.0 {
-            return Err(element.data.damaged("a negative size"));
+            return Err(element.data.damaged(Damage::NegativeSize));
         }
         sizes.push(number as usize);
     }

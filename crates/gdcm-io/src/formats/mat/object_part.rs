@@ -29,6 +29,8 @@ use crate::formats::mat::subsystem::{CLASS_SYSTEM, LongWords, Subsystem};
 use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::ObjectFault;
 
 /// Length of the header of the embedded file \[bytes\].
 const EMBEDDED_HEADER_BYTES: usize = 8;
@@ -46,7 +48,7 @@ pub(super) fn read_objects(
 ) -> Result<Subsystem, VariableFault> {
     let mut file = Cursor::file(bytes, order);
     let Some(at) = at.filter(|&at| at < bytes.len()) else {
-        return Err(file.damaged("the file has no object part"));
+        return Err(file.damaged(Damage::NoObjectPart));
     };
     file.pass(at)?;
     let element = Element::read(&mut file)?;
@@ -82,7 +84,7 @@ fn read_embedded_file(
     let order = match file.rest().get(BYTE_ORDER_MARK) {
         Some(b"IM") => ByteOrder::Little,
         Some(b"MI") => ByteOrder::Big,
-        _ => return Err(file.damaged("the object part has no header")),
+        _ => return Err(file.damaged(Damage::ObjectPartHeader)),
     };
     let mut contents = Cursor::unpacked(file.rest(), order, file.offset);
     contents.pass(EMBEDDED_HEADER_BYTES)?;
@@ -96,7 +98,7 @@ fn read_class_systems(
     budget: &ReadingBudget<'_>,
 ) -> Result<Subsystem, VariableFault> {
     if ArrayHeader::read(&mut contents, budget)?.class != ArrayClass::Struct {
-        return Err(contents.damaged("the class systems are not in a record"));
+        return Err(contents.damaged(Damage::ClassSystemsRecord));
     }
     // The names come first, then the values in the same order.
     for name in read_field_names(&mut contents, budget)? {
@@ -105,7 +107,7 @@ fn read_class_systems(
             return read_wrapper(value, budget);
         }
     }
-    Err(contents.damaged("the class systems do not include MCOS"))
+    Err(contents.damaged(Damage::ClassSystemMissing))
 }
 
 /// Reads the objects from a `FileWrapper__`: the names of its class system and class, then its
@@ -118,7 +120,7 @@ fn read_wrapper(
     let system = Element::read(&mut contents)?.name()?;
     let class = Element::read(&mut contents)?.name()?;
     if !is_opaque || system != CLASS_SYSTEM || class != WRAPPER {
-        return Err(contents.damaged("the class system MCOS has no FileWrapper__"));
+        return Err(contents.damaged(Damage::FileWrapperMissing));
     }
     read_cells(Element::read(&mut contents)?.array_contents()?, budget)
 }
@@ -133,7 +135,7 @@ fn read_cells(
 ) -> Result<Subsystem, VariableFault> {
     let header = ArrayHeader::read(&mut contents, budget)?;
     if header.class != ArrayClass::Cell {
-        return Err(contents.damaged("the FileWrapper__ has no cells"));
+        return Err(contents.damaged(Damage::FileWrapperCells));
     }
     let path = ValuePath::start(WRAPPER);
     let objects = nested_objects();
@@ -158,7 +160,7 @@ fn read_cells(
 /// Returns the objects available to the cells themselves: none, because the cells are read before
 /// the objects are known. An object in a cell therefore becomes opaque.
 fn nested_objects() -> Objects {
-    Objects::Unread("it is nested inside another object, which is not supported".to_owned())
+    Objects::Unread(ObjectFault::Nested)
 }
 
 /// Reads the cell that begins at `cell_start` without rounding if it holds unsigned 64-bit

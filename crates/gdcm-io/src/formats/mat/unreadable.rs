@@ -3,21 +3,18 @@
 
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Value;
+use crate::variable_fault::unread::ObjectFault;
+use crate::variable_fault::unread::Unread;
 
 /// Returns the opaque value for an object of an unsupported class.
 pub(super) fn unread_class(class: &str, path: &ValuePath<'_>) -> Value {
-    unreadable(
-        class,
-        "values of this class are not supported",
-        &path.text(),
-    )
+    unreadable(class, ObjectFault::Class, &path.text())
 }
 
 /// Returns an opaque value with the reason and a command that exports its data.
-pub(super) fn unreadable(class: &str, reason: &str, variable: &str) -> Value {
+pub(super) fn unreadable(class: &str, fault: ObjectFault, variable: &str) -> Value {
     let command = export_command(class, variable);
-    let why = format!("{reason}; in MATLAB, save its data: {command}");
-    Value::opaque(class, why)
+    Value::opaque(class, Unread::Object { fault, command })
 }
 
 /// Returns a MATLAB command that writes `variable`, an object of `class`, to a file as plain

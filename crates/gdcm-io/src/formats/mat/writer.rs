@@ -360,6 +360,7 @@ fn append_field_names(bytes: &mut Vec<u8>, records: &StructArray) {
 
 #[cfg(test)]
 mod writer_tests {
+    use crate::variable_fault::unread::Unread;
     use proptest::prelude::*;
 
     use super::*;
@@ -519,13 +520,7 @@ mod writer_tests {
 
     #[test]
     fn objects_become_structs_and_unread_values_are_empty() {
-        let fields = vec![(
-            "a".to_owned(),
-            vec![Value::Opaque {
-                class: "x".to_owned(),
-                why: "y".to_owned(),
-            }],
-        )];
+        let fields = vec![("a".to_owned(), vec![Value::opaque("x", Unread::Empty)])];
         let records = StructArray {
             shape: vec![1, 1],
             fields,

@@ -7,6 +7,8 @@ use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Memory that the library needs for each chunk while it reads \[bytes\].
 const CHUNK: u64 = 128;
@@ -32,7 +34,7 @@ pub(super) fn check_chunks(
         return Ok(());
     };
     if shape.contains(&0) || shape.len() != sides.len() {
-        return Err(damaged(path, "the chunks have no valid size"));
+        return Err(damaged(path, Damage::ChunkSize));
     }
     let mut elements_per_chunk: u64 = 1;
     let mut most_chunks: u64 = 1;
@@ -48,8 +50,7 @@ pub(super) fn check_chunks(
     if index == Some(ChunkIndex::BTreeV2) {
         return Err(VariableFault::unsupported(
             path,
-            "a dataset with several unlimited dimensions",
-            "write it with a fixed shape",
+            UnsupportedContent::UnlimitedDimensions,
         ));
     }
     let longest = elements_per_chunk
@@ -60,14 +61,14 @@ pub(super) fn check_chunks(
         .chunks()
         .map_err(|error| library_fault(&error, path))?;
     if chunks.iter().any(|chunk| chunk.storage_size > longest) {
-        return Err(damaged(path, "a chunk is longer than its shape allows"));
+        return Err(damaged(path, Damage::ChunkShape));
     }
     // Only this index stores where each chunk begins in the dataset; for the others, the library
     // computes it.
     if index == Some(ChunkIndex::BTreeV1) {
         let is_outside = chunks.iter().any(|chunk| begins_outside(chunk, sides));
         if is_outside || chunks.len() as u64 > most_chunks {
-            return Err(damaged(path, "a chunk is outside the dataset"));
+            return Err(damaged(path, Damage::ChunkOutside));
         }
     }
     Ok(())

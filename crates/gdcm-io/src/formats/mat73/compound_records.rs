@@ -7,6 +7,7 @@ use crate::formats::mat73::number_type::NumberType;
 use crate::formats::mat73::strings::decode_fixed_text;
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::unread::Unread;
 
 /// Memory of the shape and the number in an array with a single number \[bytes\].
 const NUMBER_MEMORY: u64 = 24;
@@ -64,8 +65,5 @@ fn member_value(
         budget.take(bytes.len() as u64, 1, path)?;
         return Ok(Value::text(decode_fixed_text(bytes, padding)));
     }
-    Ok(Value::opaque(
-        "a field of a record",
-        "it is neither a number nor a string of fixed length",
-    ))
+    Ok(Value::opaque("a field of a record", Unread::RecordField))
 }

@@ -8,6 +8,7 @@ use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Order in which the elements are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +85,7 @@ impl Elements {
             });
         }
         if count.checked_mul(size) != Some(bytes.len()) {
-            return Err(damaged(path, "the dataset does not match its shape"));
+            return Err(damaged(path, Damage::DatasetShape));
         }
         Ok(Self {
             datatype,
@@ -189,7 +190,7 @@ fn sides_in_memory(sides: &[u64]) -> Option<Vec<usize>> {
 }
 
 fn too_many_elements(path: &str) -> VariableFault {
-    damaged(path, "the number of elements is too large")
+    damaged(path, Damage::ElementCount)
 }
 
 /// Decodes an integer of up to eight bytes, the lowest first.

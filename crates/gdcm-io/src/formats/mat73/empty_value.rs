@@ -7,6 +7,8 @@ use crate::formats::mat73::library_fault::damaged;
 use crate::formats::mat73::strings::character_rows;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::Unread;
 
 /// Returns an empty value; `elements` holds its shape.
 pub(super) fn empty_value(
@@ -16,10 +18,10 @@ pub(super) fn empty_value(
     budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let Some(shape) = stored_shape(elements, path, budget)? else {
-        return Err(damaged(path, "the shape of an empty array is wrong"));
+        return Err(damaged(path, Damage::EmptyArrayShape));
     };
     if shape.len() < 2 || element_count(&shape) != Some(0) {
-        return Err(damaged(path, "the shape of an empty array is wrong"));
+        return Err(damaged(path, Damage::EmptyArrayShape));
     }
     Ok(match attributes.class_name() {
         "cell" => Value::Cell(CellArray {
@@ -44,7 +46,7 @@ pub(super) fn empty_value(
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
             Value::Array(empty_array(shape, ElementKind::Integer))
         }
-        class => Value::opaque(class, "it is empty"),
+        class => Value::opaque(class, Unread::Empty),
     })
 }
 

@@ -3,6 +3,8 @@
 use hdf5_pure::{Error, FormatError};
 
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Converts an error of the library; `path` is the variable name in the error.
 ///
@@ -10,9 +12,7 @@ use crate::reading_budget::VariableFault;
 pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {
     match error {
         Error::Format(FormatError::NestingDepthExceeded) => VariableFault::too_deep(path),
-        Error::Format(FormatError::UnexpectedEof { .. }) => {
-            damaged(path, "a part begins or ends beyond the end of the file")
-        }
+        Error::Format(FormatError::UnexpectedEof { .. }) => damaged(path, Damage::PartBeyondEnd),
         Error::Format(
             FormatError::UnsupportedFilter(_)
             | FormatError::UnsupportedVirtualLayout
@@ -23,16 +23,19 @@ pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {
             | FormatError::InvalidLayoutVersion(_)
             | FormatError::UnsupportedZfp(_),
         ) => {
-            // A program that requests the latest format of HDF5 2.0 writes a new chunk layout.
-            let remedy = "write it with gzip compression or none, in a single file, in the format \
-                of HDF5 1.14 or earlier";
-            VariableFault::unsupported(path, format!("a dataset of this kind ({error})"), remedy)
+            let message = error.to_string();
+            VariableFault::unsupported(path, UnsupportedContent::HdfDataset { message })
         }
-        _ => damaged(path, &error.to_string()),
+        _ => damaged(
+            path,
+            Damage::Library {
+                message: error.to_string(),
+            },
+        ),
     }
 }
 
 /// Returns the error for bytes that contradict the format, without their position.
-pub(super) fn damaged(path: &str, what: &str) -> VariableFault {
-    VariableFault::damaged(path, what, 0)
+pub(super) fn damaged(path: &str, damage: Damage) -> VariableFault {
+    VariableFault::damaged(path, damage, 0)
 }

@@ -103,11 +103,14 @@ mod tests {
     use crate::formats::mat73::object_part::{ObjectCells, read_cells};
     use crate::formats::mat73::object_references::Objects;
     use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
+    use crate::variable_fault::damage::Damage;
+    use crate::variable_fault::unread::Unread;
+    use crate::variable_fault::unsupported_content::UnsupportedContent;
 
     /// Reads all variables without resolving references to objects, which become
     /// [`Value::Opaque`](crate::formats::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-        let objects = Objects::Unread("objects are not read".to_owned());
+        let objects = Objects::Unread(Unread::NoObjectPart);
         Reader {
             budget,
             objects: &objects,
@@ -346,7 +349,16 @@ mod tests {
         );
         let sys = value(&variables, "sys");
         assert!(
-            matches!(&sys, Value::Opaque { why, .. } if why.contains("cut off")),
+            matches!(
+                &sys,
+                Value::Opaque { why, .. } if matches!(
+                    why.as_ref(),
+                    Unread::ObjectPart(VariableFault::Damaged {
+                        damage: Damage::DirectoryCutOff,
+                        ..
+                    })
+                )
+            ),
             "{sys:?}"
         );
     }
@@ -421,9 +433,13 @@ mod tests {
     #[test]
     fn other_variables_are_read_beside_a_variable_in_a_newer_format() {
         let variables = read_file("hdf5_2.h5").unwrap();
-        assert!(
-            matches!(value(&variables, "packed"), Value::Opaque { why, .. } if why.contains("HDF5 1.14"))
-        );
+        assert!(matches!(
+            value(&variables, "packed"),
+            Value::Opaque { why, .. } if matches!(
+                *why,
+                Unread::Unsupported(UnsupportedContent::HdfDataset { .. })
+            )
+        ));
         assert_eq!(value(&variables, "x"), number(1.0));
     }
 
@@ -431,9 +447,13 @@ mod tests {
     fn links_to_other_files_are_skipped_and_names_that_are_not_utf8_refused() {
         let variables = read_file("links.h5").unwrap();
         assert_eq!((variables.len(), value(&variables, "x")), (1, number(1.0)));
-        assert!(
-            matches!(read_file("name.h5"), Err(VariableFault::Damaged { what, .. }) if what.contains("UTF-8"))
-        );
+        assert!(matches!(
+            read_file("name.h5"),
+            Err(VariableFault::Damaged {
+                damage: Damage::Library { .. },
+                ..
+            })
+        ));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::formats::mat73::object_references::Objects;
 use crate::formats::mat73::reader::Reader;
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::unread::Unread;
 
 /// Element size of 64-bit integers \[bytes\].
 const LONG_WORD: u64 = 8;
@@ -33,12 +34,12 @@ pub(super) fn read_objects(
         .group("#subsystem#")
         .and_then(|group| group.dataset("MCOS"));
     let Ok(part) = part else {
-        return Ok(Objects::Unread("the file has no object part".to_owned()));
+        return Ok(Objects::Unread(Unread::NoObjectPart));
     };
     match read_subsystem(&part, budget) {
         Ok(subsystem) => Ok(Objects::Read(subsystem)),
         Err(fault) if fault.is_of_the_budget() => Err(fault),
-        Err(fault) => Ok(Objects::Unread(fault.to_string())),
+        Err(fault) => Ok(Objects::Unread(Unread::ObjectPart(fault))),
     }
 }
 

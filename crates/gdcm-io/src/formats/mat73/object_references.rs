@@ -3,13 +3,14 @@
 use crate::formats::mat::Subsystem;
 use crate::formats::variables::{Array, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::unread::Unread;
 
 /// Treatment of references to objects while a file is read.
 pub(super) enum Objects {
     /// References remain integers: the object part itself is being read.
     References,
     /// Objects become opaque values, for this reason.
-    Unread(String),
+    Unread(Unread),
     /// References are replaced by the objects.
     Read(Subsystem),
 }
@@ -25,10 +26,10 @@ impl Objects {
     ) -> Result<Value, VariableFault> {
         match self {
             Self::References => Ok(Value::Array(reference)),
-            Self::Unread(why) => Ok(Value::opaque(class, why)),
+            Self::Unread(why) => Ok(Value::opaque(class, why.clone())),
             Self::Read(subsystem) => match reference_words(&reference) {
                 Some(words) => subsystem.object(&words, path, budget),
-                None => Ok(Value::opaque(class, "its reference is damaged")),
+                None => Ok(Value::opaque(class, Unread::DamagedReference)),
             },
         }
     }

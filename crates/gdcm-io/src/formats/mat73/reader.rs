@@ -28,6 +28,8 @@ use crate::formats::variables::{
     self, Array, CellArray, ElementKind, StructArray, Value, Variable,
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::Unread;
 
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
@@ -76,12 +78,15 @@ impl Reader<'_> {
             Object::Group(group) => self.group_value(group, path, depth),
             _ => Ok(Value::opaque(
                 "an HDF5 object",
-                "it is neither a dataset nor a group",
+                Unread::NeitherDatasetNorGroup,
             )),
         };
         match value {
             // An unsupported value must not prevent reading the other variables.
-            Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(Value::opaque(what, remedy)),
+            Err(VariableFault::Unsupported { content, .. }) => Ok(Value::opaque(
+                content.to_string(),
+                Unread::Unsupported(content),
+            )),
             value => value,
         }
     }
@@ -119,7 +124,7 @@ impl Reader<'_> {
             Some(records) => Ok(Value::Struct(records)),
             None => Ok(Value::opaque(
                 "an HDF5 dataset",
-                "it holds neither numbers nor strings",
+                Unread::NeitherNumbersNorStrings,
             )),
         }
     }
@@ -203,7 +208,7 @@ impl Reader<'_> {
             return Ok(function_handle());
         }
         if attributes.encoding == OBJECT {
-            return Ok(Value::opaque(class, "enumerations are not supported"));
+            return Ok(Value::opaque(class, Unread::Enumeration));
         }
         let members = self.in_field_order(members, &attributes.fields, path)?;
         let records = if is_struct_array(&attributes, &members, path)? {
@@ -304,10 +309,7 @@ impl Reader<'_> {
             };
             let shape = Elements::read(dataset, Order::Columns, path, self.budget)?.shape;
             if !records.fields.is_empty() && records.shape != shape {
-                return Err(damaged(
-                    &field_path(path, name),
-                    "a field has more or fewer values than there are records",
-                ));
+                return Err(damaged(&field_path(path, name), Damage::FieldLength));
             }
             records.shape = shape;
             let mut values = Vec::new();
@@ -322,7 +324,7 @@ impl Reader<'_> {
 }
 
 fn function_handle() -> Value {
-    Value::opaque("function_handle", "functions cannot be read as data")
+    Value::opaque("function_handle", Unread::Function)
 }
 
 /// Returns whether a group is a struct array: its members are datasets of references that are not

@@ -8,6 +8,7 @@ use crate::formats::mat73::member::Member;
 use crate::formats::sparse_matrix::CompressedColumns;
 use crate::formats::variables::{Array, ElementKind};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Group with a sparse matrix in compressed sparse column format (`MATLAB_sparse`).
 pub(super) struct SparseGroup<'g> {
@@ -57,10 +58,7 @@ impl SparseGroup<'_> {
         };
         match elements.numbers(self.path, self.budget)? {
             Some(numbers) => Ok(numbers),
-            None => Err(damaged(
-                self.path,
-                "the elements of a sparse matrix are not numbers",
-            )),
+            None => Err(damaged(self.path, Damage::SparseElements)),
         }
     }
 
@@ -70,10 +68,7 @@ impl SparseGroup<'_> {
             return Ok(None);
         };
         let Some(words) = elements.words(self.path, self.budget)? else {
-            return Err(damaged(
-                self.path,
-                "the indices of a sparse matrix are not integers",
-            ));
+            return Err(damaged(self.path, Damage::SparseIndices));
         };
         Ok(Some(
             words
@@ -96,6 +91,6 @@ impl SparseGroup<'_> {
 
     /// Returns the error for a sparse matrix whose parts do not match.
     fn contradiction(&self) -> VariableFault {
-        damaged(self.path, "the sparse matrix is inconsistent")
+        damaged(self.path, Damage::SparseMatrix)
     }
 }

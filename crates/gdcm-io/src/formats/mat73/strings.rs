@@ -7,6 +7,7 @@ use crate::formats::mat73::dataset::Elements;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::variables::{Array, TextArray};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
 
 /// Converts a character array, stored as UTF-16 codes, to a string for each row.
 pub(super) fn character_rows(
@@ -92,6 +93,6 @@ fn variable_strings(
     if texts.len() == count {
         Ok(texts)
     } else {
-        Err(damaged(path, "strings are missing"))
+        Err(damaged(path, Damage::StringsMissing))
     }
 }

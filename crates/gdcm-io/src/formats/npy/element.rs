@@ -13,6 +13,8 @@ use crate::formats::element_order::element_count;
 use crate::formats::npy::TEXT_LENGTH_AT;
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Type of an array element, given by `dtype.descr` of NumPy.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +67,7 @@ impl Element {
         match descr {
             Json::String(code) => Self::parse_code(code),
             Json::Array(fields) => Self::parse_record(fields),
-            _ => Err(damaged("the element type is neither a string nor a list")),
+            _ => Err(damaged(Damage::ElementTypeForm)),
         }
     }
 
@@ -108,8 +110,9 @@ impl Element {
         let Some(number) = StoredNumber::new(number_class, number_size, big_endian) else {
             return Err(VariableFault::unsupported(
                 "",
-                format!("numbers of type {code}"),
-                "save it as float64",
+                UnsupportedContent::NumpyNumbers {
+                    code: code.to_owned(),
+                },
             ));
         };
         Ok(if is_complex {
@@ -125,9 +128,7 @@ impl Element {
         let mut size = 0_usize;
         for entry in list {
             let field = Field::parse(entry, size)?;
-            size = field
-                .end()
-                .ok_or_else(|| damaged("a record is too large"))?;
+            size = field.end().ok_or_else(|| damaged(Damage::RecordSize))?;
             // Skip padding bytes, which are fields without a name.
             if !field.name.is_empty() {
                 fields.push(field);
@@ -142,13 +143,13 @@ fn refuse_class(class: &str, code: &str) -> Result<(), VariableFault> {
     match class {
         "O" => Err(VariableFault::unsupported(
             "",
-            "an array of Python objects",
-            "save plain arrays, one for each name",
+            UnsupportedContent::PythonObjects,
         )),
         "M" | "m" => Err(VariableFault::unsupported(
             "",
-            format!("dates or times of type {code}"),
-            "save them as float64, with the unit in the name",
+            UnsupportedContent::NumpyTimes {
+                code: code.to_owned(),
+            },
         )),
         _ => Ok(()),
     }
@@ -208,20 +209,19 @@ pub(super) fn parse_sides(shape: &Json) -> Option<Vec<usize>> {
 }
 
 fn wrong_field() -> VariableFault {
-    damaged("a field of the records lacks a name or a type")
+    damaged(Damage::RecordField)
 }
 
 fn unknown_code(code: &str) -> VariableFault {
-    damaged(format!(
-        "\"{}\" is not an element type",
-        code.escape_default()
-    ))
+    damaged(Damage::ElementTypeCode {
+        code: code.to_owned(),
+    })
 }
 
 /// Returns the error for a header that NumPy would not write, without the array name, which
 /// `Header::parse` adds.
-fn damaged(what: impl Into<String>) -> VariableFault {
-    VariableFault::damaged("", what, TEXT_LENGTH_AT as u64)
+fn damaged(damage: Damage) -> VariableFault {
+    VariableFault::damaged("", damage, TEXT_LENGTH_AT as u64)
 }
 
 #[cfg(test)]

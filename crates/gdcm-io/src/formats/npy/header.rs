@@ -15,6 +15,8 @@ use crate::formats::npy::TEXT_LENGTH_AT;
 use crate::formats::npy::element::{Element, parse_sides};
 use crate::formats::npy::python_literal::parse_literal;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Signature at the beginning of the file.
 pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
@@ -23,9 +25,6 @@ const VERSION_AT: usize = 6;
 /// Memory of the JSON text and of the parsed tree, per byte of the header text \[bytes\].
 const MEMORY_PER_BYTE: u64 = 40;
 /// Error message for a header whose keys are not the required keys.
-const MISSING_KEY: &str = "the header does not have exactly the keys descr, fortran_order and \
-    shape";
-
 /// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
@@ -54,19 +53,19 @@ impl Header {
     ) -> Result<Self, VariableFault> {
         let HeaderText { text, end } = HeaderText::read(bytes, name)?;
         budget.take(text.len() as u64, MEMORY_PER_BYTE, name)?;
-        let header = parse_literal(&text).map_err(|what| damaged(name, what))?;
+        let header = parse_literal(&text).map_err(|damage| damaged(name, damage))?;
         let entries = match header.as_object() {
             Some(entries) if entries.len() == 3 => entries,
-            _ => return Err(damaged(name, MISSING_KEY)),
+            _ => return Err(damaged(name, Damage::HeaderKeys)),
         };
         let descr = required_entry(entries, "descr", name)?;
         let order = required_entry(entries, "fortran_order", name)?;
         let shape = required_entry(entries, "shape", name)?;
         let Some(column_major) = order.as_bool() else {
-            return Err(damaged(name, "fortran_order is neither True nor False"));
+            return Err(damaged(name, Damage::FortranOrder));
         };
         let Some(shape) = parse_sides(shape) else {
-            return Err(damaged(name, "the shape is not a tuple of integers"));
+            return Err(damaged(name, Damage::ShapeTuple));
         };
         let element =
             Element::parse(descr).map_err(|fault| fault.in_variable(|| name.to_owned()))?;
@@ -94,8 +93,7 @@ impl HeaderText {
             _ => {
                 return Err(VariableFault::unsupported(
                     name,
-                    format!("version {version} of the .npy format"),
-                    "save a plain array with numpy.save",
+                    UnsupportedContent::NpyVersion { version },
                 ));
             }
         };
@@ -113,9 +111,8 @@ impl HeaderText {
         // The header is in Latin-1 for versions 1 and 2, whose codes are the first Unicode
         // characters, and in UTF-8 for version 3.
         let text = match version {
-            3 => String::from_utf8(text.to_vec()).map_err(|_| {
-                VariableFault::damaged(name, "the header is not UTF-8", begin as u64)
-            })?,
+            3 => String::from_utf8(text.to_vec())
+                .map_err(|_| VariableFault::damaged(name, Damage::HeaderNotUtf8, begin as u64))?,
             _ => text.iter().copied().map(char::from).collect(),
         };
         Ok(Self { text, end })
@@ -127,11 +124,13 @@ fn required_entry<'h>(
     key: &str,
     name: &str,
 ) -> Result<&'h Json, VariableFault> {
-    entries.get(key).ok_or_else(|| damaged(name, MISSING_KEY))
+    entries
+        .get(key)
+        .ok_or_else(|| damaged(name, Damage::HeaderKeys))
 }
 
-fn damaged(name: &str, what: &str) -> VariableFault {
-    VariableFault::damaged(name, what, TEXT_LENGTH_AT as u64)
+fn damaged(name: &str, damage: Damage) -> VariableFault {
+    VariableFault::damaged(name, damage, TEXT_LENGTH_AT as u64)
 }
 
 #[cfg(test)]

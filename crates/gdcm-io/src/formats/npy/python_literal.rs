@@ -2,13 +2,15 @@
 
 use serde_json::Value as Json;
 
+use crate::variable_fault::damage::Damage;
+
 /// Converts a header, which is a Python literal, to JSON: quotation marks, tuples to lists,
 /// trailing commas, and the words True and False.
 ///
 /// # Errors
 ///
 /// The reason, for anything that NumPy does not write into a header.
-pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
+pub(super) fn parse_literal(text: &str) -> Result<Json, Damage> {
     let mut json = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(sign) = rest.chars().next() {
@@ -37,35 +39,34 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
         };
         rest = &rest[length..];
     }
-    serde_json::from_str(&json)
-        .map_err(|_| "the header is not a dictionary of strings, numbers and tuples")
+    serde_json::from_str(&json).map_err(|_| Damage::HeaderLiteral)
 }
 
 /// Converts the string at the beginning of `rest`; returns its length including both quotation
 /// marks \[bytes\].
-fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, &'static str> {
+fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, Damage> {
     let Some(end) = rest[1..].find(quote) else {
-        return Err("a string in the header is not closed");
+        return Err(Damage::HeaderStringOpen);
     };
     let text = &rest[1..=end];
     // Escapes occur only in unusual field names: with quotation marks, backslashes or control
     // characters.
     if text.contains('\\') {
-        return Err("the header contains an escape sequence");
+        return Err(Damage::HeaderEscape);
     }
     json.push_str(&Json::from(text).to_string());
     Ok(end + 2)
 }
 
 /// Converts the word at the beginning of `rest`; returns its length \[bytes\].
-fn convert_word(rest: &str, json: &mut String) -> Result<usize, &'static str> {
+fn convert_word(rest: &str, json: &mut String) -> Result<usize, Damage> {
     let end = rest
         .find(|sign: char| !sign.is_alphanumeric())
         .unwrap_or(rest.len());
     match &rest[..end] {
         "True" => json.push_str("true"),
         "False" => json.push_str("false"),
-        _ => return Err("the header contains an unknown word"),
+        _ => return Err(Damage::HeaderWord),
     }
     Ok(end)
 }

@@ -10,6 +10,7 @@ use rawzip::{CompressionMethod, ZipArchiveWriter};
 use crate::formats::npy::header::MAGIC;
 use crate::formats::variables::{Array, ElementKind, TextArray, Value, Variable};
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Alignment of the elements \[bytes\], required by `numpy.lib.format`.
 const ALIGNMENT: usize = 64;
@@ -41,24 +42,23 @@ pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
         let array = match &variable.value {
             Value::Array(array) => encode_numbers(array),
             Value::Text(texts) => encode_texts(texts),
-            other => return Err(refused(&variable.name, &other.words())),
+            other => {
+                return Err(VariableFault::unsupported(
+                    &variable.name,
+                    UnsupportedContent::ValueNotWritten {
+                        value: other.words(),
+                    },
+                ));
+            }
         };
-        write_entry(&mut archive, &variable.name, &array)
-            .map_err(|_| refused(&variable.name, "a name this long"))?;
+        write_entry(&mut archive, &variable.name, &array).map_err(|_| {
+            VariableFault::unsupported(&variable.name, UnsupportedContent::LongNameNotWritten)
+        })?;
     }
     archive
         .finish()
-        .map_err(|_| refused("", "an archive this large"))?;
+        .map_err(|_| VariableFault::unsupported("", UnsupportedContent::LargeArchiveNotWritten))?;
     Ok(bytes)
-}
-
-fn refused(name: &str, what: &str) -> VariableFault {
-    let remedy = "write only arrays and strings, under shorter names or in several files";
-    VariableFault::unsupported(
-        name,
-        format!("{what} cannot be written, and therefore"),
-        remedy,
-    )
 }
 
 /// Adds an array to an archive as a compressed `.npy` file.

@@ -8,6 +8,8 @@ use crate::formats::octave::range::Range;
 use crate::formats::sparse_matrix::SparseEntries;
 use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::octave_fault::OctaveFault;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
@@ -52,8 +54,8 @@ pub(super) trait Parts {
     fn read_field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
     /// Reads the class name of an object.
     fn read_class(&mut self, variable: &str) -> Result<String, VariableFault>;
-    /// Returns the error `what` at the current position in the file.
-    fn fault(&self, variable: &str, what: &str) -> VariableFault;
+    /// Returns the error `fault` at the current position in the file.
+    fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault;
 }
 
 /// Reads the value of a variable after its name and type.
@@ -87,8 +89,9 @@ impl Assembler<'_> {
         let Some(form) = Form::from_type_name(local_type) else {
             return Err(VariableFault::unsupported(
                 variable,
-                format!("a GNU Octave {type_name}"),
-                "save the file without this variable, or with -v7",
+                UnsupportedContent::OctaveType {
+                    type_name: type_name.to_owned(),
+                },
             ));
         };
         Ok(match form {
@@ -131,9 +134,7 @@ impl Assembler<'_> {
         variable: &str,
     ) -> Result<usize, VariableFault> {
         let Some(count) = element_count(shape) else {
-            return Err(self
-                .parts
-                .fault(variable, "the number of elements is too large"));
+            return Err(self.parts.fault(variable, OctaveFault::ElementCount));
         };
         self.parts.budget().take(count as u64, size, variable)?;
         Ok(count)
@@ -175,16 +176,14 @@ impl Assembler<'_> {
     fn full_matrix(&self, entries: &SparseEntries, variable: &str) -> Result<Array, VariableFault> {
         entries.full_matrix(variable, self.parts.budget(), || {
             self.parts
-                .fault(variable, "an element is outside the matrix")
+                .fault(variable, OctaveFault::ElementOutsideMatrix)
         })
     }
 
     fn read_range(&mut self, variable: &str) -> Result<Array, VariableFault> {
         let numbers = self.parts.read_numbers(Element::FLOAT, 3, variable)?;
         let &[first, limit, step] = numbers.as_slice() else {
-            return Err(self
-                .parts
-                .fault(variable, "a range does not have three numbers"));
+            return Err(self.parts.fault(variable, OctaveFault::RangeNumbers));
         };
         let range = Range { first, limit, step };
         range.array(variable, self.parts.budget())
@@ -221,10 +220,7 @@ impl Assembler<'_> {
                 (_, value) => vec![value],
             };
             if values.len() != count {
-                return Err(self.parts.fault(
-                    &inner,
-                    "a field has more or fewer values than there are records",
-                ));
+                return Err(self.parts.fault(&inner, OctaveFault::FieldLength));
             }
             fields.push((name, values));
         }
@@ -251,6 +247,5 @@ pub(super) fn byte_rows(letters: &[u8], height: usize) -> TextArray {
 
 /// Returns the error for a character array with more than two dimensions, which is not supported.
 pub(super) fn texts_in_pages(variable: &str) -> VariableFault {
-    let what = "a character array with more than two dimensions";
-    VariableFault::unsupported(variable, what, "save it as a cell array")
+    VariableFault::unsupported(variable, UnsupportedContent::OctavePages)
 }

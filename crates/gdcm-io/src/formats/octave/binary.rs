@@ -19,6 +19,8 @@ use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::octave_fault::OctaveFault;
+use crate::variable_fault::unread::Unread;
 
 /// Signature, which is followed by the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";
@@ -53,10 +55,9 @@ fn read_variables(
         let ValueHeading { name, type_name } = reader.read_heading("")?;
         match read_value(&mut reader, &type_name, &name) {
             Ok(value) => variables.push(Variable { name, value }),
-            Err(VariableFault::Unsupported { what, remedy, .. }) => {
+            Err(VariableFault::Unsupported { content, .. }) => {
                 // The length of the value is unknown, so later values cannot be found.
-                let why = format!("this value and all later values cannot be read; {remedy}");
-                let value = Value::opaque(what, why);
+                let value = Value::opaque(content.to_string(), Unread::UnsupportedEnd(content));
                 variables.push(Variable { name, value });
                 break;
             }
@@ -99,7 +100,7 @@ impl<'b> BinaryReader<'b> {
     /// Reads a length or an index, which must not be negative.
     fn read_length(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let length = self.read_int(variable)?;
-        usize::try_from(length).map_err(|_| self.fault(variable, "a length is negative"))
+        usize::try_from(length).map_err(|_| self.fault(variable, OctaveFault::NegativeLength))
     }
 
     /// Reads `count` lengths or indices.
@@ -130,7 +131,7 @@ impl<'b> BinaryReader<'b> {
         };
         storage
             .and_then(|storage| StoredNumber::new(storage.class, storage.size, self.big_endian))
-            .ok_or_else(|| self.fault(variable, "the number type is unknown"))
+            .ok_or_else(|| self.fault(variable, OctaveFault::NumberType))
     }
 }
 
@@ -163,7 +164,7 @@ impl Parts for BinaryReader<'_> {
         let _documentation = self.read_string(variable)?;
         let _is_global = self.take(1, variable)?;
         if self.take(1, variable)? != [NAMED_TYPE] {
-            return Err(self.fault(&name, "the type of the value has no name"));
+            return Err(self.fault(&name, OctaveFault::UnnamedType));
         }
         Ok(ValueHeading {
             name,
@@ -184,7 +185,7 @@ impl Parts for BinaryReader<'_> {
             }
         };
         if shape.len() < 2 {
-            return Err(self.fault(variable, "an array has fewer than two dimensions"));
+            return Err(self.fault(variable, OctaveFault::FewDimensions));
         }
         Ok(Sides {
             shape,
@@ -229,7 +230,7 @@ impl Parts for BinaryReader<'_> {
         };
         columns
             .into_entries()
-            .ok_or_else(|| self.fault(variable, "the sparse matrix is inconsistent"))
+            .ok_or_else(|| self.fault(variable, OctaveFault::SparseMatrix))
     }
 
     fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
@@ -252,7 +253,7 @@ impl Parts for BinaryReader<'_> {
         self.read_string(variable)
     }
 
-    fn fault(&self, variable: &str, what: &str) -> VariableFault {
-        VariableFault::damaged(variable, what, self.at as u64)
+    fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault {
+        VariableFault::damaged(variable, fault, self.at as u64)
     }
 }

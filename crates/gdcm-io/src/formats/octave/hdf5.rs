@@ -24,9 +24,10 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::Unread;
 
 /// Error message for a struct array whose fields have different numbers of values.
-const FIELD_LENGTH: &str = "a field has more or fewer values than there are records";
 
 /// Converts the groups of a file written by Octave to values; returns the values of any other file
 /// unchanged.
@@ -83,7 +84,7 @@ fn convert_group(
     budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
     let Some(OctaveGroup { type_name, value }) = OctaveGroup::from_value(group) else {
-        return Err(damaged(variable, "a group lacks a type or a value"));
+        return Err(damaged(variable, Damage::GroupParts));
     };
     budget.take(1, size_of::<Value>() as u64, variable)?;
     let Some(form) = Form::from_type_name(type_name) else {
@@ -122,11 +123,11 @@ fn convert_group(
 
 /// Returns the opaque value for a type that is not supported.
 fn unknown_value(type_name: &str) -> Value {
-    Value::opaque(format!("a GNU Octave {type_name}"), "save it with -v7")
+    Value::opaque(format!("a GNU Octave {type_name}"), Unread::OctaveType)
 }
 
-fn damaged(variable: &str, what: &str) -> VariableFault {
-    VariableFault::damaged(variable, what, 0)
+fn damaged(variable: &str, damage: Damage) -> VariableFault {
+    VariableFault::damaged(variable, damage, 0)
 }
 
 /// Returns an array with its dimensions reversed: the elements, which the HDF5 reader moved from
@@ -138,7 +139,7 @@ fn with_reversed_sides(
 ) -> Result<Array, VariableFault> {
     budget.take(array.len() as u64, 16, variable)?;
     let Some(places) = Places::row_major(&array.shape) else {
-        return Err(damaged(variable, "the number of elements is too large"));
+        return Err(damaged(variable, Damage::ElementCount));
     };
     let places: Vec<usize> = places.collect();
     Ok(Array {
@@ -185,7 +186,7 @@ impl<'v> GroupParts<'v> {
     fn range_number(&self, name: &str) -> Result<f64, VariableFault> {
         match self.number(name) {
             Some(number) => Ok(number),
-            None => Err(self.damaged("a range lacks its base, limit or step")),
+            None => Err(self.damaged(Damage::RangeParts)),
         }
     }
 
@@ -209,22 +210,19 @@ impl<'v> GroupParts<'v> {
             }
         }
         if element_count(&shape) != Some(values.len()) {
-            return Err(self.damaged(
-                "the number of values in a cell array does not match its \
-                dimensions",
-            ));
+            return Err(self.damaged(Damage::CellCount));
         }
         Ok(CellArray { shape, values })
     }
 
     fn object(&self) -> Result<Object, VariableFault> {
         let Some(Value::Text(class)) = self.member("classname") else {
-            return Err(self.damaged("an object has no class"));
+            return Err(self.damaged(Damage::ObjectWithoutClass));
         };
         let class = class.texts.first().cloned().unwrap_or_default();
         // The fields are in a separate group next to the class name.
         let Some(Value::Struct(fields)) = self.member("value") else {
-            return Err(self.damaged("an object has no fields"));
+            return Err(self.damaged(Damage::ObjectWithoutFields));
         };
         let fields = GroupParts {
             parts: fields,
@@ -247,7 +245,7 @@ impl<'v> GroupParts<'v> {
                 Some(value) => match convert_group(value, &inner, self.budget)? {
                     Value::Cell(cell) if in_cells => {
                         if !records.fields.is_empty() && records.shape != cell.shape {
-                            return Err(damaged(&inner, FIELD_LENGTH));
+                            return Err(damaged(&inner, Damage::FieldLength));
                         }
                         records.shape = cell.shape;
                         cell.values
@@ -290,11 +288,11 @@ impl<'v> GroupParts<'v> {
     }
 
     fn sparse_contradiction(&self) -> VariableFault {
-        self.damaged("the sparse matrix is inconsistent")
+        self.damaged(Damage::SparseMatrix)
     }
 
-    fn damaged(&self, what: &str) -> VariableFault {
-        damaged(self.variable, what)
+    fn damaged(&self, damage: Damage) -> VariableFault {
+        damaged(self.variable, damage)
     }
 
     /// Returns the member `name` of the group.

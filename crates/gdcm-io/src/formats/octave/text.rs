@@ -20,6 +20,8 @@ use crate::formats::text::encoding::decode;
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::octave_fault::OctaveFault;
+use crate::variable_fault::unread::Unread;
 
 /// Length of the beginning of a file in which the first variable must appear \[bytes\].
 const HEAD: usize = 2000;
@@ -66,7 +68,9 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
         let value = match read_value(&mut reader, &type_name, &name) {
             Ok(value) => value,
             // Reading continues with the next value, which begins at the next line with a name.
-            Err(VariableFault::Unsupported { what, remedy, .. }) => Value::opaque(what, remedy),
+            Err(VariableFault::Unsupported { content, .. }) => {
+                Value::opaque(content.to_string(), Unread::Unsupported(content))
+            }
             Err(fault) => return Err(fault),
         };
         variables.push(Variable { name, value });
@@ -125,15 +129,26 @@ impl<'t> TextReader<'t> {
         };
         match text_after_key(line, key) {
             Some(text) => Ok(text.trim()),
-            None => Err(self.fault(variable, &format!("expected \"# {key}: …\""))),
+            None => Err(self.fault(
+                variable,
+                OctaveFault::MissingKey {
+                    key: key.to_owned(),
+                },
+            )),
         }
     }
 
     /// Returns the non-negative integer after `# key: ` on the next nonempty line.
     fn read_key_number(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
         let text = self.read_key(key, variable)?;
-        text.parse()
-            .map_err(|_| self.fault(variable, &format!("{key}: expected a whole number")))
+        text.parse().map_err(|_| {
+            self.fault(
+                variable,
+                OctaveFault::KeyNotWhole {
+                    key: key.to_owned(),
+                },
+            )
+        })
     }
 
     /// Returns whether the next nonempty line begins with `# key`.
@@ -160,7 +175,7 @@ impl<'t> TextReader<'t> {
     fn read_index(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let word = self.read_word(variable)?;
         word.parse()
-            .map_err(|_| self.fault(variable, "expected a whole number"))
+            .map_err(|_| self.fault(variable, OctaveFault::NotWhole))
     }
 
     /// Parses a word as a number.
@@ -170,7 +185,7 @@ impl<'t> TextReader<'t> {
             return Ok(f64::NAN);
         }
         word.parse()
-            .map_err(|_| self.fault(variable, "expected a number"))
+            .map_err(|_| self.fault(variable, OctaveFault::NotANumber))
     }
 
     /// Returns the next `length` bytes, which may contain line breaks. If no line ends after them,
@@ -235,7 +250,7 @@ impl Parts for TextReader<'_> {
             shape.push(self.read_index(variable)?);
         }
         if shape.len() < 2 {
-            return Err(self.fault(variable, "expected at least two dimensions"));
+            return Err(self.fault(variable, OctaveFault::Dimensions));
         }
         Ok(Sides {
             shape,
@@ -258,7 +273,7 @@ impl Parts for TextReader<'_> {
             let word = self.read_word(variable)?;
             if element.is_complex {
                 let Some((re, im)) = complex_parts(word) else {
-                    return Err(self.fault(variable, "expected a complex number, (re,im)"));
+                    return Err(self.fault(variable, OctaveFault::NotComplex));
                 };
                 numbers.extend([
                     self.parse_number(re, variable)?,
@@ -288,7 +303,7 @@ impl Parts for TextReader<'_> {
             let row = self.read_index(variable)?.wrapping_sub(1);
             let column = self.read_index(variable)?.wrapping_sub(1);
             if row >= height || column >= width {
-                return Err(self.fault(variable, "an element is outside the matrix"));
+                return Err(self.fault(variable, OctaveFault::ElementOutsideMatrix));
             }
             // Take twice the memory of an entry: vectors grow by doubling.
             self.budget.take(1, 48, variable)?;
@@ -340,10 +355,10 @@ impl Parts for TextReader<'_> {
         Ok(self.read_key("classname", variable)?.to_owned())
     }
 
-    fn fault(&self, variable: &str, what: &str) -> VariableFault {
+    fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault {
         // The line of the byte before the current position.
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
-        VariableFault::line(variable, line, what)
+        VariableFault::line(variable, line, fault)
     }
 }

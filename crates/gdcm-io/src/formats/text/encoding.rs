@@ -1,6 +1,7 @@
 //! Character encodings of text files.
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::found_content::FoundContent;
 
 /// Characters 0x80 to 0x9f of code page 1252; its five undefined codes become control characters.
 const WINDOWS_1252: [char; 32] = [
@@ -65,7 +66,7 @@ pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), Va
 
 /// Returns the error for a binary file, whose byte `at` is zero.
 fn no_text(expected: &'static str, at: usize) -> VariableFault {
-    VariableFault::format(expected, format!("a binary file (byte {at} is zero)"))
+    VariableFault::format(expected, FoundContent::Binary { byte: at })
 }
 
 #[cfg(test)]
@@ -107,10 +108,10 @@ mod encoding_tests {
 
     #[test]
     fn a_zero_byte_is_no_text() {
-        let fault = refuse_binary("ab\0c", "a table").unwrap_err();
+        let binary = FoundContent::Binary { byte: 2 };
         assert_eq!(
-            fault.to_string(),
-            "expected a table, found a binary file (byte 2 is zero)"
+            refuse_binary("ab\0c", "a table"),
+            Err(VariableFault::format("a table", binary))
         );
     }
 }

@@ -7,11 +7,15 @@
 //! FrequencyColumns::values      numbers -> points of each response (response_columns.rs)
 //! ```
 
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
 use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
 use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::found_content::ResponseLack;
+use crate::variable_fault::line_fault::FrequencyFault;
+use crate::variable_fault::line_fault::LineFault;
 
 /// Meaning of the columns of a frequency response table.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +24,7 @@ pub(crate) struct FrequencyColumns {
     /// Frequency responses, in the order of their columns.
     pub(crate) responses: Vec<RecognisedResponse>,
     /// Notes for the user: each choice with its reason.
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<ReadingNote>,
     /// Unused columns, by name or, without a name, by number.
     pub(crate) unused: Vec<String>,
 }
@@ -38,9 +42,7 @@ impl FrequencyColumns {
             return Err(units_missing(table, recognition.unsaid));
         }
         if responses.is_empty() {
-            return Err(unrecognised(
-                "neither magnitude and phase nor real and imaginary part",
-            ));
+            return Err(unrecognised(ResponseLack::Parts));
         }
         let mut columns = Self {
             frequency,
@@ -49,8 +51,7 @@ impl FrequencyColumns {
             unused: recognition.unused,
         };
         if columns.is_decreasing(table) {
-            let note = "the frequencies decrease: the rows are read in reverse order";
-            columns.notes.push(note.to_owned());
+            columns.notes.push(ReadingNote::DecreasingFrequencies);
         }
         Ok(columns)
     }
@@ -96,8 +97,11 @@ impl FrequencyColumns {
         for (&value, &line) in frequencies.iter().zip(&table.lines) {
             if let Some(fault) = frequency_fault(value, before) {
                 let place = column_place(table, column);
-                let what = format!("the frequency in {place} {fault}");
-                return Err(VariableFault::line("", line, what));
+                return Err(VariableFault::line(
+                    "",
+                    line,
+                    LineFault::Frequency { place, fault },
+                ));
             }
             before = value;
         }
@@ -117,20 +121,15 @@ fn reversed(table: &TextTable) -> TextTable {
 
 /// Describes why a frequency is invalid, with a remedy; `None` if it is valid. `before` is the
 /// preceding frequency.
-fn frequency_fault(value: f64, before: f64) -> Option<String> {
+fn frequency_fault(value: f64, before: f64) -> Option<FrequencyFault> {
     if !value.is_finite() {
-        Some("is missing or infinite; complete it or remove the line".to_owned())
+        Some(FrequencyFault::NotFinite)
     } else if value < 0.0 {
-        Some(format!("is negative ({value}); remove the line"))
+        Some(FrequencyFault::Negative { value })
     } else if value == before {
-        Some(format!(
-            "occurs on two lines ({value}); remove one of the lines"
-        ))
+        Some(FrequencyFault::Repeated { value })
     } else if value < before {
-        Some(format!(
-            "is below the preceding frequency ({value} after {before}); sort the lines by \
-            frequency"
-        ))
+        Some(FrequencyFault::Decreasing { value, before })
     } else {
         None
     }
@@ -141,22 +140,38 @@ mod recognition_tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::formats::reading_note::ColumnReading;
     use crate::formats::text::response_columns::{CoherenceColumn, ResponseParts};
     use crate::formats::text::table_reader::read_table;
     use crate::formats::text::unrecognised::UnsaidUnit;
     use crate::reading_budget::ReadingBudget;
+    use crate::variable_fault::column_place::ColumnPlace;
+    use crate::variable_fault::found_content::{FoundContent, MissingUnit};
 
     fn recognise(text: &str) -> FrequencyColumns {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
         FrequencyColumns::recognise(&table).unwrap()
     }
 
-    fn fault(text: &str) -> String {
+    fn lacking(text: &str) -> ResponseLack {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
-        FrequencyColumns::recognise(&table)
-            .unwrap_err()
-            .fault
-            .to_string()
+        match FrequencyColumns::recognise(&table).unwrap_err().fault {
+            VariableFault::Format {
+                found: FoundContent::NotAResponse { lacking },
+                ..
+            } => lacking,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn missing_unit(number: usize, name: &str, units: [&'static str; 2]) -> MissingUnit {
+        MissingUnit {
+            place: ColumnPlace {
+                number,
+                name: Some(name.to_owned()),
+            },
+            units,
+        }
     }
 
     /// Returns a column that holds γ² as a fraction of 1.
@@ -199,13 +214,30 @@ mod recognition_tests {
             (Some("P"), Some("LAT"))
         );
         assert_eq!((response.parts, response.coherence), (POLAR, squared(3)));
+        let read_as = |number, name: &str, reading, reason: &str| ReadingNote::ReadAs {
+            place: ColumnPlace {
+                number,
+                name: Some(name.to_owned()),
+            },
+            reading,
+            reason: reason.to_owned(),
+        };
         assert_eq!(
-            found.notes[0],
-            "column 1 (\"omega\") is read as the frequency in rad/s: its name contains omega, its unit is rad/s"
-        );
-        assert_eq!(
-            found.notes[1],
-            "column 2 (\"mag P/LAT\") is read as magnitude in dB: its name contains mag, its unit is dB"
+            found.notes[..2],
+            [
+                read_as(
+                    1,
+                    "omega",
+                    ColumnReading::Frequency { unit: "rad/s" },
+                    "its name contains omega, its unit is rad/s"
+                ),
+                read_as(
+                    2,
+                    "mag P/LAT",
+                    ColumnReading::MagnitudeInDb,
+                    "its name contains mag, its unit is dB"
+                )
+            ]
         );
     }
 
@@ -235,12 +267,10 @@ mod recognition_tests {
             ResponseParts::Rectangular { re: 5, im: 6 }
         );
         assert_eq!(found.responses[0].coherence, squared(3));
-        assert!(
-            found
-                .notes
-                .iter()
-                .any(|note| note.contains("magnitude and phase in columns 2 and 3 agree"))
-        );
+        assert!(found.notes.contains(&ReadingNote::FormsAgree {
+            magnitude: 2,
+            phase: 3
+        }));
     }
 
     #[test]
@@ -295,22 +325,24 @@ mod recognition_tests {
     #[test]
     fn differing_forms_are_noted() {
         let found = recognise("w,mag_db,phase_deg,re,im\n1,0,-90,0,1\n2,0,-90,0,1\n");
-        assert!(found.notes.iter().any(|note| note.contains("differ")));
+        assert!(found.notes.contains(&ReadingNote::FormsDiffer {
+            magnitude: 2,
+            phase: 3,
+            line: 2
+        }));
     }
 
     #[test]
     fn missing_units_are_asked_for() {
         let found = recognise("omega,mag,phase [deg]\n1,3,-90\n2,-6,-100\n");
         assert_eq!(found.responses[0].parts, POLAR, "no magnitude is negative");
-        let size = fault("omega,mag,phase [deg]\n1,3,-90\n2,0.5,-100\n");
-        assert!(
-            size.contains("no unit of column 2 (\"mag\") (write [dB] or [abs])"),
-            "{size}"
+        assert_eq!(
+            lacking("omega,mag,phase [deg]\n1,3,-90\n2,0.5,-100\n"),
+            ResponseLack::Units(vec![missing_unit(2, "mag", ["dB", "abs"])])
         );
-        let angle = fault("omega,mag [dB],phase\n1,3,-1\n2,0.5,-2\n");
-        assert!(
-            angle.contains("no unit of column 3 (\"phase\") (write [deg] or [rad])"),
-            "{angle}"
+        assert_eq!(
+            lacking("omega,mag [dB],phase\n1,3,-1\n2,0.5,-2\n"),
+            ResponseLack::Units(vec![missing_unit(3, "phase", ["deg", "rad"])])
         );
         let absolute = recognise("omega,mag [abs],phase [rad]\n1,3,-1\n2,0.5,-2\n");
         let expected = ResponseParts::Polar {
@@ -320,15 +352,14 @@ mod recognition_tests {
             in_degrees: false,
         };
         assert_eq!(absolute.responses[0].parts, expected);
-        let all = fault("Frequency,Gain,Phase\n0.5,5.8,-42.7\n0.6,9.8,-24.8\n");
-        for unit in [
-            "[rad/s] or [Hz]",
-            "[dB] or [abs]",
-            "[deg] or [rad]",
-            "--headings",
-        ] {
-            assert!(all.contains(unit), "{all}");
-        }
+        assert_eq!(
+            lacking("Frequency,Gain,Phase\n0.5,5.8,-42.7\n0.6,9.8,-24.8\n"),
+            ResponseLack::Units(vec![
+                missing_unit(1, "Frequency", ["rad/s", "Hz"]),
+                missing_unit(2, "Gain", ["dB", "abs"]),
+                missing_unit(3, "Phase", ["deg", "rad"]),
+            ])
+        );
         let table = read_table(
             "Frequency,Gain,Phase\n0.5,5.8,-42.7\n0.6,9.8,-24.8\n",
             &ReadingBudget::new(1 << 20),
@@ -339,10 +370,9 @@ mod recognition_tests {
             unsaid.iter().map(|of| of.column).collect::<Vec<_>>(),
             [0, 1, 2]
         );
-        let nothing = fault("0.3,10,-90\n1,5,-100\n2,1,-120\n");
-        assert!(
-            nothing.contains("no frequency") && nothing.contains("headings"),
-            "{nothing}"
+        assert_eq!(
+            lacking("0.3,10,-90\n1,5,-100\n2,1,-120\n"),
+            ResponseLack::Frequency
         );
     }
 
@@ -351,13 +381,12 @@ mod recognition_tests {
         let found = recognise("w,re,im,mag X/Y\n1,2,3,1\n2,3,4,1\n");
         assert_eq!(found.responses.len(), 1);
         assert!(
-            found
-                .notes
-                .iter()
-                .any(|note| note.contains("column 4 (\"mag X/Y\") is ignored"))
+            found.notes.iter().any(
+                |note| matches!(note, ReadingNote::HalfResponse { place } if place.number == 4)
+            )
         );
-        assert!(fault("w,mag\n1,2\n2,3\n").contains("neither magnitude and phase"));
-        assert!(fault("mag,phase\n1,2\n2,1\n").contains("no frequency"));
+        assert_eq!(lacking("w,mag\n1,2\n2,3\n"), ResponseLack::Parts);
+        assert_eq!(lacking("mag,phase\n1,2\n2,1\n"), ResponseLack::Frequency);
     }
 }
 
@@ -390,25 +419,37 @@ mod frequency_values_tests {
 
     #[test]
     fn frequencies_out_of_order_are_refused_with_their_line() {
-        let message = |frequencies: [&str; 3]| {
+        let frequency_fault = |frequencies: [&str; 3]| {
             let rows: String = frequencies
                 .iter()
                 .map(|omega| format!("{omega},1,2\n"))
                 .collect();
-            values(&format!("omega,re,im\n{rows}"))
-                .unwrap_err()
-                .to_string()
+            match values(&format!("omega,re,im\n{rows}")) {
+                Err(VariableFault::Line {
+                    line,
+                    fault: LineFault::Frequency { place, fault },
+                    ..
+                }) => (line, place.number, fault),
+                other => panic!("{other:?}"),
+            }
         };
-        let start = "the frequency in column 1 (\"omega\")";
         assert_eq!(
-            message(["1", "2", "2"]),
-            format!("line 4: {start} occurs on two lines (2); remove one of the lines")
+            frequency_fault(["1", "2", "2"]),
+            (4, 1, FrequencyFault::Repeated { value: 2.0 })
         );
-        assert!(message(["1", "3", "2"]).starts_with(&format!(
-            "line 4: {start} is below the preceding frequency (2 after 3)"
-        )));
-        assert!(message(["1", "", "2"]).starts_with(&format!("line 3: {start} is missing")));
-        assert!(message(["-1", "1", "2"]).starts_with(&format!("line 2: {start} is negative")));
+        let decreasing = FrequencyFault::Decreasing {
+            value: 2.0,
+            before: 3.0,
+        };
+        assert_eq!(frequency_fault(["1", "3", "2"]), (4, 1, decreasing));
+        assert_eq!(
+            frequency_fault(["1", "", "2"]),
+            (3, 1, FrequencyFault::NotFinite)
+        );
+        assert_eq!(
+            frequency_fault(["-1", "1", "2"]),
+            (2, 1, FrequencyFault::Negative { value: -1.0 })
+        );
     }
 
     #[test]
@@ -450,13 +491,14 @@ mod frequency_values_tests {
             (points[0].omega.as_slice(), points[1].omega.as_slice()),
             (&[1.0, 2.0][..], &[2.0][..])
         );
-        let half = values("omega,re,im\n1,1,2\n2,1,\n")
-            .unwrap_err()
-            .to_string();
-        assert!(
-            half.starts_with("line 3: column 3 (\"im\") has no finite number"),
-            "{half}"
-        );
+        assert!(matches!(
+            values("omega,re,im\n1,1,2\n2,1,\n"),
+            Err(VariableFault::Line {
+                line: 3,
+                fault: LineFault::HalfNumber { place },
+                ..
+            }) if place.number == 3
+        ));
     }
 
     proptest! {

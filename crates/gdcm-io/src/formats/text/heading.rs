@@ -1,7 +1,6 @@
 //! Column names and units, from the lines before the numbers.
 
-use gdcm_model::number_format::counted;
-
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::heading_cells::heading_cells;
 use crate::formats::text::heading_units::{is_unit, name_and_unit};
 use crate::formats::text::layout::Layout;
@@ -11,14 +10,14 @@ use crate::formats::text::lines::{NumberedLine, comment, is_rule};
 const SEARCHED: usize = 100;
 
 /// Names and units of the columns.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Heading {
     /// Column names; `None` if no line gives them.
     pub(super) names: Option<Vec<String>>,
     /// Unit of each column, where a line gives it.
     pub(super) units: Vec<Option<String>>,
     /// Notes for the user on the lines from which names and units were taken.
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<ReadingNote>,
 }
 
 /// A line with as many cells as the table has columns.
@@ -45,9 +44,9 @@ impl Heading {
             // The names must be above the units: the next candidate may be a comment below them.
             Some(next) if is_units_line(&nearest.cells) && next.number < nearest.number => {
                 heading.units = nearest.cells.iter().map(|cell| unit_of(cell)).collect();
-                heading
-                    .notes
-                    .push(format!("line {} gives the units", nearest.number));
+                heading.notes.push(ReadingNote::UnitsLine {
+                    line: nearest.number,
+                });
                 next
             }
             _ => nearest,
@@ -55,7 +54,7 @@ impl Heading {
         heading.take_names(&names.cells);
         heading
             .notes
-            .push(format!("line {} gives the column names", names.number));
+            .push(ReadingNote::NamesLine { line: names.number });
         heading
     }
 
@@ -83,11 +82,11 @@ impl Heading {
         };
         let found = layout.separator.cells(text).count();
         if found > 1 {
-            let columns = counted(layout.columns, "column");
-            self.notes.push(format!(
-                "line {number} has {found} words for {columns}: it is not read as column \
-                names"
-            ));
+            self.notes.push(ReadingNote::HeadingMisfit {
+                line: *number,
+                found,
+                columns: layout.columns,
+            });
         }
     }
 }
@@ -203,10 +202,12 @@ mod heading_tests {
     fn a_title_is_no_heading_and_a_misfit_is_noted() {
         let heading = find(&["Flight 12", "a,b"], Separator::Comma, 3);
         assert_eq!(heading.names, None);
-        assert_eq!(
-            heading.notes,
-            ["line 2 has 2 words for 3 columns: it is not read as column names"]
-        );
+        let misfit = ReadingNote::HeadingMisfit {
+            line: 2,
+            found: 2,
+            columns: 3,
+        };
+        assert_eq!(heading.notes, [misfit]);
     }
 
     #[test]

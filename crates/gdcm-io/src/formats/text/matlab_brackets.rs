@@ -3,6 +3,7 @@
 
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position};
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::line_fault::LineFault;
 
 /// Open brackets in a statement that is skipped, the outermost first.
 #[derive(Default)]
@@ -64,10 +65,13 @@ impl OpenBrackets {
         let Some(OpenBracket { bracket, place }) = unclosed else {
             return Ok(());
         };
-        let what = format!(
-            "the bracket {bracket} in column {} is never closed; close it",
-            place.column
-        );
-        Err(VariableFault::line("", place.line, what))
+        Err(VariableFault::line(
+            "",
+            place.line,
+            LineFault::OpenBracket {
+                bracket,
+                column: place.column,
+            },
+        ))
     }
 }

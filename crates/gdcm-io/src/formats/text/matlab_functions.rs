@@ -1,8 +1,9 @@
 //! MATLAB functions that create models, structs and filled matrices from their arguments.
 
-use crate::formats::text::matlab_value_error::{Position, REMEDY, ValueError, refused};
+use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::ReadingBudget;
+use crate::variable_fault::matlab_fault::MatlabFault;
 
 /// Numbers of rows and columns from this limit on are rejected; all integers below it are exact as
 /// floats.
@@ -64,7 +65,7 @@ impl Call<'_> {
         match self.function {
             Function::Record(fields) => match record(self.name, fields, arguments) {
                 Ok(record) => Ok(record),
-                Err(what) => refused(what, self.place),
+                Err(fault) => refused(fault, self.place),
             },
             Function::Text => match arguments.as_slice() {
                 [text @ Value::Text(_)] => Ok(text.clone()),
@@ -89,10 +90,9 @@ impl Call<'_> {
         };
         let Some(MatrixSize { rows, columns }) = size else {
             return refused(
-                format!(
-                    "{}(…) is supported only with numbers of rows and columns; {REMEDY}",
-                    self.name
-                ),
+                MatlabFault::FunctionDimensions {
+                    function: self.name.to_owned(),
+                },
                 self.place,
             );
         };
@@ -143,7 +143,11 @@ fn count_from(value: &Value) -> Option<usize> {
 ///
 /// # Errors
 /// The reason if arguments are missing or of the wrong type.
-fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value, String> {
+fn record(
+    function: &str,
+    names: &[&'static str],
+    arguments: Vec<Value>,
+) -> Result<Value, MatlabFault> {
     let mut rest = arguments.into_iter().peekable();
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
     for name in names {
@@ -152,10 +156,10 @@ fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value
                 fields.push(((*name).to_owned(), vec![value]));
             }
             _ => {
-                return Err(format!(
-                    "{function}(…) needs numbers for {}",
-                    names.join(", ")
-                ));
+                return Err(MatlabFault::FunctionArguments {
+                    function: function.to_owned(),
+                    names: names.to_vec(),
+                });
             }
         }
     }
@@ -168,16 +172,12 @@ fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value
     }
     while let Some(name) = rest.next() {
         let (Value::Text(name), Some(value)) = (name, rest.next()) else {
-            return Err(format!(
-                "names and values must alternate: {function}(…,'InputName',{{'LAT'}})"
-            ));
+            return Err(MatlabFault::NamesAndValues {
+                function: function.to_owned(),
+            });
         };
         if names.is_empty() && matches!(value, Value::Cell(_)) {
-            return Err(
-                "struct(…) with cells creates a struct array, which is not supported; write \
-                s.name = {…} instead"
-                    .to_owned(),
-            );
+            return Err(MatlabFault::StructArray);
         }
         let name = name.texts.concat();
         fields.retain(|(known, _)| *known != name);

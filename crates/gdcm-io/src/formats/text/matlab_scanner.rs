@@ -8,6 +8,8 @@ use crate::formats::text::matlab_brackets::OpenBrackets;
 use crate::formats::text::matlab_number_syntax::{is_digit, past_exponent, past_mantissa};
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::line_fault::LineFault;
+use crate::variable_fault::matlab_fault::MatlabFault;
 
 /// Returns whether a name can contain this character.
 pub(super) fn is_name_character(character: char) -> bool {
@@ -155,8 +157,7 @@ impl<'t> Scanner<'t> {
                 return Ok(());
             }
             if self.peek().is_none() {
-                let what = "the comment opened here is never closed; write %} on a line of its own";
-                return Err(VariableFault::line("", line, what));
+                return Err(VariableFault::line("", line, LineFault::OpenComment));
             }
             self.new_line();
         }
@@ -213,10 +214,7 @@ impl<'t> Scanner<'t> {
             let rest = self.rest();
             let end = rest.find([quote, '\n', '\r']);
             let Some(end) = end.filter(|&end| rest[end..].starts_with(quote)) else {
-                return refused(
-                    format!("the string that begins here is not closed; close it with {quote}"),
-                    opening,
-                );
+                return refused(MatlabFault::OpenString { quote }, opening);
             };
             budget.take(2 * end as u64 + 2, 1, "")?;
             text.push_str(&rest[..end]);
@@ -253,7 +251,9 @@ impl<'t> Scanner<'t> {
                 is_imaginary,
             })),
             _ => refused(
-                format!("\"{}\" is not a number", excerpt(&rest[..end + tail])),
+                MatlabFault::NotANumber {
+                    text: excerpt(&rest[..end + tail]),
+                },
                 place,
             ),
         }

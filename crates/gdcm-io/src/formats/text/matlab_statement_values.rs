@@ -1,16 +1,13 @@
 //! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
 
-use gdcm_model::number_format::counted;
-
 use crate::formats::element_order::first_index_fastest;
 use crate::formats::text::matlab_functions::{Call, Function};
 use crate::formats::text::matlab_scanner::{Number, Scanner};
-use crate::formats::text::matlab_value_error::{
-    MOST_NESTED, Position, REMEDY, ValueError, refused,
-};
+use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::matlab_fault::MatlabFault;
 
 /// Operators within brackets if blanks surround them. After a blank only, a sign begins the next
 /// element: `[1 -2]`.
@@ -73,10 +70,8 @@ impl ValueReader<'_, '_, '_> {
             Some('[') => self.read_matrix(),
             Some('{') => self.read_cell_array(place, depth),
             Some('\'' | '"') => Ok(Value::text(self.scanner.read_quoted(self.budget)?)),
-            Some('@') => refused(format!("functions are not supported; {REMEDY}"), place),
-            None | Some('\n' | '\r' | ';' | ',') => {
-                refused("a value is missing here; write it", place)
-            }
+            Some('@') => refused(MatlabFault::FunctionHandle, place),
+            None | Some('\n' | '\r' | ';' | ',') => refused(MatlabFault::MissingValue, place),
             Some(_) => self.read_named_value(place, depth),
         }
     }
@@ -87,10 +82,7 @@ impl ValueReader<'_, '_, '_> {
         let before = self.scanner.clone();
         self.scanner.pass_blanks()?;
         match path.as_slice() {
-            [] => refused(
-                format!("this is not a number, string or matrix; {REMEDY}"),
-                place,
-            ),
+            [] => refused(MatlabFault::NotAValue, place),
             [function] if self.scanner.take("(") => self.read_call(function, place, depth),
             path => {
                 *self.scanner = before;
@@ -193,17 +185,17 @@ impl ValueReader<'_, '_, '_> {
                 }
                 rows += 1;
                 if row_length != columns {
-                    let found = counted(row_length, "column");
-                    let what = format!(
-                        "row {rows} has {found}, but the first row has {columns}; complete the \
-                        shorter row"
-                    );
-                    return refused(what, opening);
+                    let fault = MatlabFault::RowLength {
+                        row: rows,
+                        found: row_length,
+                        expected: columns,
+                    };
+                    return refused(fault, opening);
                 }
                 row_length = 0;
             }
             match next {
-                None => return refused("the bracket is never closed; close it", opening),
+                None => return refused(MatlabFault::OpenBracket, opening),
                 Some('\n' | '\r') => self.scanner.new_line(),
                 Some(';' | ',') => self.scanner.at += 1,
                 Some(sign) if sign == close => {
@@ -311,10 +303,7 @@ impl ValueReader<'_, '_, '_> {
             }));
         }
         if texts.len() < count || is_transposed {
-            return refused(
-                "numbers and strings cannot be mixed in brackets; write {…} instead of […]",
-                opening,
-            );
+            return refused(MatlabFault::MixedBrackets, opening);
         }
         Ok(Value::Text(TextArray { shape, texts }))
     }
@@ -327,14 +316,8 @@ impl ValueReader<'_, '_, '_> {
         }
         match self.scanner.peek() {
             Some('"') => Ok(Element::Text(self.scanner.read_quoted(self.budget)?)),
-            Some('\'') => refused(
-                "strings in brackets are not joined; write {'A', 'B'}",
-                place,
-            ),
-            _ => refused(
-                format!("only numbers are supported in brackets; {REMEDY}"),
-                place,
-            ),
+            Some('\'') => refused(MatlabFault::StringsInBrackets, place),
+            _ => refused(MatlabFault::NotANumberInBrackets, place),
         }
     }
 
@@ -347,7 +330,8 @@ impl ValueReader<'_, '_, '_> {
         depth: usize,
     ) -> Result<Value, ValueError> {
         let Some(function) = Function::find(name) else {
-            return refused(format!("{name}(…) is not evaluated; {REMEDY}"), place);
+            let function = name.to_owned();
+            return refused(MatlabFault::FunctionCall { function }, place);
         };
         let mut arguments = Vec::new();
         loop {
@@ -376,5 +360,5 @@ impl ValueReader<'_, '_, '_> {
 
 /// Returns the error for an expression, because this reader evaluates none.
 fn refuse_expression<T>(place: Position) -> Result<T, ValueError> {
-    refused(format!("expressions are not evaluated; {REMEDY}"), place)
+    refused(MatlabFault::Expression, place)
 }

@@ -4,6 +4,7 @@
 //! either side of `=`, and models created by `ss`, `tf` and `zpk`. Expressions are not evaluated
 //! and other statements not executed; they are reported with a remedy.
 
+use crate::formats::reading_note::{ReadingNote, SkippedStatement};
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
 use crate::formats::text::matlab_scanner::{Scanner, begins_name, is_name_character};
@@ -12,6 +13,8 @@ use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
 use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::unread::Unread;
 
 /// Words that begin a block, whose statements may be executed any number of times.
 const BLOCKS: [&str; 8] = [
@@ -44,7 +47,7 @@ pub struct Statements {
     /// value is [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
     /// Notes for the user on statements that were skipped.
-    pub notes: Vec<String>,
+    pub notes: Vec<ReadingNote>,
 }
 
 /// Reads variables from MATLAB or Octave statements.
@@ -76,7 +79,7 @@ struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
     budget: &'m ReadingBudget<'m>,
     workspace: Workspace<'t>,
-    notes: Vec<String>,
+    notes: Vec<ReadingNote>,
     /// Number of conditions and loops that are not closed.
     open_blocks: usize,
 }
@@ -123,10 +126,10 @@ impl<'t> Reading<'t, '_> {
             return self.read_assignment(&path, begin.position);
         }
         match path.as_slice() {
-            [] => self.pass_over(begin, "is not understood"),
+            [] => self.pass_over(begin, SkippedStatement::NotUnderstood),
             [word] if BLOCKS.contains(word) => {
                 self.open_blocks += 1;
-                self.pass_over(begin, "is not executed, and values set in it are not read")
+                self.pass_over(begin, SkippedStatement::Block)
             }
             [word] if BLOCK_ENDS.contains(word) => {
                 self.open_blocks = self.open_blocks.saturating_sub(1);
@@ -136,24 +139,27 @@ impl<'t> Reading<'t, '_> {
                 let changes_part = self.scanner.changes_part();
                 self.scanner = behind;
                 if !changes_part {
-                    return self.pass_over(begin, "is not executed");
+                    return self.pass_over(begin, SkippedStatement::NotExecuted);
                 }
-                let why = "only a part of the variable is set here; write the whole value in one \
-                    statement";
-                self.set_unread(&[name], begin.position, why)?;
+                self.set_unread(&[name], begin.position, MatlabFault::PartSet)?;
                 self.scanner.pass_statement(self.budget)
             }
         }
     }
 
-    /// Skips a statement, and notes the reason `why`.
-    fn pass_over(&mut self, begin: Beginning, why: &str) -> Result<(), VariableFault> {
-        let note = format!(
-            "line {} (\"{}\") {why}",
-            begin.position.line,
-            excerpt(&self.scanner.text[begin.offset..])
-        );
-        self.budget.take(note.len() as u64 + 32, 1, "")?;
+    /// Skips a statement, and notes the reason.
+    fn pass_over(
+        &mut self,
+        begin: Beginning,
+        reason: SkippedStatement,
+    ) -> Result<(), VariableFault> {
+        let note = ReadingNote::StatementSkipped {
+            line: begin.position.line,
+            start: excerpt(&self.scanner.text[begin.offset..]),
+            reason,
+        };
+        self.budget
+            .take(note.to_string().len() as u64 + 32, 1, "")?;
         self.notes.push(note);
         self.scanner.pass_statement(self.budget)
     }
@@ -162,12 +168,11 @@ impl<'t> Reading<'t, '_> {
     fn read_function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
-            return self.pass_over(begin, "is not executed");
+            return self.pass_over(begin, SkippedStatement::NotExecuted);
         };
-        let why = "it is the result of a function, which is not executed; write its value";
         for name in names.split(|c: char| !is_name_character(c)) {
             if begins_name(name) {
-                self.set_unread(&[name], begin.position, why)?;
+                self.set_unread(&[name], begin.position, MatlabFault::FunctionResult)?;
             }
         }
         self.scanner.pass_statement(self.budget)
@@ -179,9 +184,9 @@ impl<'t> Reading<'t, '_> {
         match self.read_assigned_value(begin) {
             Ok(value) => return self.workspace.set(path, value, self.budget),
             Err(ValueError::Fault(fault)) => return Err(fault.in_variable(|| path.join("."))),
-            Err(ValueError::NotUnderstood { what, at }) => {
+            Err(ValueError::NotUnderstood { fault, at }) => {
                 self.scanner = before;
-                self.set_unread(path, at, &what)?;
+                self.set_unread(path, at, fault)?;
             }
         }
         self.scanner
@@ -192,11 +197,7 @@ impl<'t> Reading<'t, '_> {
     /// Reads the value after the equals sign of an assignment.
     fn read_assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
-            return refused(
-                "it is set within a condition or a loop, which is not executed; write its value \
-                outside",
-                begin,
-            );
+            return refused(MatlabFault::InBlock, begin);
         }
         let mut reader = ValueReader {
             scanner: &mut self.scanner,
@@ -206,16 +207,20 @@ impl<'t> Reading<'t, '_> {
         reader.read_whole_value()
     }
 
-    /// Makes a variable or field opaque, for the reason `what`.
+    /// Makes a variable or field opaque, for the reason `fault`.
     fn set_unread(
         &mut self,
         path: &[&'t str],
         at: Position,
-        what: &str,
+        fault: MatlabFault,
     ) -> Result<(), VariableFault> {
-        let why = format!("line {}, column {}: {what}", at.line, at.column);
+        let why = Unread::Statement {
+            line: at.line,
+            column: at.column,
+            fault,
+        };
         self.budget
-            .take(why.len() as u64, 1, path.first().unwrap_or(&""))?;
+            .take(why.to_string().len() as u64, 1, path.first().unwrap_or(&""))?;
         let value = Value::opaque("an expression", why);
         self.workspace.set(path, value, self.budget)
     }
@@ -237,8 +242,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::text::matlab_value_error::REMEDY;
     use crate::formats::variables::{Array, CellArray, StructArray, TextArray};
+    use crate::variable_fault::line_fault::LineFault;
 
     fn read(text: &str) -> Result<Statements, VariableFault> {
         read_statements(text, &ReadingBudget::new(1 << 22))
@@ -253,10 +258,22 @@ mod tests {
         Value::Array(Array::matrix(rows, columns, values.to_vec()))
     }
 
-    fn why(text: &str) -> String {
-        match value(text) {
-            Value::Opaque { why, .. } => why,
-            other => panic!("{}", other.words()),
+    /// Returns the position of an unread value, and the reason.
+    fn why(text: &str) -> (usize, usize, MatlabFault) {
+        unread_statement(&value(text)).unwrap()
+    }
+
+    fn unread_statement(value: &Value) -> Option<(usize, usize, MatlabFault)> {
+        let Value::Opaque { why, .. } = value else {
+            return None;
+        };
+        match why.as_ref() {
+            Unread::Statement {
+                line,
+                column,
+                fault,
+            } => Some((*line, *column, fault.clone())),
+            other => panic!("{other:?}"),
         }
     }
 
@@ -294,10 +311,7 @@ mod tests {
             "A = 2*pi",
             "A = [1 2]*3",
         ] {
-            assert!(
-                why(computed).contains("save -v7 workspace.mat"),
-                "{computed}"
-            );
+            assert_eq!(why(computed).2, MatlabFault::Expression, "{computed}");
         }
     }
 
@@ -374,10 +388,12 @@ mod tests {
         let text = "function out = f(x)\nclear all; clc\nclose all\nA = 1;\nplot(A)\nhold on\nend\n%{\nB = 2\n%}\n";
         let literals = read(text).unwrap();
         assert_eq!(literals.variables.len(), 1);
-        assert_eq!(
-            literals.notes[0],
-            "line 1 (\"function out = f(x)\") is not executed"
-        );
+        let function = ReadingNote::StatementSkipped {
+            line: 1,
+            start: "function out = f(x)".to_owned(),
+            reason: SkippedStatement::NotExecuted,
+        };
+        assert_eq!(literals.notes[0], function);
         assert_eq!(literals.notes.len(), 6);
     }
 
@@ -388,63 +404,61 @@ mod tests {
         let reasons: Vec<_> = literals
             .variables
             .iter()
-            .map(|variable| match &variable.value {
-                Value::Opaque { why, .. } => format!("{} {why}", variable.name),
-                _ => variable.name.clone(),
-            })
+            .map(|variable| (variable.name.as_str(), unread_statement(&variable.value)))
             .collect();
+        let function = "inv".to_owned();
+        let path = "A".to_owned();
         assert_eq!(
             reasons,
             [
-                &format!("A line 1, column 5: inv(…) is not evaluated; {REMEDY}"),
-                "B line 3, column 5: A itself could not be read",
-                "C line 4, column 11: it is set within a condition or a loop, which is not executed; write its value outside",
-                "D line 8, column 1: only a part of the variable is set here; write the whole value in one statement",
-                "E line 6, column 1: only a part of the variable is set here; write the whole value in one statement",
-                "F line 7, column 1: it is the result of a function, which is not executed; write its value",
-                "G line 7, column 1: it is the result of a function, which is not executed; write its value",
-                "H",
+                ("A", Some((1, 5, MatlabFault::FunctionCall { function }))),
+                ("B", Some((3, 5, MatlabFault::CopyOfUnread { path }))),
+                ("C", Some((4, 11, MatlabFault::InBlock))),
+                ("D", Some((8, 1, MatlabFault::PartSet))),
+                ("E", Some((6, 1, MatlabFault::PartSet))),
+                ("F", Some((7, 1, MatlabFault::FunctionResult))),
+                ("G", Some((7, 1, MatlabFault::FunctionResult))),
+                ("H", None),
             ]
         );
     }
 
     #[test]
-    fn errors_give_the_place_and_the_remedy() {
-        assert_eq!(
-            why("A = [1 2; 3];"),
-            "line 1, column 5: row 2 has 1 column, but the first row has 2; complete the shorter row"
-        );
-        assert_eq!(
-            why("\nA = \n"),
-            "line 2, column 5: a value is missing here; write it"
-        );
-        assert_eq!(
-            why("A = @(x) x"),
-            format!("line 1, column 5: functions are not supported; {REMEDY}")
-        );
-        assert_eq!(
-            why("A = 'open"),
-            "line 1, column 5: the string that begins here is not closed; close it with '"
-        );
-        let part = "line 1, column 8: only a part of the variable is set here; write the whole value in one statement";
-        assert_eq!(why("A = 1; A += 2"), part);
-        assert_eq!(why("A = 1; A++"), part);
+    fn unread_values_have_their_place_and_the_reason() {
+        let row_length = MatlabFault::RowLength {
+            row: 2,
+            found: 1,
+            expected: 2,
+        };
+        assert_eq!(why("A = [1 2; 3];"), (1, 5, row_length));
+        assert_eq!(why("\nA = \n"), (2, 5, MatlabFault::MissingValue));
+        assert_eq!(why("A = @(x) x"), (1, 5, MatlabFault::FunctionHandle));
+        let open = MatlabFault::OpenString { quote: '\'' };
+        assert_eq!(why("A = 'open"), (1, 5, open));
+        assert_eq!(why("A = 1; A += 2"), (1, 8, MatlabFault::PartSet));
+        assert_eq!(why("A = 1; A++"), (1, 8, MatlabFault::PartSet));
+        let function = "x".to_owned();
         assert_eq!(
             why("A = x(1)"),
-            format!("line 1, column 5: x(…) is not evaluated; {REMEDY}")
+            (1, 5, MatlabFault::FunctionCall { function })
         );
-        assert_eq!(why("A = 3x"), "line 1, column 5: \"3x\" is not a number");
+        let text = "3x".to_owned();
+        assert_eq!(why("A = 3x"), (1, 5, MatlabFault::NotANumber { text }));
     }
 
     #[test]
     fn unclosed_and_endless_statements_are_refused() {
-        let message = |text: &str| read(text).unwrap_err().to_string();
+        let open_bracket = LineFault::OpenBracket {
+            bracket: '[',
+            column: 5,
+        };
         assert_eq!(
-            message("x = 1\nA = [1 2\n3 4\n"),
-            "variable A: line 2: the bracket [ in column 5 is never closed; close it"
+            read("x = 1\nA = [1 2\n3 4\n"),
+            Err(VariableFault::line("A", 2, open_bracket))
         );
-        assert!(
-            message("%{\nA = 1").starts_with("line 1: the comment opened here is never closed")
+        assert_eq!(
+            read("%{\nA = 1"),
+            Err(VariableFault::line("", 1, LineFault::OpenComment))
         );
         assert!(matches!(
             read(&format!("A = {}", "[".repeat(100_000))),

@@ -1,10 +1,7 @@
 //! Errors from reading a value in MATLAB or Octave statements, with their position in the text.
 
 use crate::reading_budget::VariableFault;
-
-/// Remedy in messages about unsupported statements.
-pub(super) const REMEDY: &str =
-    "write the numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
+use crate::variable_fault::matlab_fault::MatlabFault;
 
 /// Maximum nesting depth of brackets and values, which are read recursively.
 pub(super) const MOST_NESTED: usize = 64;
@@ -19,7 +16,7 @@ pub(super) struct Position {
 /// Reason why a value cannot be read.
 pub(super) enum ValueError {
     /// The value at position `at` is not supported; reading continues with other values.
-    NotUnderstood { what: String, at: Position },
+    NotUnderstood { fault: MatlabFault, at: Position },
     /// An error that ends the reading.
     Fault(VariableFault),
 }
@@ -31,9 +28,6 @@ impl From<VariableFault> for ValueError {
 }
 
 /// Returns the error that a value at a position is not supported.
-pub(super) fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, ValueError> {
-    Err(ValueError::NotUnderstood {
-        what: what.into(),
-        at,
-    })
+pub(super) fn refused<T>(fault: MatlabFault, at: Position) -> Result<T, ValueError> {
+    Err(ValueError::NotUnderstood { fault, at })
 }

@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::variables::{StructArray, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::unread::Unread;
 
 /// Variables and fields assigned so far.
 #[derive(Default)]
@@ -62,11 +64,13 @@ impl<'t> Workspace<'t> {
         budget: &ReadingBudget,
     ) -> Result<Value, ValueError> {
         let Some((name, fields)) = path.split_first() else {
-            return refused("a name is missing", place);
+            return refused(MatlabFault::MissingName, place);
         };
         let Some(&index) = self.places.get(name) else {
             return refused(
-                format!("{name} has not been assigned; write its value"),
+                MatlabFault::NotAssigned {
+                    name: (*name).to_owned(),
+                },
                 place,
             );
         };
@@ -74,12 +78,20 @@ impl<'t> Workspace<'t> {
         for field in fields {
             value = match value {
                 Value::Struct(records) if let Some([only]) = records.field(field) => only,
-                _ => return refused(format!("{} has no field {field}", path.join(".")), place),
+                _ => {
+                    let fault = MatlabFault::NoField {
+                        path: path.join("."),
+                        field: (*field).to_owned(),
+                    };
+                    return refused(fault, place);
+                }
             };
         }
         if let Value::Opaque { .. } = value {
             return refused(
-                format!("{} itself could not be read", path.join(".")),
+                MatlabFault::CopyOfUnread {
+                    path: path.join("."),
+                },
                 place,
             );
         }
@@ -114,10 +126,10 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
         }
         Value::Opaque { .. } => {}
         _ => {
-            let why = format!(
-                "field {name} is set in {words}, which cannot have fields; use \
-                different names"
-            );
+            let why = Unread::FieldOfOtherValue {
+                field: (*name).to_owned(),
+                value: words,
+            };
             *target = Value::opaque("a variable with a field", why);
         }
     }

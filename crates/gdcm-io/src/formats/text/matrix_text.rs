@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
@@ -12,6 +13,8 @@ use crate::formats::text::table_reader::read_table;
 use crate::formats::text::text_table::TextTable;
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::found_content::FoundContent;
+use crate::variable_fault::line_fault::LineFault;
 
 /// Matrices read from a text, with notes.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +22,7 @@ pub struct NamedMatrices {
     /// Matrices in the order of their appearance.
     pub variables: Vec<Variable>,
     /// Notes for the user on skipped lines and on choices.
-    pub notes: Vec<String>,
+    pub notes: Vec<ReadingNote>,
 }
 
 /// Reads a single matrix with a row on each line; skips a line with names above the rows.
@@ -37,11 +40,13 @@ pub fn read_matrix(
         .iter()
         .find(|line| cell_number(&line.text, table.decimal_comma).is_some());
     if let Some(line) = single_number {
-        let what = format!(
-            "a single number, but other rows have {}; complete the row",
-            table.columns.len()
-        );
-        return Err(VariableFault::line(name, line.number, what));
+        return Err(VariableFault::line(
+            name,
+            line.number,
+            LineFault::SingleNumber {
+                columns: table.columns.len(),
+            },
+        ));
     }
     let value = joined(&[table], 1.0, budget, name)?;
     Ok(Variable {
@@ -97,7 +102,7 @@ struct UnparsedMatrix {
 struct Reading<'m> {
     /// Matrices so far; rows belong to the last.
     matrices: Vec<UnparsedMatrix>,
-    notes: Vec<String>,
+    notes: Vec<ReadingNote>,
     budget: &'m ReadingBudget<'m>,
 }
 
@@ -152,11 +157,18 @@ impl Reading<'_> {
             return self.take_column_names(number, line);
         }
         if 2 * numbers >= words {
-            let what = format!("\"{}\" is not a row of numbers; correct it", excerpt(line));
-            return Err(VariableFault::line("", number, what));
+            return Err(VariableFault::line(
+                "",
+                number,
+                LineFault::NotARow {
+                    start: excerpt(line),
+                },
+            ));
         }
-        self.notes
-            .push(format!("line {number} (\"{}\") is skipped", excerpt(line)));
+        self.notes.push(ReadingNote::LineSkipped {
+            line: number,
+            start: excerpt(line),
+        });
         Ok(())
     }
 
@@ -199,10 +211,10 @@ impl Reading<'_> {
         if let Some(matrix) = self.matrices.last_mut() {
             matrix.labelled = true;
         }
-        self.notes.push(format!(
-            "line {number} (\"{}\") is read as column names",
-            excerpt(line)
-        ));
+        self.notes.push(ReadingNote::ColumnNames {
+            line: number,
+            start: excerpt(line),
+        });
         self.begin_part();
         Ok(())
     }
@@ -222,8 +234,7 @@ impl Reading<'_> {
     /// Adds a row to the last part of the last matrix.
     fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let Some(matrix) = self.matrices.last_mut() else {
-            let what = "numbers without a name; write the name of the matrix on a line above them";
-            return Err(VariableFault::line("", number, what));
+            return Err(VariableFault::line("", number, LineFault::UnnamedNumbers));
         };
         self.budget
             .take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
@@ -246,19 +257,20 @@ impl Reading<'_> {
             matrix.parts.retain(|part| !part.line_numbers.is_empty());
             let UnparsedMatrix { name, line, .. } = &matrix;
             if matrix.parts.is_empty() {
-                self.notes.push(format!(
-                    "line {line} (\"{name}\") is skipped: no numbers follow"
-                ));
+                self.notes.push(ReadingNote::NameWithoutNumbers {
+                    line: *line,
+                    name: name.clone(),
+                });
                 continue;
             }
             if !names.insert(name.clone()) {
                 return Err(VariableFault::Duplicate { name: matrix.name });
             }
             if matrix.scale != 1.0 {
-                self.notes.push(format!(
-                    "{name} is printed with the factor {:e}, and therefore with few digits",
-                    matrix.scale
-                ));
+                self.notes.push(ReadingNote::PrintedWithFactor {
+                    name: name.clone(),
+                    factor: matrix.scale,
+                });
             }
             let value = matrix.value(self.budget)?;
             variables.push(Variable {
@@ -269,7 +281,7 @@ impl Reading<'_> {
         if variables.is_empty() {
             return Err(VariableFault::format(
                 "matrices with names",
-                "no name with numbers below it",
+                FoundContent::NoNamedNumbers,
             ));
         }
         Ok(NamedMatrices {
@@ -294,23 +306,19 @@ impl Part {
     /// Reads the rows of the part; errors contain the line in the whole text.
     fn table(&self, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
         let table = read_table(&self.text, budget).map_err(|fault| match fault {
-            VariableFault::Line { line, what, .. } => {
-                VariableFault::line(name, self.line_number(line), what)
+            VariableFault::Line { line, fault, .. } => {
+                VariableFault::line(name, self.line_number(line), fault)
             }
             other => other,
         })?;
         match table.skipped.first() {
-            Some(line) => {
-                let what = format!(
-                    "\"{}\" is not a row like the others; complete it",
-                    excerpt(&line.text)
-                );
-                Err(VariableFault::line(
-                    name,
-                    self.line_number(line.number),
-                    what,
-                ))
-            }
+            Some(line) => Err(VariableFault::line(
+                name,
+                self.line_number(line.number),
+                LineFault::UnlikeOtherRows {
+                    start: excerpt(&line.text),
+                },
+            )),
             None => Ok(table),
         }
     }
@@ -331,13 +339,13 @@ fn joined(
 ) -> Result<Value, VariableFault> {
     let rows = tables.first().map_or(0, |table| table.lines.len());
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
-        let found = other.lines.len();
-        let what =
-            format!("parts of this matrix have {rows} and {found} rows; print it in one part");
         return Err(VariableFault::line(
             name,
             other.lines.first().copied().unwrap_or(1),
-            what,
+            LineFault::PartRows {
+                first: rows,
+                other: other.lines.len(),
+            },
         ));
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
@@ -386,12 +394,10 @@ mod matrix_text_tests {
                 value: Value::Array(expected)
             }
         );
-        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &budget)
-            .unwrap_err()
-            .to_string();
+        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &budget).unwrap_err();
         assert_eq!(
             ragged,
-            "variable A: line 1: a single number, but other rows have 2; complete the row"
+            VariableFault::line("A", 1, LineFault::SingleNumber { columns: 2 })
         );
     }
 
@@ -434,12 +440,26 @@ mod matrix_text_tests {
 
     #[test]
     fn faults_name_the_line_and_the_matrix() {
-        let message = |text: &str| read(text).unwrap_err().to_string();
-        assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
-        assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
-        assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is not a row of numbers"));
-        assert_eq!(message("A\n1\nA\n2\n"), "duplicate name \"A\"; rename one");
-        assert!(message("A =\n").contains("no name with numbers below it"));
+        let fault = |text: &str| read(text).unwrap_err();
+        assert_eq!(
+            fault("1 2\n"),
+            VariableFault::line("", 1, LineFault::UnnamedNumbers)
+        );
+        assert!(matches!(
+            fault("A =\n1 2\n\n3\n"),
+            VariableFault::Line { variable, line: 4, .. } if variable == "A"
+        ));
+        let start = "3 x".to_owned();
+        assert_eq!(
+            fault("A =\n1 2\n3 x\n"),
+            VariableFault::line("", 3, LineFault::NotARow { start })
+        );
+        let name = "A".to_owned();
+        assert_eq!(fault("A\n1\nA\n2\n"), VariableFault::Duplicate { name });
+        assert_eq!(
+            fault("A =\n"),
+            VariableFault::format("matrices with names", FoundContent::NoNamedNumbers)
+        );
     }
 
     proptest! {

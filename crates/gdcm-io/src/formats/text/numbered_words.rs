@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::formats::reading_note::{NamedColumn, ReadingNote};
 use crate::formats::text::cell_number::is_number;
 use crate::formats::text::clock_time::clock_s;
 use crate::formats::text::lines::{comment, lines};
@@ -14,17 +15,15 @@ const SAMPLE: usize = 200;
 /// Maximum number of distinct words that are numbered in a column; a column with more is no set of
 /// labels.
 const MOST_WORDS: usize = 500;
-/// Maximum number of words listed in a note.
-const SHOWN: usize = 12;
 /// Length of a day \[s\].
 const DAY_S: f64 = 86_400.0;
 
 /// A text in whose columns numbers have replaced words and times of day.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct NumberedText {
     pub text: String,
     /// Notes for the user: the number of each word, and the columns with times of day.
-    pub notes: Vec<String>,
+    pub notes: Vec<ReadingNote>,
 }
 
 /// Kind of data in a column.
@@ -156,34 +155,30 @@ impl Numbering {
         self.separator.line(cells.into_iter())
     }
 
-    fn notes(&self) -> Vec<String> {
+    fn notes(&self) -> Vec<ReadingNote> {
         let mut notes = Vec::new();
         for (index, column) in self.columns.iter().enumerate() {
-            let name = self.column_name(index);
+            let place = self.column_place(index);
             match column.kind {
                 Kind::Numbers => {}
-                Kind::Clock => notes.push(format!(
-                    "{name} has times of day, which are read as seconds since the first"
-                )),
+                Kind::Clock => notes.push(ReadingNote::TimesOfDay { column: place }),
                 Kind::Words if column.words.len() > MOST_WORDS => {
-                    notes.push(format!(
-                        "{name} has too many different words and is ignored"
-                    ));
+                    notes.push(ReadingNote::TooManyWords { column: place });
                 }
-                Kind::Words => notes.push(format!(
-                    "{name} has words, which are numbered: {}",
-                    column.word_list()
-                )),
+                Kind::Words => notes.push(ReadingNote::NumberedWords {
+                    column: place,
+                    words: column.numbered_words(),
+                }),
             }
         }
         notes
     }
 
-    fn column_name(&self, index: usize) -> String {
+    fn column_place(&self, index: usize) -> NamedColumn {
         let heading = self.heading.as_ref().and_then(|cells| cells.get(index));
         match heading {
-            Some(name) if !name.is_empty() => format!("column \"{name}\""),
-            _ => format!("column {}", index + 1),
+            Some(name) if !name.is_empty() => NamedColumn::Name(name.clone()),
+            _ => NamedColumn::Number(index + 1),
         }
     }
 }
@@ -227,18 +222,10 @@ impl Column {
     }
 
     /// Lists the first words with their numbers: "1 is SAS, 2 is ATT".
-    fn word_list(&self) -> String {
+    fn numbered_words(&self) -> Vec<String> {
         let mut words: Vec<_> = self.words.iter().collect();
         words.sort_unstable_by_key(|(_, number)| **number);
-        let mut shown: Vec<String> = words
-            .iter()
-            .take(SHOWN)
-            .map(|(word, number)| format!("{number} is {word}"))
-            .collect();
-        if words.len() > SHOWN {
-            shown.push("…".to_owned());
-        }
-        shown.join(", ")
+        words.into_iter().map(|(word, _)| word.clone()).collect()
     }
 }
 
@@ -323,10 +310,11 @@ mod tests {
             found.text,
             "t,mode,P,Q\n0,1,1,2\n0.1,1,3,4\n0.2,2,5,6\n0.3,1,7,8\n\n"
         );
-        assert_eq!(
-            found.notes,
-            ["column \"mode\" has words, which are numbered: 1 is SAS, 2 is ATT, on"]
-        );
+        let numbered = ReadingNote::NumberedWords {
+            column: NamedColumn::Name("mode".to_owned()),
+            words: vec!["SAS".to_owned(), "ATT, on".to_owned()],
+        };
+        assert_eq!(found.notes, [numbered]);
         let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(table.columns[1], [1.0, 1.0, 2.0, 1.0]);
     }

@@ -2,6 +2,8 @@
 
 use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::column_place::ColumnPlace;
+use crate::variable_fault::line_fault::LineFault;
 
 /// A frequency response in columns of a table; its frequencies are in another column, which all
 /// responses of the table share.
@@ -87,21 +89,21 @@ impl RecognisedResponse {
             for column in columns {
                 if !number(column).is_finite() {
                     let place = column_place(table, column);
-                    let what = format!(
-                        "{place} has no finite number; complete it, or also empty the other part \
-                        of the complex number"
-                    );
-                    return Err(VariableFault::line("", line, what));
+                    return Err(VariableFault::line(
+                        "",
+                        line,
+                        LineFault::HalfNumber { place },
+                    ));
                 }
             }
             let (re, im) = self.parts.complex(table, row);
             if !(re.is_finite() && im.is_finite()) {
                 let place = column_place(table, columns[0]);
-                let what = format!(
-                    "{place} is too large for a magnitude; if it is in dB, write \
-                    [dB] in the heading"
-                );
-                return Err(VariableFault::line("", line, what));
+                return Err(VariableFault::line(
+                    "",
+                    line,
+                    LineFault::Magnitude { place },
+                ));
             }
             points.omega.push(omega);
             points.re.push(re);
@@ -162,9 +164,9 @@ pub(super) fn column_name(table: &TextTable, column: usize) -> String {
 }
 
 /// Describes a column for messages: its number, counted from 1, and its name.
-pub(super) fn column_place(table: &TextTable, column: usize) -> String {
-    match table.name(column) {
-        Some(name) => format!("column {} (\"{name}\")", column + 1),
-        None => format!("column {}", column + 1),
+pub(super) fn column_place(table: &TextTable, column: usize) -> ColumnPlace {
+    ColumnPlace {
+        number: column + 1,
+        name: table.name(column).map(str::to_owned),
     }
 }

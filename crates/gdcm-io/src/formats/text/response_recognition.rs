@@ -10,6 +10,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::formats::reading_note::{ColumnReading, ReadingNote};
 use crate::formats::text::column_meaning::ColumnMeaning;
 use crate::formats::text::quantity_words::{KnownUnit, Quantity};
 use crate::formats::text::response_columns::{
@@ -18,6 +19,7 @@ use crate::formats::text::response_columns::{
 use crate::formats::text::response_label::ResponseLabel;
 use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
+use crate::variable_fault::found_content::ResponseLack;
 
 /// Maximum difference between the rectangular and the polar form of a response, relative to its
 /// magnitude; tables are printed with few digits.
@@ -40,7 +42,7 @@ pub(super) struct Recognition<'t> {
     table: &'t TextTable,
     meanings: Vec<ColumnMeaning>,
     /// Notes for the user: each choice with its reason.
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<ReadingNote>,
     /// Columns with a missing unit that the user must state.
     pub(super) unsaid: Vec<UnsaidUnit>,
     /// Names of unused columns.
@@ -69,7 +71,7 @@ impl<'t> Recognition<'t> {
             .iter()
             .position(|meaning| meaning.quantity == Some(Quantity::Frequency));
         let Some(column) = named else {
-            return Err(unrecognised("no frequency"));
+            return Err(unrecognised(ResponseLack::Frequency));
         };
         let (factor, unit) = match self.meanings[column].unit {
             Some(KnownUnit::Hertz) => (TAU, "Hz"),
@@ -89,17 +91,18 @@ impl<'t> Recognition<'t> {
             Some(unit) => format!(", its unit is {unit}"),
             None => ", which implies the unit".to_owned(),
         };
-        self.note(column, &format!("the frequency in {unit}"), &reason);
+        self.note(column, ColumnReading::Frequency { unit }, &reason);
         Ok(FrequencyColumn { column, factor })
     }
 
     /// Notes how a column is interpreted and for which reason; `more` is appended to the reason.
-    fn note(&mut self, column: usize, interpretation: &str, more: &str) {
-        let place = column_place(self.table, column);
-        let reason = &self.meanings[column].reason;
-        self.notes.push(format!(
-            "{place} is read as {interpretation}: {reason}{more}"
-        ));
+    fn note(&mut self, column: usize, reading: ColumnReading, more: &str) {
+        let reason = format!("{}{more}", self.meanings[column].reason);
+        self.notes.push(ReadingNote::ReadAs {
+            place: column_place(self.table, column),
+            reading,
+            reason,
+        });
     }
 
     /// Returns the responses in the order of their first columns.
@@ -107,7 +110,7 @@ impl<'t> Recognition<'t> {
         let mut responses = Vec::new();
         for group in self.groups() {
             if let Some(column) = group.column(Quantity::Error) {
-                self.note(column, "a standard deviation, which is not used", "");
+                self.note(column, ColumnReading::StandardDeviation, "");
                 self.unused.push(column_name(self.table, column));
             }
             let Some(parts) = self.parts(&group) else {
@@ -136,8 +139,8 @@ impl<'t> Recognition<'t> {
             && let Some(im) = group.column(Quantity::Imaginary)
         {
             let parts = ResponseParts::Rectangular { re, im };
-            self.note(re, "real part", "");
-            self.note(im, "imaginary part", "");
+            self.note(re, ColumnReading::Real, "");
+            self.note(im, ColumnReading::Imaginary, "");
             if let Some(columns) = polar {
                 let polar = self.read_polar(columns);
                 // Do not ask for missing units of the polar form, which serves only as a check.
@@ -160,10 +163,7 @@ impl<'t> Recognition<'t> {
                 continue;
             }
             let place = column_place(self.table, known.column);
-            self.notes.push(format!(
-                "{place} is ignored: the matching column is missing (real and \
-                    imaginary part, or magnitude and phase, are both needed)"
-            ));
+            self.notes.push(ReadingNote::HalfResponse { place });
             self.unused.push(column_name(self.table, known.column));
         }
     }
@@ -180,23 +180,23 @@ impl<'t> Recognition<'t> {
             });
         }
         let mut factor = 1.0;
-        let mut interpretation = "coherence";
+        let mut reading = ColumnReading::Coherence;
         let mut reason = "";
         let numbers = &self.table.columns[column];
         if unit == Some(KnownUnit::Percent) {
             factor = 0.01;
-            interpretation = "coherence in percent";
+            reading = ColumnReading::CoherenceInPercent;
             reason = ", its unit is %";
         } else if numbers.iter().any(|value| *value > LARGEST_COHERENCE) {
             factor = 0.01;
-            interpretation = "coherence in percent";
+            reading = ColumnReading::CoherenceInPercent;
             reason = ", some of its numbers are above 1";
         }
         let is_gamma = unit == Some(KnownUnit::Gamma);
         if is_gamma {
             reason = ", its unit is γ, so it is squared";
         }
-        self.note(column, interpretation, reason);
+        self.note(column, reading, reason);
         CoherenceColumn {
             column,
             factor,
@@ -210,8 +210,7 @@ impl<'t> Recognition<'t> {
         for (column, meaning) in self.meanings.iter().enumerate() {
             let Some(quantity) = meaning.quantity else {
                 let place = column_place(self.table, column);
-                self.notes
-                    .push(format!("{place} is ignored: its name is not recognised"));
+                self.notes.push(ReadingNote::UnknownName { place });
                 self.unused.push(column_name(self.table, column));
                 continue;
             };
@@ -262,16 +261,16 @@ impl<'t> Recognition<'t> {
             }),
         }
         if unsaid.is_empty() {
-            let interpretation = if in_db {
-                "magnitude in dB"
+            let reading = if in_db {
+                ColumnReading::MagnitudeInDb
             } else {
-                "absolute magnitude"
+                ColumnReading::AbsoluteMagnitude
             };
-            self.note(magnitude, interpretation, &format!(", {reason}"));
+            self.note(magnitude, reading, &format!(", {reason}"));
             let unit = if in_degrees { "deg" } else { "rad" };
             self.note(
                 phase,
-                &format!("phase in {unit}"),
+                ColumnReading::Phase { unit },
                 &format!(", its unit is {unit}"),
             );
         }
@@ -308,18 +307,15 @@ impl<'t> Recognition<'t> {
             difference > FORM_TOLERANCE * re.hypot(im).max(polar_re.hypot(polar_im))
         });
         let [magnitude, phase] = polar.columns();
-        let columns = format!(
-            "magnitude and phase in columns {} and {}",
-            magnitude + 1,
-            phase + 1
-        );
-        let used_parts = "the real and imaginary parts, which are used";
+        let magnitude = magnitude + 1;
+        let phase = phase + 1;
         self.notes.push(match differing {
-            None => format!("{columns} agree with {used_parts}"),
-            Some(row) => format!(
-                "{columns} differ from {used_parts} (line {})",
-                table.lines[row]
-            ),
+            None => ReadingNote::FormsAgree { magnitude, phase },
+            Some(row) => ReadingNote::FormsDiffer {
+                magnitude,
+                phase,
+                line: table.lines[row],
+            },
         });
     }
 }

@@ -4,8 +4,7 @@
 //! 2. Take each line as a row, or keep it as skipped.
 //! 3. Find names and units in the lines above the first row (`heading.rs`).
 
-use gdcm_model::number_format::counted;
-
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::heading::Heading;
@@ -15,6 +14,8 @@ use crate::formats::text::lines::{NumberedLine, comment, excerpt, is_rule, lines
 use crate::formats::text::separator::Separator;
 use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::found_content::FoundContent;
+use crate::variable_fault::line_fault::LineFault;
 
 /// Name of the expected contents in error messages.
 const EXPECTED: &str = "a table of numbers in columns";
@@ -38,8 +39,10 @@ pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, Varia
 /// Returns the error for a text without a row of numbers.
 fn no_numbers(text: &str) -> VariableFault {
     let found = match excerpt(text).as_str() {
-        "" => "an empty file".to_owned(),
-        start => format!("no row of numbers (the text begins with \"{start}\")"),
+        "" => FoundContent::EmptyFile,
+        start => FoundContent::NoRow {
+            start: start.to_owned(),
+        },
     };
     VariableFault::format(EXPECTED, found)
 }
@@ -54,7 +57,7 @@ struct Reading<'m> {
     /// Line number of each row.
     lines: Vec<usize>,
     skipped: Vec<NumberedLine>,
-    notes: Vec<String>,
+    notes: Vec<ReadingNote>,
 }
 
 impl<'m> Reading<'m> {
@@ -92,9 +95,8 @@ impl<'m> Reading<'m> {
         if self.lines.is_empty() {
             self.take_line_before_rows(number, line)
         } else if self.repeats_heading(line) {
-            self.notes.push(format!(
-                "line {number} repeats a heading: the rows after it continue the table"
-            ));
+            self.notes
+                .push(ReadingNote::RepeatedHeading { line: number });
             self.skip_line(number, line)
         } else {
             self.take_row(number, line)
@@ -107,11 +109,10 @@ impl<'m> Reading<'m> {
             Some(shape) if self.layout.fits(shape) => self.take_row(number, line),
             // A single number in a wider table is no row: it may be a number of rows or a date.
             Some(RowShape { width: 1, .. }) => {
-                let columns = self.layout.columns;
-                self.notes.push(format!(
-                    "line {number} is skipped: it holds one number, but the table has {columns} \
-                    columns"
-                ));
+                self.notes.push(ReadingNote::SingleNumber {
+                    line: number,
+                    columns: self.layout.columns,
+                });
                 self.skip_line(number, line)
             }
             Some(_) => self.take_row(number, line),
@@ -183,8 +184,8 @@ impl<'m> Reading<'m> {
                 return Err(self.wrong_width(number, line));
             };
             let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
-                let what = self.no_number(index, &cell, line);
-                return Err(VariableFault::line("", number, what));
+                let fault = self.no_number(index, &cell, line);
+                return Err(VariableFault::line("", number, fault));
             };
             ends_empty = cell.trim().is_empty();
             column.push(value);
@@ -205,29 +206,21 @@ impl<'m> Reading<'m> {
     }
 
     /// Describes a cell that is not a number, or a line without numbers, with a remedy.
-    fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
+    fn no_number(&self, index: usize, cell: &str, line: &str) -> LineFault {
         /// Maximum number of cells examined in a line.
         const EXAMINED: usize = 20;
         let decimal_comma = self.layout.decimal_comma;
         let mut cells = self.layout.cells(line).take(EXAMINED);
         if cells.all(|cell| cell_number(&cell, decimal_comma).is_none()) {
-            let start = excerpt(line);
-            return format!(
-                "text among the rows (\"{start}\"); put # before it, or split the file if another \
-                table follows"
-            );
+            return LineFault::TextAmongRows {
+                start: excerpt(line),
+            };
         }
-        let mark = if decimal_comma && cell.contains('.') {
-            " (the decimal mark is the comma)"
-        } else {
-            ""
-        };
-        format!(
-            "column {} holds \"{}\", which is not a number{mark}; correct it, or leave the cell \
-            empty",
-            index + 1,
-            excerpt(cell)
-        )
+        LineFault::NotANumber {
+            column: index + 1,
+            cell: excerpt(cell),
+            is_decimal_comma: decimal_comma && cell.contains('.'),
+        }
     }
 
     /// Returns the error for a line with the wrong number of columns.
@@ -241,16 +234,14 @@ impl<'m> Reading<'m> {
         if self.layout.trailing && ends_empty {
             found -= 1;
         }
-        let expected = self.layout.columns;
-        let separator = self.layout.separator.words();
         VariableFault::line(
             "",
             number,
-            format!(
-                "{}, but the table has {expected} (separated by {separator}); \
-                complete the line, or split the file where the columns change",
-                counted(found, "column")
-            ),
+            LineFault::ColumnCount {
+                found,
+                expected: self.layout.columns,
+                separator: self.layout.separator.words(),
+            },
         )
     }
 
@@ -262,9 +253,7 @@ impl<'m> Reading<'m> {
         let heading = Heading::find(self.skipped_above_rows(), self.layout);
         self.notes.extend(heading.notes);
         if heading.names.is_none() && self.may_have_decimal_commas() {
-            let note = "each line has one comma, which is read as the separator of two columns; \
-                decimal commas would look the same";
-            self.notes.push(note.to_owned());
+            self.notes.push(ReadingNote::CommaSeparates);
         }
         Ok(TextTable {
             names: heading.names,
@@ -300,6 +289,14 @@ mod columns_tests {
 
     fn read(text: &str) -> Result<TextTable, VariableFault> {
         read_table(text, &ReadingBudget::new(1 << 24))
+    }
+
+    /// Returns the line of an error, and the fault in it.
+    fn line_fault(text: &str) -> (usize, LineFault) {
+        match read(text) {
+            Err(VariableFault::Line { line, fault, .. }) => (line, fault),
+            other => panic!("{other:?}"),
+        }
     }
 
     fn missing(table: &TextTable) -> usize {
@@ -348,8 +345,14 @@ mod columns_tests {
         let table = table.with_headings(&said).unwrap();
         assert_eq!((table.headings(), table.columns.len()), (said.to_vec(), 3));
         assert_eq!(table.units[2].as_deref(), Some("deg"));
-        let fault = table.with_headings(&said[..2]).unwrap_err().to_string();
-        assert!(fault.contains("2 headings for 3 columns"), "{fault}");
+        let found = FoundContent::HeadingCount {
+            headings: 2,
+            columns: 3,
+        };
+        assert!(matches!(
+            table.with_headings(&said[..2]),
+            Err(VariableFault::Format { found: reported, .. }) if reported == found
+        ));
     }
 
     #[test]
@@ -372,74 +375,74 @@ mod columns_tests {
     fn fortran_writes_a_count_and_exponents_with_d() {
         let table = read("2\n 1.0D+03 -2.0D-01\n 2.0D+03  ****\n").unwrap();
         assert_eq!(table.columns[0], [1000.0, 2000.0]);
-        assert_eq!(
-            table.notes[0],
-            "line 1 is skipped: it holds one number, but the table has 2 columns"
-        );
+        let skipped = ReadingNote::SingleNumber {
+            line: 1,
+            columns: 2,
+        };
+        assert_eq!(table.notes[0], skipped);
         assert_eq!(missing(&table), 1);
     }
 
     #[test]
     fn faults_name_the_line() {
-        let message = |text: &str| read(text).unwrap_err().to_string();
+        let column_count = |found, expected, separator| LineFault::ColumnCount {
+            found,
+            expected,
+            separator,
+        };
         assert_eq!(
-            message("a,b,c\n1,2,3\n4,5\n"),
-            "line 3: 2 columns, but the table has 3 (separated by commas); \
-             complete the line, or split the file where the columns change"
+            line_fault("a,b,c\n1,2,3\n4,5\n"),
+            (3, column_count(2, 3, "commas"))
         );
+        let not_a_number = |column, cell: &str, is_decimal_comma| LineFault::NotANumber {
+            column,
+            cell: cell.to_owned(),
+            is_decimal_comma,
+        };
         assert_eq!(
-            message("1,2,3\n4,x,6\n"),
-            "line 2: column 2 holds \"x\", which is not a number; correct it, or leave the cell empty"
-        );
-        assert_eq!(
-            message("1,5;2\n1.5;3\n1,6;2\n"),
-            "line 2: column 1 holds \"1.5\", which is not a number (the decimal mark is the comma); \
-             correct it, or leave the cell empty"
-        );
-        assert!(
-            message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 column, but the table has 2")
-        );
-        assert_eq!(
-            message("1,2\n3,4\nt,x\n"),
-            "line 3: text among the rows (\"t,x\"); put # before it, or split the file if another table follows"
+            line_fault("1,2,3\n4,x,6\n"),
+            (2, not_a_number(2, "x", false))
         );
         assert_eq!(
-            message(" \n"),
-            "expected a table of numbers in columns, found an empty file"
+            line_fault("1,5;2\n1.5;3\n1,6;2\n"),
+            (2, not_a_number(1, "1.5", true))
         );
-        assert!(
-            message("hello world")
-                .contains("no row of numbers (the text begins with \"hello world\")")
+        assert_eq!(
+            line_fault("t;x;\n1;2;\n3;4;\n5;\n"),
+            (4, column_count(1, 2, "semicolons"))
         );
+        let text = LineFault::TextAmongRows {
+            start: "t,x".to_owned(),
+        };
+        assert_eq!(line_fault("1,2\n3,4\nt,x\n"), (3, text));
+        let found = |text: &str| match read(text) {
+            Err(VariableFault::Format { found, .. }) => found,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(found(" \n"), FoundContent::EmptyFile);
+        let start = "hello world".to_owned();
+        assert_eq!(found("hello world"), FoundContent::NoRow { start });
     }
 
     #[test]
     fn headings_in_the_middle_are_skipped_with_a_note() {
         let table = read("t,x\n1,2\n3,4\nt,x\n1,5\n").unwrap();
         assert_eq!(table.columns, [[1.0, 3.0, 1.0], [2.0, 4.0, 5.0]]);
-        assert!(
-            table
-                .notes
-                .iter()
-                .any(|note| note.starts_with("line 4 repeats a heading"))
-        );
+        let repeated = ReadingNote::RepeatedHeading { line: 4 };
+        assert!(table.notes.contains(&repeated));
         assert!(read("t,x\n1,2\nt,y\n").is_err());
     }
 
     #[test]
     fn a_slip_in_the_first_row_is_no_heading() {
-        assert!(
-            read("w,m,p\n1,2,x\n4,5,6\n7,8,9")
-                .unwrap_err()
-                .to_string()
-                .starts_with("line 2: column 3")
-        );
-        assert!(
-            read("1,2\n4,5,6\n7,8,9")
-                .unwrap_err()
-                .to_string()
-                .starts_with("line 1: 2 columns")
-        );
+        assert!(matches!(
+            line_fault("w,m,p\n1,2,x\n4,5,6\n7,8,9"),
+            (2, LineFault::NotANumber { column: 3, .. })
+        ));
+        assert!(matches!(
+            line_fault("1,2\n4,5,6\n7,8,9"),
+            (1, LineFault::ColumnCount { found: 2, .. })
+        ));
     }
 
     #[test]

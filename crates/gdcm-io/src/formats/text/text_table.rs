@@ -1,11 +1,11 @@
 //! Table of numbers in columns, with the names and units that a text or the rules give.
 
-use gdcm_model::number_format::counted;
-
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::heading_units::name_and_unit;
 use crate::formats::text::lines::NumberedLine;
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::found_content::FoundContent;
 
 /// Table of numbers in columns.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct TextTable {
     /// Lines that are not rows, such as comments and headings.
     pub skipped: Vec<NumberedLine>,
     /// Notes for the user on how ambiguous parts were read.
-    pub notes: Vec<String>,
+    pub notes: Vec<ReadingNote>,
 }
 
 impl TextTable {
@@ -55,11 +55,10 @@ impl TextTable {
     /// [`VariableFault`] if the number of headings differs from the number of columns.
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
-            let found = format!(
-                "{} for {}",
-                counted(headings.len(), "heading"),
-                counted(self.columns.len(), "column")
-            );
+            let found = FoundContent::HeadingCount {
+                headings: headings.len(),
+                columns: self.columns.len(),
+            };
             return Err(VariableFault::format("one heading for each column", found));
         }
         let mut names = Vec::with_capacity(headings.len());
@@ -70,8 +69,7 @@ impl TextTable {
             self.units.push(unit);
         }
         self.names = Some(names);
-        self.notes
-            .push("the column headings are taken from the rules".to_owned());
+        self.notes.push(ReadingNote::HeadingsFromRules);
         Ok(self)
     }
 }

@@ -3,6 +3,9 @@
 use crate::formats::text::response_columns::column_place;
 use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::found_content::FoundContent;
+use crate::variable_fault::found_content::MissingUnit;
+use crate::variable_fault::found_content::ResponseLack;
 
 /// A column whose unit is not given and may be either of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,26 +25,25 @@ pub(crate) struct Unrecognised {
 }
 
 /// Returns the error for a table that is not recognised as a frequency response, with a remedy.
-pub(super) fn unrecognised(found: &str) -> Unrecognised {
-    let found = format!(
-        "a table with {found} among its columns; name each column in the first line, with \
-        --headings, or under \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \
-        \"phase Q/LON [deg]\""
-    );
+pub(super) fn unrecognised(lacking: ResponseLack) -> Unrecognised {
     Unrecognised {
-        fault: VariableFault::format("a frequency response in columns", found),
+        fault: VariableFault::format(
+            "a frequency response in columns",
+            FoundContent::NotAResponse { lacking },
+        ),
         unsaid: Vec::new(),
     }
 }
 
 /// Returns the error that asks for units that are neither given nor evident.
 pub(super) fn units_missing(table: &TextTable, unsaid: Vec<UnsaidUnit>) -> Unrecognised {
-    let mut questions = Vec::with_capacity(unsaid.len());
+    let mut missing = Vec::with_capacity(unsaid.len());
     for UnsaidUnit { column, units } in &unsaid {
-        let place = column_place(table, *column);
-        questions.push(format!("{place} (write [{}] or [{}])", units[0], units[1]));
+        missing.push(MissingUnit {
+            place: column_place(table, *column),
+            units: *units,
+        });
     }
-    let Unrecognised { fault, .. } =
-        unrecognised(&format!("no unit of {}", questions.join(", of ")));
+    let Unrecognised { fault, .. } = unrecognised(ResponseLack::Units(missing));
     Unrecognised { fault, unsaid }
 }

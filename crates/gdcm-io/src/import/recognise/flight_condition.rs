@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::names::RowRole;
-use gdcm_model::units::number;
 
+use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::values::{array_of, scalar_of, texts_of};
 use crate::formats::variables::Value;
@@ -50,7 +50,7 @@ impl Page {
 /// # Errors
 /// The reason if the length of a list differs from the number of models, or a value contradicts an
 /// enclosing record.
-pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
+pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, RecognitionFault> {
     let condition = match quantity(record, CONDITIONS, page)? {
         Some(id) if id.fract() == 0.0 && id.abs() < GREATEST_CONDITION => Some(id as i64),
         _ => None,
@@ -70,7 +70,11 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String>
 ///
 /// # Errors
 /// The reason if different values are given.
-fn quantity(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+fn quantity(
+    record: &Record<'_>,
+    names: &[&'static str],
+    page: Page,
+) -> Result<Option<f64>, RecognitionFault> {
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
         let page = if level == 0 { page } else { Page::ONLY };
@@ -79,12 +83,10 @@ fn quantity(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f6
         for value in [beside, inside].into_iter().flatten() {
             match known {
                 Some(known) if known != value => {
-                    return Err(format!(
-                        "{}: contradictory values {} and {} for the same model; correct one",
-                        names[0],
-                        number(known),
-                        number(value)
-                    ));
+                    return Err(RecognitionFault::Contradiction {
+                        name: names[0],
+                        values: [known, value],
+                    });
                 }
                 _ => known = Some(value),
             }
@@ -94,7 +96,11 @@ fn quantity(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f6
 }
 
 /// Returns the number in a field; if the field is a list, its entry for the model.
-fn number_beside(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+fn number_beside(
+    record: &Record<'_>,
+    names: &[&str],
+    page: Page,
+) -> Result<Option<f64>, RecognitionFault> {
     let Some(field) = record.find(names) else {
         return Ok(None);
     };
@@ -107,12 +113,11 @@ fn number_beside(record: &Record<'_>, names: &[&str], page: Page) -> Result<Opti
         [] => return Ok(None),
         _ if page.count == 1 => return Ok(None),
         values => {
-            return Err(format!(
-                "{}: {} numbers for {} models; write one for each",
-                field.name,
-                values.len(),
-                page.count
-            ));
+            return Err(RecognitionFault::NumberForEachModel {
+                name: field.name.to_owned(),
+                found: values.len(),
+                models: page.count,
+            });
         }
     };
     if !value.is_finite() {
@@ -124,7 +129,7 @@ fn number_beside(record: &Record<'_>, names: &[&str], page: Page) -> Result<Opti
 
 /// Returns a quantity from a struct that holds the flight condition: `trim.airspeed_kt`,
 /// `condition.id`.
-fn number_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
+fn number_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, RecognitionFault> {
     for keys in CONDITION_STRUCTS {
         let Some(field) = record.find(keys) else {
             continue;

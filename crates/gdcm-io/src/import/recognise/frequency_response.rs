@@ -8,11 +8,13 @@ use gdcm_model::dataset::model::Origin;
 use super::delays::refuse_delays;
 use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of};
+use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::response_frequencies::{Frequencies, has_several_frequencies};
 use super::state_space::source_of;
 use super::values::array_of;
 use crate::files::model_collection::bare_draft;
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::variables::Array;
 
 /// Names of complex responses. python-control uses `frdata` and, in earlier versions, `fresp`.
@@ -47,7 +49,10 @@ pub(super) fn is_response(record: &Record<'_>) -> bool {
 }
 
 /// Reads the measured response in `record`.
-pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+pub(super) fn response(
+    record: &Record<'_>,
+    variable: &str,
+) -> Result<FoundModel, RecognitionFault> {
     refuse_delays(record)?;
     let frequencies = Frequencies::read(record)?;
     let stored = StoredResponse::find(record)?;
@@ -70,7 +75,7 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
     };
     let mut notes = Vec::new();
     if frequencies.is_hertz {
-        notes.push("frequencies in Hz".to_owned());
+        notes.push(ReadingNote::FrequenciesInHertz.to_string());
     }
     Ok(FoundModel {
         draft: ModelDraft {
@@ -113,7 +118,7 @@ struct StoredResponse<'v> {
 }
 
 impl<'v> StoredResponse<'v> {
-    fn find(record: &Record<'v>) -> Result<Self, String> {
+    fn find(record: &Record<'v>) -> Result<Self, RecognitionFault> {
         // Look up the parts even if there are complex values, so that their fields count as used.
         let parts = real_and_imaginary(record);
         if let Some(array) = complex_array(record) {
@@ -129,7 +134,7 @@ impl<'v> StoredResponse<'v> {
                 im: &im.re,
                 shape: &re.shape,
             }),
-            _ => Err("real and imaginary parts have different dimensions".to_owned()),
+            _ => Err(RecognitionFault::PartsDiffer),
         }
     }
 }
@@ -143,24 +148,22 @@ fn coherence_of(
     record: &Record<'_>,
     stored: &StoredResponse<'_>,
     layout: &ResponseLayout,
-) -> Result<Option<ResponseArray>, String> {
+) -> Result<Option<ResponseArray>, RecognitionFault> {
     if let Some(array) = record.get(COHERENCES).and_then(array_of)
         && !array.is_empty()
     {
         if array.len() != stored.re.len() {
-            return Err(format!(
-                "coherence: {} numbers for the {} of the response; write one for each output, input and frequency, or leave it out",
-                array.len(),
-                stored.re.len()
-            ));
+            return Err(RecognitionFault::CoherenceCount {
+                found: array.len(),
+                expected: stored.re.len(),
+            });
         }
         return Ok(Some(layout.ordered("coherence", &array.re)?));
     }
     match record.find(GAMMAS) {
-        Some(field) => Err(format!(
-            "{}: may be γ or γ²; call γ² gamma2 or coherence, and square γ first",
-            field.name
-        )),
+        Some(field) => Err(RecognitionFault::Gamma {
+            name: field.name.to_owned(),
+        }),
         None => Ok(None),
     }
 }
@@ -181,7 +184,7 @@ struct ResponseLayout {
 impl ResponseLayout {
     /// Determines the layout of a response with `count` frequencies: the frequency is the last
     /// index, as in MATLAB, or the first, as in NumPy. A single response may be a row or a column.
-    fn new(shape: &[usize], count: usize) -> Result<Self, String> {
+    fn new(shape: &[usize], count: usize) -> Result<Self, RecognitionFault> {
         match *shape {
             [outputs, inputs, last] if last == count => Ok(Self {
                 outputs,
@@ -207,19 +210,20 @@ impl ResponseLayout {
                 input_stride: 0,
                 frequency_stride: 1,
             }),
-            _ => {
-                let found: Vec<String> = shape.iter().map(usize::to_string).collect();
-                Err(format!(
-                    "the response: expected outputs x inputs x {count} frequencies, found {}",
-                    found.join(" x ")
-                ))
-            }
+            _ => Err(RecognitionFault::ResponseShape {
+                frequencies: count,
+                found: shape.to_vec(),
+            }),
         }
     }
 
     /// Reorders values to outputs x inputs x frequencies, with the frequency index fastest; rejects
     /// values that are not finite.
-    fn ordered(&self, name: &str, values: &[f64]) -> Result<ResponseArray, String> {
+    fn ordered(
+        &self,
+        name: &'static str,
+        values: &[f64],
+    ) -> Result<ResponseArray, RecognitionFault> {
         let mut ordered = Vec::with_capacity(values.len());
         for output in 0..self.outputs {
             for input in 0..self.inputs {
@@ -230,10 +234,10 @@ impl ResponseLayout {
             }
         }
         if let Some(at) = ordered.iter().position(|value| !value.is_finite()) {
-            return Err(format!(
-                "{name}, frequency {}: expected a finite number",
-                at % self.count + 1
-            ));
+            return Err(RecognitionFault::ResponseNotFinite {
+                name,
+                frequency: at % self.count + 1,
+            });
         }
         Ok(ResponseArray {
             shape: [self.outputs, self.inputs, self.count],

@@ -4,6 +4,7 @@ use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::signed_name::parse_direction;
 
+use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::values::{first_text_of, texts_of};
 use crate::formats::variables::{StructArray, Value};
@@ -46,12 +47,18 @@ const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
 /// Returns the labels of `count` inputs.
-pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
+pub(super) fn inputs_of(
+    record: &Record<'_>,
+    count: usize,
+) -> Result<Vec<ChannelLabel>, RecognitionFault> {
     labels(record, ChannelSide::Input, count)
 }
 
 /// Returns the labels of `count` outputs.
-pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
+pub(super) fn outputs_of(
+    record: &Record<'_>,
+    count: usize,
+) -> Result<Vec<ChannelLabel>, RecognitionFault> {
     labels(record, ChannelSide::Output, count)
 }
 
@@ -78,7 +85,7 @@ fn labels(
     record: &Record<'_>,
     side: ChannelSide,
     count: usize,
-) -> Result<Vec<ChannelLabel>, String> {
+) -> Result<Vec<ChannelLabel>, RecognitionFault> {
     let names = list_of_labels(record, side.pick(INPUT_NAMES, OUTPUT_NAMES), side, count)?;
     let units = list_of_labels(record, side.pick(INPUT_UNITS, OUTPUT_UNITS), side, count)?;
     let names = names.unwrap_or_else(|| vec![String::new(); count]);
@@ -99,7 +106,7 @@ fn list_of_labels(
     keys: &[&str],
     side: ChannelSide,
     count: usize,
-) -> Result<Option<Vec<String>>, String> {
+) -> Result<Option<Vec<String>>, RecognitionFault> {
     for (level, record) in record.with_outer().enumerate() {
         let Some(field) = record.find(keys) else {
             continue;
@@ -121,10 +128,12 @@ fn list_of_labels(
             record.mark_used(name);
             return Ok(Some(texts));
         } else if level == 0 {
-            return Err(format!(
-                "{name}: {} entries for the {count} {side}s of the model; write one for each, in the order of the matrices",
-                texts.len()
-            ));
+            return Err(RecognitionFault::LabelCount {
+                name: name.to_owned(),
+                side,
+                found: texts.len(),
+                expected: count,
+            });
         }
     }
     Ok(None)
@@ -132,7 +141,7 @@ fn list_of_labels(
 
 /// Returns the labels in a list of strings, or of objects with a name and a unit as in a dataset
 /// file; `None` for numbers.
-fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
+fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, RecognitionFault> {
     if let Some(texts) = texts_of(value) {
         return Ok(Some(texts));
     }
@@ -155,10 +164,10 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
             let mut records = Vec::with_capacity(cell.values.len());
             for value in &cell.values {
                 let Value::Struct(record) = value else {
-                    return Err(format!(
-                        "{field}: expected the names of channels, found {}",
-                        value.words()
-                    ));
+                    return Err(RecognitionFault::Labels {
+                        name: field.to_owned(),
+                        found: value.words(),
+                    });
                 };
                 records.push(record);
             }
@@ -173,10 +182,9 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
     };
     match labels {
         Some(labels) => Ok(Some(labels)),
-        None => Err(format!(
-            "{field}: its channels have no order or no names; write a list of names, or of {{\"name\": …, \"unit\": …}}, in the \
-             order of the matrices"
-        )),
+        None => Err(RecognitionFault::LabelOrder {
+            name: field.to_owned(),
+        }),
     }
 }
 

@@ -10,6 +10,7 @@ mod delays;
 mod flight_condition;
 mod frequency_response;
 pub(super) mod labels;
+pub(super) mod recognition_fault;
 pub(super) mod record;
 mod response_frequencies;
 mod search;
@@ -26,6 +27,7 @@ use std::collections::BTreeSet;
 use gdcm_model::assembly::FoundModel;
 
 use self::frequency_response::{is_response, response};
+use self::recognition_fault::RecognitionFault;
 use self::record::Record;
 use self::state_space::{is_state_space, state_spaces};
 use self::suffixed_matrices::suffixed_models;
@@ -86,7 +88,7 @@ fn read_models(
     record: &Record<'_>,
     variable: &str,
     pages_first: bool,
-) -> Option<Vec<Result<FoundModel, String>>> {
+) -> Option<Vec<Result<FoundModel, RecognitionFault>>> {
     if is_state_space(record) {
         Some(state_spaces(record, variable, pages_first))
     } else if is_response(record) {

@@ -1,12 +1,19 @@
 //! Tests of the recognition of models, with values as the format readers return them.
 
+use std::path::Path;
+
 use gdcm_model::assembly::ChannelLabel;
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::model::Origin;
 
+use super::recognition_fault::{FoundFault, UnclearDelayUnit};
 use super::*;
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
 };
+use crate::formats::{Contents, import_bytes};
+use crate::variable_fault::unread::Unread;
 
 fn numbers(rows: usize, columns: usize, values: &[f64]) -> Value {
     Value::Array(Array::matrix(rows, columns, values.to_vec()))
@@ -172,45 +179,57 @@ fn a_faulty_model_is_reported_with_its_place() {
     let of = |change: fn(&mut Vec<(&'static str, Value)>)| {
         let mut fields = model(1.0);
         change(&mut fields);
-        recognise(&[variable("sys", Value::Struct(record(fields)))])
-            .faults
-            .join("; ")
+        let found = recognise(&[variable("sys", Value::Struct(record(fields)))]);
+        let fault = only_fault(&found);
+        assert_eq!(fault.variable, "sys");
+        fault.fault.clone()
     };
     assert_eq!(
         of(|fields| fields[1].1 = numbers(2, 1, &[1.0, 1.0])),
-        "sys: B: expected 1 x 1, found 2 x 1"
+        RecognitionFault::MatrixShape {
+            name: "B",
+            expected: [1, 1],
+            found: [2, 1],
+        }
     );
-    let not_finite = of(|fields| fields[0].1 = numbers(1, 1, &[f64::NAN]));
+    assert!(matches!(
+        of(|fields| fields[0].1 = numbers(1, 1, &[f64::NAN])),
+        RecognitionFault::MatrixNotFinite { name, row: 1, column: 1, value }
+            if name == "A" && value.is_nan()
+    ));
     assert_eq!(
-        not_finite,
-        "sys: A, row 1, column 1: expected a finite number, found NaN"
+        of(|fields| fields.push(("Ts", numbers(1, 1, &[-1.0])))),
+        RecognitionFault::SampleTime { value: -1.0 }
     );
-    assert!(of(|fields| fields.push(("Ts", numbers(1, 1, &[-1.0])))).contains("set Ts"));
-    assert!(of(|fields| fields.push(("InternalDelay", numbers(1, 1, &[0.1])))).contains("absorb"));
-    let opaque = Value::Opaque {
-        class: "ss".to_owned(),
-        why: "write A, B, C, D".to_owned(),
+    let name = "InternalDelay".to_owned();
+    assert_eq!(
+        of(|fields| fields.push(("InternalDelay", numbers(1, 1, &[0.1])))),
+        RecognitionFault::InternalDelay { name }
+    );
+    let found = recognise(&[variable("x", Value::opaque("ss", Unread::ClassSystem))]);
+    let fault = FoundFault {
+        class: Some("ss".to_owned()),
+        ..FoundFault::new("x", RecognitionFault::Unread(Box::new(Unread::ClassSystem)))
     };
-    assert_eq!(
-        recognise(&[variable("x", opaque)]).faults,
-        ["x (ss): write A, B, C, D"]
-    );
+    assert_eq!(found.faults, [fault]);
+}
+
+/// Returns the only fault, and asserts that no model was recognised.
+fn only_fault(found: &Found<FoundModel>) -> &FoundFault {
+    assert!(found.items.is_empty());
+    let [fault] = found.faults.as_slice() else {
+        panic!("{:?}", found.faults)
+    };
+    fault
 }
 
 fn json(text: &str) -> Found<FoundModel> {
-    let found = crate::import::model_files::models_of_bytes(
-        text.as_bytes(),
-        "c1_90kt/m.json",
-        &ReadingBudget::new(1 << 24),
-    )
-    .unwrap();
-    let unused = found.unused.into_values().flatten().collect();
-    Found {
-        items: found.models,
-        faults: found.faults,
-        ignored: found.ignored,
-        unused,
-    }
+    let budget = ReadingBudget::new(1 << 24);
+    let imported = import_bytes(text.as_bytes(), Path::new("m.json"), "m.json", &budget).unwrap();
+    let Contents::Variables { variables, .. } = imported.contents else {
+        panic!("the text holds variables")
+    };
+    super::recognise(&variables, true, &budget).unwrap()
 }
 
 /// Recognises a model with two inputs and two outputs to which `members` are added.
@@ -221,7 +240,7 @@ fn beside(members: &str) -> Found<FoundModel> {
 }
 
 fn delays(found: &Found<FoundModel>) -> [Option<Vec<f64>>; 2] {
-    assert_eq!(found.faults, Vec::<String>::new());
+    assert_eq!(found.faults, []);
     let timing = &found.items[0].draft.timing;
     [
         timing.input_delays_s.clone(),
@@ -272,12 +291,9 @@ fn delays_are_read_under_every_name_with_known_signals_and_unit() {
         .items
         .remove(0)
         .notes;
-    assert!(
-        noted
-            .iter()
-            .any(|note| note.contains("input_delays is assumed to be in s")),
-        "{noted:?}"
-    );
+    let name = "input_delays".to_owned();
+    let note = ReadingNote::DelayInSeconds { name }.to_string();
+    assert!(noted.contains(&note), "{noted:?}");
     assert_eq!(
         delays(&beside(r#""tau": [0, 0], "delays": []"#)),
         [None, None],
@@ -287,60 +303,84 @@ fn delays_are_read_under_every_name_with_known_signals_and_unit() {
 
 #[test]
 fn an_ambiguous_delay_is_refused_with_a_question() {
-    for (member, question) in [
-        (r#""tau": 0.03"#, "tau looks like a delay"),
-        (r#""tau_i": [0.03, 0.05]"#, "tau_i looks like a delay"),
-        (r#""tau_ms": 30"#, "tau_ms looks like a delay"),
-        (r#""Td": 0.03"#, "Td looks like a delay"),
-        (r#""delay_in": [0.03, 0.05]"#, "delay_in looks like a delay"),
-        (r#""delays": {"LON": 0.03}"#, "delays looks like a delay"),
-        (r#""time_delay": 0.03"#, "time_delay looks like a delay"),
+    let named = |name: &str| name.to_owned();
+    let unclear = |name: &str| RecognitionFault::UnclearDelay { name: named(name) };
+    let unit = |name: &str, unit| RecognitionFault::DelayUnit {
+        name: named(name),
+        unit,
+    };
+    for (member, fault) in [
+        (r#""tau": 0.03"#, unclear("tau")),
+        (r#""tau_i": [0.03, 0.05]"#, unclear("tau_i")),
+        (r#""tau_ms": 30"#, unclear("tau_ms")),
+        (r#""Td": 0.03"#, unclear("Td")),
+        (r#""delay_in": [0.03, 0.05]"#, unclear("delay_in")),
+        (r#""delays": {"LON": 0.03}"#, unclear("delays")),
+        (r#""time_delay": 0.03"#, unclear("time_delay")),
         (
             r#""input_delay": [30, 50]"#,
-            "50 can be seconds or milliseconds",
+            unit(
+                "input_delay",
+                UnclearDelayUnit::SecondsOrMilliseconds { greatest: 50.0 },
+            ),
         ),
         (
             r#""input_delay": [0.02, 0.04], "Ts": 0.02"#,
-            "seconds or samples",
+            unit("input_delay", UnclearDelayUnit::SecondsOrSamples),
         ),
         (
             r#""InputDelay": [0.02, 0.05], "Ts": 0.02"#,
-            "not whole numbers",
+            unit("InputDelay", UnclearDelayUnit::PartsOfSamples),
         ),
         (
             r#""ioDelay": [[0.03, 0.05], [0.03, 0.06]]"#,
-            "are not the sum",
+            RecognitionFault::NotASumOfDelays {
+                name: named("ioDelay"),
+                output: 2,
+                input: 2,
+            },
         ),
         (
             r#""TransportDelay": [0.03, 0.05, 0.07]"#,
-            "2 x 2 (outputs x inputs)",
+            RecognitionFault::ResponseDelayShape {
+                name: named("TransportDelay"),
+                outputs: 2,
+                inputs: 2,
+                found: named("a 3 x 1 array of numbers"),
+            },
         ),
         (
             r#""input_delays_s": [0.03, 0.05, 0.07]"#,
-            "expected 2 delays",
+            RecognitionFault::DelayCount {
+                name: named("input_delays_s"),
+                side: ChannelSide::Input,
+                expected: 2,
+                found: 3,
+            },
         ),
         (
             r#""InputDelay": [0.03, 0.05], "input_delays_ms": [30, 40]"#,
-            "given twice",
+            RecognitionFault::ContradictoryDelays {
+                name: named("input_delays_ms"),
+            },
         ),
-        (r#""TimeUnit": "milliseconds""#, "chgTimeUnit"),
+        (
+            r#""TimeUnit": "milliseconds""#,
+            RecognitionFault::TimeUnit {
+                unit: named("milliseconds"),
+            },
+        ),
     ] {
         let found = beside(member);
-        assert!(found.items.is_empty(), "{member}: never dropped");
-        assert!(
-            found.faults[0].contains(question),
-            "{member}: {:?}",
-            found.faults
-        );
+        assert_eq!(only_fault(&found).fault, fault, "{member}");
     }
     let outside = json(
         r#"{"sys": {"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}, "input_delays_s": 0.03}"#,
     );
-    assert!(
-        outside.items.is_empty() && outside.faults[0].contains("delay without a model"),
-        "{:?}",
-        outside.faults
-    );
+    assert!(matches!(
+        only_fault(&outside).fault,
+        RecognitionFault::DelayWithoutModel { .. }
+    ));
     let model = r#""A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]"#;
     let own = json(&format!(
         r#"{{"format": "gdcm-models", "version": 1, "models": [{{"name": "m", {model}, "input_delay_ms": [30]}}]}}"#
@@ -365,7 +405,7 @@ fn models_in_suffixed_matrices_have_their_own_delays() {
         ));
     }
     let found = recognise(&variables);
-    assert_eq!(found.faults, Vec::<String>::new());
+    assert_eq!(found.faults, []);
     let delays: Vec<Option<Vec<f64>>> = found
         .items
         .iter()
@@ -436,18 +476,22 @@ fn channels_are_objects_with_a_name_and_a_unit_too_and_a_wrong_number_of_them_is
         "{:?}",
         around.faults
     );
-    for wrong in [
-        r#""inputs": ["LON"]"#,
-        r#""inputs": {"LON": "in", "LAT": "in"}"#,
-        r#""inputs": ["LON", 3]"#,
-    ] {
-        let found = beside(wrong);
-        assert!(
-            found.items.is_empty() && found.faults[0].contains("inputs"),
-            "{wrong}: {:?}",
-            found.faults
-        );
-    }
+    let count = RecognitionFault::LabelCount {
+        name: "inputs".to_owned(),
+        side: ChannelSide::Input,
+        found: 1,
+        expected: 2,
+    };
+    assert_eq!(only_fault(&beside(r#""inputs": ["LON"]"#)).fault, count);
+    let name = "inputs".to_owned();
+    assert_eq!(
+        only_fault(&beside(r#""inputs": {"LON": "in", "LAT": "in"}"#)).fault,
+        RecognitionFault::LabelOrder { name }
+    );
+    assert!(matches!(
+        &only_fault(&beside(r#""inputs": ["LON", 3]"#)).fault,
+        RecognitionFault::Labels { name, .. } if name == "inputs"
+    ));
 }
 
 #[test]
@@ -480,18 +524,19 @@ fn the_condition_beside_a_model_is_used_and_contradictions_are_refused() {
     let differing = json(
         r#"{"airspeed_kt": 70, "sys": {"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": 90}}"#,
     );
-    assert!(
-        differing.faults[0].contains("contradictory values 90 and 70"),
-        "{:?}",
-        differing.faults
-    );
+    assert!(matches!(
+        differing.faults[0].fault,
+        RecognitionFault::Contradiction {
+            values: [90.0, 70.0],
+            ..
+        }
+    ));
 }
 
 #[test]
 fn a_stack_and_a_struct_array_say_the_airspeed_of_each_model() {
-    let stack = json(
-        r#"{"A": [[[-1]], [[-2]], [[-3]]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": [60, 80, 100]}"#,
-    );
+    let stack_text = r#"{"A": [[[-1]], [[-2]], [[-3]]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": [60, 80, 100]}"#;
+    let stack = json(stack_text);
     let airspeeds = |found: &Found<FoundModel>| -> Vec<Option<f64>> {
         found
             .items
@@ -505,8 +550,16 @@ fn a_stack_and_a_struct_array_say_the_airspeed_of_each_model() {
         "{:?}",
         stack.faults
     );
-    let assembly =
-        gdcm_model::assembly::Assembly::new(stack.items, gdcm_model::assembly::Rules::default());
+    let imported = crate::import::model_files::models_of_bytes(
+        stack_text.as_bytes(),
+        "c1_90kt/m.json",
+        &ReadingBudget::new(1 << 24),
+    )
+    .unwrap();
+    let assembly = gdcm_model::assembly::Assembly::new(
+        imported.models,
+        gdcm_model::assembly::Rules::default(),
+    );
     let conditions: Vec<Option<i64>> = assembly
         .parts()
         .iter()
@@ -515,8 +568,14 @@ fn a_stack_and_a_struct_array_say_the_airspeed_of_each_model() {
     assert_eq!(conditions, [Some(1); 3], "the folder says a number");
     let short =
         json(r#"{"A": [[[-1]], [[-2]], [[-3]]], "B": [[1]], "C": [[1]], "airspeed_kt": [60, 80]}"#);
+    assert!(short.items.is_empty());
+    let fault = RecognitionFault::NumberForEachModel {
+        name: "airspeed_kt".to_owned(),
+        found: 2,
+        models: 3,
+    };
     assert!(
-        short.items.is_empty() && short.faults[0].contains("2 numbers for 3 models"),
+        short.faults.iter().all(|found| found.fault == fault),
         "{:?}",
         short.faults
     );
@@ -528,40 +587,39 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
         let found = json(&format!(
             r#"{{"re": [1, 2, 3], "im": [0, 1, 2], {members}}}"#
         ));
-        (found.items.len(), found.faults.join("; "))
+        let mut faults = Vec::new();
+        for fault in found.faults {
+            faults.push(fault.fault);
+        }
+        assert_eq!(found.items.len() + faults.len(), 1);
+        faults
     };
+    let name = |name: &str| name.to_owned();
+    assert_eq!(of(r#""w": [1, 2, 3], "COHER": [1, 0.9, 0.8]"#), []);
     assert_eq!(
-        of(r#""w": [1, 2, 3], "COHER": [1, 0.9, 0.8]"#),
-        (1, String::new())
-    );
-    assert!(
-        of(r#""w": [1, 2, 3], "gamma": [1, 0.9, 0.8]"#)
-            .1
-            .contains("may be γ or γ²")
-    );
-    assert!(
-        of(r#""w": [1, 2, 3], "coherence": [1, 0.9]"#)
-            .1
-            .contains("2 numbers for the 3")
-    );
-    assert!(
-        of(r#""f": [1, 2, 3]"#)
-            .1
-            .contains("unit missing, rad/s or Hz")
-    );
-    assert!(
-        of(r#""f": [1, 2, 3], "frequency_unit": "rps""#)
-            .1
-            .contains("expected rad/s or Hz")
+        of(r#""w": [1, 2, 3], "gamma": [1, 0.9, 0.8]"#),
+        [RecognitionFault::Gamma {
+            name: name("gamma")
+        }]
     );
     assert_eq!(
-        of(r#""f": [1, 2, 3], "frequency_unit": "Hz""#),
-        (1, String::new())
+        of(r#""w": [1, 2, 3], "coherence": [1, 0.9]"#),
+        [RecognitionFault::CoherenceCount {
+            found: 2,
+            expected: 3
+        }]
     );
-    assert!(
-        of(r#""w": [1, 2, 3], "InputDelay": 0.03"#)
-            .1
-            .contains("must contain its delays")
+    assert_eq!(of(r#""f": [1, 2, 3]"#), [RecognitionFault::NoFrequencyUnit]);
+    assert_eq!(
+        of(r#""f": [1, 2, 3], "frequency_unit": "rps""#),
+        [RecognitionFault::FrequencyUnit { unit: name("rps") }]
+    );
+    assert_eq!(of(r#""f": [1, 2, 3], "frequency_unit": "Hz""#), []);
+    assert_eq!(
+        of(r#""w": [1, 2, 3], "InputDelay": 0.03"#),
+        [RecognitionFault::DelayOfResponse {
+            name: name("InputDelay")
+        }]
     );
 }
 

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
+use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::values::{Field, array_of, first_text_of, list_of};
 
@@ -37,7 +38,7 @@ pub(super) struct Frequencies {
 }
 
 impl Frequencies {
-    pub(super) fn read(record: &Record<'_>) -> Result<Self, String> {
+    pub(super) fn read(record: &Record<'_>) -> Result<Self, RecognitionFault> {
         let unit = FrequencyUnit::read(record);
         let GivenFrequencies { field, is_hertz } = GivenFrequencies::find(record, &unit)?;
         let values = list_of("frequencies", record.take(field))?;
@@ -65,7 +66,7 @@ impl<'v> GivenFrequencies<'v> {
     /// # Errors
     /// The reason if there are no frequencies, or neither their name nor a unit tells whether they
     /// are in rad/s or Hz.
-    fn find(record: &Record<'v>, unit: &FrequencyUnit) -> Result<Self, String> {
+    fn find(record: &Record<'v>, unit: &FrequencyUnit) -> Result<Self, RecognitionFault> {
         // Without a unit, MATLAB and python-control use rad/s.
         let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
         if let Some(field) = record.find(RADIANS) {
@@ -75,11 +76,7 @@ impl<'v> GivenFrequencies<'v> {
             })
         } else if let Some(field) = record.find(FREQUENCIES) {
             if unit.text.is_empty() && !has_default {
-                return Err(
-                    "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
-                        beside them as frequency_unit"
-                        .to_owned(),
-                );
+                return Err(RecognitionFault::NoFrequencyUnit);
             }
             Ok(Self {
                 field,
@@ -91,7 +88,7 @@ impl<'v> GivenFrequencies<'v> {
                 is_hertz: true,
             })
         } else {
-            Err("frequencies are missing".to_owned())
+            Err(RecognitionFault::NoFrequencies)
         }
     }
 }
@@ -129,15 +126,15 @@ impl FrequencyUnit {
     }
 
     /// Returns the factor from the unit to rad/s; without a unit, 1.
-    fn rad_s_per_angular_rate(&self) -> Result<f64, String> {
+    fn rad_s_per_angular_rate(&self) -> Result<f64, RecognitionFault> {
         if let Some(unit) = self.angular_rate {
             return Ok(unit.size);
         }
         match self.text.to_lowercase().as_str() {
             "" | "rad" | "rads" | "rad/timeunit" => Ok(1.0),
-            other => Err(format!(
-                "frequencies are in \"{other}\"; expected rad/s or Hz"
-            )),
+            other => Err(RecognitionFault::FrequencyUnit {
+                unit: other.to_owned(),
+            }),
         }
     }
 }

@@ -18,6 +18,7 @@ use std::rc::Rc;
 
 use gdcm_model::dataset::limits::MOST_PIECES;
 
+use super::recognition_fault::{FoundFault, RecognitionFault};
 use super::record::Record;
 use super::{DEEPEST, MOST_FOUND, STEPS};
 use crate::formats::variables::{StructArray, Value, Variable};
@@ -37,7 +38,7 @@ pub(crate) struct Found<T> {
     /// Models or records; their provenance names only the variable.
     pub(crate) items: Vec<T>,
     /// Errors in models or records, with their place and the reason.
-    pub(crate) faults: Vec<String>,
+    pub(crate) faults: Vec<FoundFault>,
     /// Descriptions of variables in which nothing was recognised.
     pub(crate) ignored: Vec<String>,
     /// Unused variables beside and inside the models or records.
@@ -57,12 +58,11 @@ impl<T> Default for Found<T> {
 
 impl<T> Found<T> {
     /// Adds the results of reading a variable; `variable` is empty for the whole file.
-    pub(super) fn add(&mut self, variable: &str, items: Vec<Result<T, String>>) {
+    pub(super) fn add(&mut self, variable: &str, items: Vec<Result<T, RecognitionFault>>) {
         for item in items {
             match item {
                 Ok(item) => self.items.push(item),
-                Err(reason) if variable.is_empty() => self.faults.push(reason),
-                Err(reason) => self.faults.push(format!("{variable}: {reason}")),
+                Err(fault) => self.faults.push(FoundFault::new(variable, fault)),
             }
         }
     }
@@ -74,7 +74,8 @@ impl<T> Found<T> {
 
 /// Function that reads the models (or the flight records) that the fields of a record form, given
 /// the variable name; `None` if they form none.
-pub(super) type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
+pub(super) type Recognise<'r, T> =
+    &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, RecognitionFault>>>;
 
 /// Finds all models or flight records among variables: first from all variables together, then in
 /// each variable and its contents, from the outside in.
@@ -160,9 +161,7 @@ impl<T> Search<'_, T> {
     ) -> Result<bool, VariableFault> {
         self.budget.work(STEPS, name)?;
         if levels == 0 || self.found.items.len() >= MOST_FOUND {
-            self.add_fault(format!(
-                "{name}: too many values, or values nested too deeply"
-            ))?;
+            self.add_fault(FoundFault::new(name, RecognitionFault::SearchLimit))?;
             return Ok(true);
         }
         match value {
@@ -179,7 +178,10 @@ impl<T> Search<'_, T> {
                 Ok(is_any_found)
             }
             Value::Opaque { class, why } => {
-                self.add_fault(format!("{name} ({class}): {why}"))?;
+                self.add_fault(FoundFault {
+                    class: Some(class.clone()),
+                    ..FoundFault::new(name, RecognitionFault::Unread(why.clone()))
+                })?;
                 Ok(true)
             }
             Value::Array(_) | Value::Text(_) => Ok(false),
@@ -271,8 +273,9 @@ impl<T> Search<'_, T> {
         Ok(())
     }
 
-    fn add_fault(&mut self, fault: String) -> Result<(), VariableFault> {
-        self.budget.take(fault.len() as u64 + FAULT_BYTES, 1, "")?;
+    fn add_fault(&mut self, fault: FoundFault) -> Result<(), VariableFault> {
+        let length = fault.to_string().len() as u64;
+        self.budget.take(length + FAULT_BYTES, 1, "")?;
         self.found.faults.push(fault);
         Ok(())
     }

@@ -8,14 +8,15 @@ use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::limits::MOST_STATES;
 use gdcm_model::dataset::model::Provenance;
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::units::number;
 
 use super::delays::timing_of;
 use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of, states_of};
+use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::values::{PAGES_LAST, PagedShape, array_of, matrix_of, page_of};
 use crate::files::model_collection::bare_draft;
+use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::variables::{Array, Value};
 
 /// Name of a matrix: a capital letter; in structs and objects, a small letter is accepted too.
@@ -64,7 +65,7 @@ pub(super) fn state_spaces(
     record: &Record<'_>,
     variable: &str,
     pages_first: bool,
-) -> Vec<Result<FoundModel, String>> {
+) -> Vec<Result<FoundModel, RecognitionFault>> {
     let array = |name: MatrixName| name.value(record).and_then(array_of);
     let (Some(a), Some(b), Some(c)) = (
         array(MatrixName::A),
@@ -113,29 +114,29 @@ fn matrix_in_page(
     value: &Value,
     page: Page,
     pages_first: bool,
-) -> Result<DMatrix<f64>, String> {
+) -> Result<DMatrix<f64>, RecognitionFault> {
     match array_of(value) {
         Some(array) if array.shape.len() < 3 => page_of(name, array, 0, PAGES_LAST),
         Some(array) if page.index < PagedShape::new(array, pages_first).pages => {
             page_of(name, array, page.index, pages_first)
         }
-        _ => Err(format!(
-            "{name}: expected {} matrices as in A, found {}",
-            page.count,
-            value.words()
-        )),
+        _ => Err(RecognitionFault::PageCount {
+            name: name.to_owned(),
+            expected: page.count,
+            found: value.words(),
+        }),
     }
 }
 
 /// Function that reads a matrix from a value; the string is its name in errors.
-type ReadMatrix<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;
+type ReadMatrix<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, RecognitionFault>;
 
 /// Reads a matrix from `record`; `None` if there is none.
 fn optional_matrix(
     record: &Record<'_>,
     name: MatrixName,
     read: ReadMatrix<'_>,
-) -> Result<Option<DMatrix<f64>>, String> {
+) -> Result<Option<DMatrix<f64>>, RecognitionFault> {
     match name.value(record) {
         Some(value) => Ok(Some(read(name.large, value)?)),
         None => Ok(None),
@@ -146,10 +147,10 @@ fn required_matrix(
     record: &Record<'_>,
     name: MatrixName,
     read: ReadMatrix<'_>,
-) -> Result<DMatrix<f64>, String> {
+) -> Result<DMatrix<f64>, RecognitionFault> {
     match optional_matrix(record, name, read)? {
         Some(matrix) => Ok(matrix),
-        None => Err(format!("matrix {} is missing", name.large)),
+        None => Err(RecognitionFault::MissingMatrix { name: name.large }),
     }
 }
 
@@ -159,7 +160,7 @@ fn state_space(
     variable: &str,
     page: Page,
     read: ReadMatrix<'_>,
-) -> Result<FoundModel, String> {
+) -> Result<FoundModel, RecognitionFault> {
     let a = required_matrix(record, MatrixName::A, read)?;
     let b = required_matrix(record, MatrixName::B, read)?;
     let c = required_matrix(record, MatrixName::C, read)?;
@@ -171,7 +172,7 @@ fn state_space(
     match optional_matrix(record, MatrixName::D, read)? {
         Some(given) if given.len() == 1 && given[0] == 0.0 => {}
         Some(given) => d = given,
-        None => notes.push("the file has no D: it is assumed to be zero".to_owned()),
+        None => notes.push(ReadingNote::NoD),
     }
     let (a, b) = match optional_matrix(record, MatrixName::E, read)? {
         Some(e) if !e.is_empty() => solve_descriptor(e, a, b)?,
@@ -181,7 +182,7 @@ fn state_space(
     let timing = timing_of(record, c.nrows(), b.ncols())?;
     let mut model = build_model(record, variable, page, [a, b, c, d], timing.timing)?;
     notes.extend(timing.notes);
-    model.notes = notes;
+    model.notes = note_texts(&notes);
     Ok(model)
 }
 
@@ -192,7 +193,7 @@ pub(super) fn build_model(
     page: Page,
     matrices: [DMatrix<f64>; 4],
     timing: Timing,
-) -> Result<FoundModel, String> {
+) -> Result<FoundModel, RecognitionFault> {
     let [a, b, c, _] = &matrices;
     let inputs = inputs_of(record, b.ncols())?;
     let outputs = outputs_of(record, c.nrows())?;
@@ -226,11 +227,17 @@ pub(super) fn source_of(variable: &str) -> Provenance {
 }
 
 /// Rejects a count above the maximum number of states, before matrices of this size are allocated.
-pub(super) fn at_most(count: usize, counted: &str, place: &str) -> Result<(), String> {
+pub(super) fn at_most(
+    count: usize,
+    counted: &'static str,
+    place: &str,
+) -> Result<(), RecognitionFault> {
     if count > MOST_STATES {
-        return Err(format!(
-            "{place}: {count} {counted}; at most {MOST_STATES} are read"
-        ));
+        return Err(RecognitionFault::TooMany {
+            place: place.to_owned(),
+            count,
+            counted,
+        });
     }
     Ok(())
 }
@@ -240,13 +247,13 @@ fn check_shapes(
     b: &DMatrix<f64>,
     c: &DMatrix<f64>,
     d: &DMatrix<f64>,
-) -> Result<(), String> {
+) -> Result<(), RecognitionFault> {
     let order = a.nrows();
     if a.ncols() != order {
-        return Err(format!(
-            "A: expected a square matrix, found {order} x {}",
-            a.ncols()
-        ));
+        return Err(RecognitionFault::NotSquare {
+            rows: order,
+            columns: a.ncols(),
+        });
     }
     check_shape("B", b, order, b.ncols())?;
     check_shape("C", c, c.nrows(), order)?;
@@ -254,19 +261,19 @@ fn check_shapes(
 }
 
 fn check_shape(
-    name: &str,
+    name: &'static str,
     matrix: &DMatrix<f64>,
     rows: usize,
     columns: usize,
-) -> Result<(), String> {
+) -> Result<(), RecognitionFault> {
     if matrix.shape() == (rows, columns) {
         return Ok(());
     }
-    Err(format!(
-        "{name}: expected {rows} x {columns}, found {} x {}",
-        matrix.nrows(),
-        matrix.ncols()
-    ))
+    Err(RecognitionFault::MatrixShape {
+        name,
+        expected: [rows, columns],
+        found: [matrix.nrows(), matrix.ncols()],
+    })
 }
 
 /// Maximum condition number of E; beyond it, solving with E loses most digits.
@@ -277,14 +284,13 @@ fn solve_descriptor(
     e: DMatrix<f64>,
     a: DMatrix<f64>,
     b: DMatrix<f64>,
-) -> Result<(DMatrix<f64>, DMatrix<f64>), String> {
+) -> Result<(DMatrix<f64>, DMatrix<f64>), RecognitionFault> {
     let n = a.nrows();
     if e.shape() != (n, n) {
-        return Err(format!(
-            "E: expected {n} x {n}, like A, found {} x {}",
-            e.nrows(),
-            e.ncols()
-        ));
+        return Err(RecognitionFault::DescriptorShape {
+            order: n,
+            found: [e.nrows(), e.ncols()],
+        });
     }
     if e == DMatrix::identity(n, n) {
         return Ok((a, b));
@@ -294,20 +300,18 @@ fn solve_descriptor(
     let least = singular_values.min();
     if least <= 0.0 || greatest / least > WORST_CONDITION {
         let condition = if least > 0.0 {
-            number(greatest / least)
+            greatest / least
         } else {
-            "infinite".to_owned()
+            f64::INFINITY
         };
-        return Err(format!(
-            "E is singular (condition {condition}): the model has no state-space form; export it without E"
-        ));
+        return Err(RecognitionFault::SingularDescriptor {
+            condition: Some(condition),
+        });
     }
     let factored = e.lu();
     match (factored.solve(&a), factored.solve(&b)) {
         (Some(a), Some(b)) => Ok((a, b)),
-        _ => {
-            Err("E is singular: the model has no state-space form; export it without E".to_owned())
-        }
+        _ => Err(RecognitionFault::SingularDescriptor { condition: None }),
     }
 }
 
@@ -333,10 +337,9 @@ mod tests {
             )
         );
         let b = DMatrix::from_row_slice(2, 1, &[2.0, 4.0]);
-        assert!(
-            solve_descriptor(matrix([1.0, 1.0, 1.0, 1.0]), matrix([1.0; 4]), b)
-                .unwrap_err()
-                .contains("singular")
-        );
+        assert!(matches!(
+            solve_descriptor(matrix([1.0, 1.0, 1.0, 1.0]), matrix([1.0; 4]), b),
+            Err(RecognitionFault::SingularDescriptor { condition: Some(condition) }) if condition > 1e12
+        ));
     }
 }

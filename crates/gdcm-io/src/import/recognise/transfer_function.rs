@@ -7,9 +7,11 @@ use gdcm_model::assembly::FoundModel;
 
 use super::delays::timing_of;
 use super::flight_condition::Page;
+use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::state_space::{at_most, build_model};
 use super::values::{array_of, complex_list_of, list_of};
+use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::variables::Value;
 
 /// Returns whether fields form transfer functions; marks these fields as used.
@@ -26,7 +28,10 @@ pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
 /// ```
 ///
 /// For a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
-pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+pub(super) fn transfer_function(
+    record: &Record<'_>,
+    variable: &str,
+) -> Result<FoundModel, RecognitionFault> {
     let FractionTable {
         fractions,
         outputs,
@@ -63,20 +68,18 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     }
     let timing = timing_of(record, outputs, inputs)?;
     let mut model = build_model(record, variable, Page::ONLY, [a, b, c, d], timing.timing)?;
-    model.notes.extend(timing.notes);
-    model
-        .notes
-        .push("transfer functions, each realised separately".to_owned());
+    model.notes.extend(note_texts(&timing.notes));
+    model.notes.push(ReadingNote::TransferFunctions.to_string());
     Ok(model)
 }
 
-fn fractions_of(record: &Record<'_>) -> Result<FractionTable, String> {
+fn fractions_of(record: &Record<'_>) -> Result<FractionTable, RecognitionFault> {
     if let Some(polynomials) = Polynomials::find(record) {
         return polynomials.fractions();
     }
     match Factors::find(record) {
         Some(factors) => factors.fractions(),
-        None => Err("no transfer function".to_owned()),
+        None => Err(RecognitionFault::NoTransferFunction),
     }
 }
 
@@ -98,14 +101,17 @@ impl<'v> Polynomials<'v> {
 
     /// Returns the transfer functions; the first denominator applies to responses without a
     /// denominator.
-    fn fractions(&self) -> Result<FractionTable, String> {
+    fn fractions(&self) -> Result<FractionTable, RecognitionFault> {
         let numerators = CellTable::new(self.numerators);
         let denominators = CellTable::new(self.denominators).cells;
         let mut fractions = Vec::with_capacity(numerators.cells.len());
         for (index, numerator) in numerators.cells.iter().enumerate() {
             let place = format!("response {}", index + 1);
             let Some(denominator) = denominators.get(index).or(denominators.first()) else {
-                return Err(format!("{place}: no denominator"));
+                return Err(RecognitionFault::ResponseWithout {
+                    response: index + 1,
+                    part: "denominator",
+                });
             };
             fractions.push(Fraction::new(
                 &list_of("numerator", numerator)?,
@@ -140,7 +146,7 @@ impl<'v> Factors<'v> {
         })
     }
 
-    fn fractions(&self) -> Result<FractionTable, String> {
+    fn fractions(&self) -> Result<FractionTable, RecognitionFault> {
         let zeros = CellTable::new(self.zeros);
         let poles = CellTable::new(self.poles).cells;
         let gains = match array_of(self.gains) {
@@ -151,10 +157,16 @@ impl<'v> Factors<'v> {
         for (index, zeros) in zeros.cells.iter().enumerate() {
             let place = format!("response {}", index + 1);
             let Some(poles) = poles.get(index) else {
-                return Err(format!("{place}: no poles"));
+                return Err(RecognitionFault::ResponseWithout {
+                    response: index + 1,
+                    part: "poles",
+                });
             };
             let Some(gain) = gains.get(index) else {
-                return Err(format!("{place}: no gain"));
+                return Err(RecognitionFault::ResponseWithout {
+                    response: index + 1,
+                    part: "gain",
+                });
             };
             let zeros = complex_list_of("zeros", zeros)?;
             let poles = complex_list_of("poles", poles)?;
@@ -183,17 +195,19 @@ impl Fraction {
     /// # Errors
     /// The reason if the denominator is zero, the degree of the numerator exceeds that of the
     /// denominator, or there are too many poles.
-    fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
+    fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, RecognitionFault> {
         at_most(denominator.len().saturating_sub(1), "states", place)?;
         let numerator = without_leading_zeros(numerator);
         let denominator = without_leading_zeros(denominator);
         let Some(&leading) = denominator.first() else {
-            return Err(format!("{place}: the denominator is zero"));
+            return Err(RecognitionFault::ZeroDenominator {
+                place: place.to_owned(),
+            });
         };
         if numerator.len() > denominator.len() {
-            return Err(format!(
-                "{place}: the numerator is of higher degree than the denominator; such a response has no state-space form"
-            ));
+            return Err(RecognitionFault::Improper {
+                place: place.to_owned(),
+            });
         }
         Ok(Self {
             numerator: numerator.iter().map(|term| term / leading).collect(),
@@ -324,8 +338,9 @@ mod tests {
     #[test]
     fn an_improper_fraction_is_refused() {
         let variables = [row("num", &[1.0, 0.0, 0.0]), row("den", &[1.0, 1.0])];
-        let error = transfer_function(&Record::from_variables(&variables), "").unwrap_err();
-        assert!(error.contains("higher degree"), "{error}");
+        let fault = transfer_function(&Record::from_variables(&variables), "").unwrap_err();
+        let place = "response 1".to_owned();
+        assert_eq!(fault, RecognitionFault::Improper { place });
     }
 
     #[test]
@@ -333,17 +348,31 @@ mod tests {
         let long = vec![1.0; 30_000];
         let roots = [row("z", &[]), row("p", &long), row("k", &[1.0])];
         for variables in [&[row("num", &[1.0]), row("den", &long)][..], &roots] {
-            let error = transfer_function(&Record::from_variables(variables), "").unwrap_err();
-            assert!(error.contains("states; at most 1000 are read"), "{error}");
+            let fault = transfer_function(&Record::from_variables(variables), "").unwrap_err();
+            assert!(
+                matches!(
+                    &fault,
+                    RecognitionFault::TooMany {
+                        counted: "states",
+                        ..
+                    }
+                ),
+                "{fault:?}"
+            );
         }
         let column = Variable {
             name: "C".into(),
             value: Value::Array(Array::matrix(30_000, 1, long.clone())),
         };
         let variables = [row("A", &[-1.0]), row("B", &long), column];
-        let error = state_spaces(&Record::from_variables(&variables), "", false)
+        let fault = state_spaces(&Record::from_variables(&variables), "", false)
             .remove(0)
             .unwrap_err();
-        assert!(error.contains("B: 30000 inputs"), "{error}");
+        let too_many = RecognitionFault::TooMany {
+            place: "B".to_owned(),
+            count: 30_000,
+            counted: "inputs",
+        };
+        assert_eq!(fault, too_many);
     }
 }

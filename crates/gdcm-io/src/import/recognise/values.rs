@@ -2,8 +2,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use gdcm_model::units::number;
-
+use super::recognition_fault::RecognitionFault;
 use crate::formats::variables::{Array, Value};
 
 /// A named value: a variable of a file, or a field of a struct.
@@ -32,20 +31,22 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
 }
 
 /// Converts a value to a matrix; rejects complex and non-finite numbers.
-pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
+pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, RecognitionFault> {
     let Some(array) = array_of(value) else {
-        return Err(format!(
-            "{name}: expected a matrix of numbers, found {}",
-            value.words()
-        ));
+        return Err(kind_fault(name, "a matrix of numbers", value.words()));
     };
     if array.shape.iter().skip(2).product::<usize>() > 1 {
-        return Err(format!(
-            "{name}: expected a matrix, found {}",
-            value.words()
-        ));
+        return Err(kind_fault(name, "a matrix", value.words()));
     }
     page_of(name, array, 0, PAGES_LAST)
+}
+
+fn kind_fault(name: &str, expected: &'static str, found: String) -> RecognitionFault {
+    RecognitionFault::Kind {
+        name: name.to_owned(),
+        expected,
+        found,
+    }
 }
 
 /// Value of `pages_first` for an array whose last index selects the page, as in MATLAB.
@@ -97,7 +98,7 @@ pub(super) fn page_of(
     array: &Array,
     page: usize,
     pages_first: bool,
-) -> Result<DMatrix<f64>, String> {
+) -> Result<DMatrix<f64>, RecognitionFault> {
     let PagedShape {
         rows,
         columns,
@@ -106,8 +107,10 @@ pub(super) fn page_of(
         ..
     } = PagedShape::new(array, pages_first);
     if has_imaginary_part(array) {
-        return Err(format!(
-            "{name}: expected real numbers, found complex numbers"
+        return Err(kind_fault(
+            name,
+            "real numbers",
+            "complex numbers".to_owned(),
         ));
     }
     let numbers = array.re.iter().skip(page * page_step).step_by(number_step);
@@ -115,17 +118,19 @@ pub(super) fn page_of(
     // If a later dimension is zero, the array has fewer numbers than the first two dimensions
     // imply.
     if values.len() != rows * columns {
-        return Err(format!(
-            "{name}: expected a matrix, found an array without numbers"
+        return Err(kind_fault(
+            name,
+            "a matrix",
+            "an array without numbers".to_owned(),
         ));
     }
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-        return Err(format!(
-            "{name}, row {}, column {}: expected a finite number, found {}",
-            at % rows + 1,
-            at / rows + 1,
-            values[at]
-        ));
+        return Err(RecognitionFault::MatrixNotFinite {
+            name: name.to_owned(),
+            row: at % rows + 1,
+            column: at / rows + 1,
+            value: values[at],
+        });
     }
     Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
@@ -149,29 +154,34 @@ pub(super) fn scalar_of(value: &Value) -> Option<f64> {
 
 /// Converts an array of any shape, in practice a row or a column, to a list of numbers in storage
 /// order, without their imaginary parts; rejects non-finite numbers.
-pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
+pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, RecognitionFault> {
     let Some(array) = array_of(value) else {
-        return Err(format!("{name}: expected numbers, found {}", value.words()));
+        return Err(kind_fault(name, "numbers", value.words()));
     };
     match array.re.iter().position(|value| !value.is_finite()) {
-        Some(at) => Err(format!(
-            "{name}, entry {}: expected a finite number, found {}",
-            at + 1,
-            number(array.re[at])
-        )),
+        Some(at) => Err(RecognitionFault::ListNotFinite {
+            name: name.to_owned(),
+            entry: at + 1,
+            value: array.re[at],
+        }),
         None => Ok(array.re.clone()),
     }
 }
 
 /// Converts an array as [`list_of`], with its imaginary parts.
-pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
+pub(super) fn complex_list_of(
+    name: &str,
+    value: &Value,
+) -> Result<Vec<Complex<f64>>, RecognitionFault> {
     let re = list_of(name, value)?;
     let im = match array_of(value) {
         Some(Array { im: Some(im), .. }) => im.clone(),
         _ => vec![0.0; re.len()],
     };
     if im.iter().any(|part| !part.is_finite()) {
-        return Err(format!("{name}: expected finite numbers"));
+        return Err(RecognitionFault::ImaginaryNotFinite {
+            name: name.to_owned(),
+        });
     }
     let parts = re.into_iter().zip(im);
     Ok(parts.map(|(re, im)| Complex::new(re, im)).collect())

@@ -7,6 +7,7 @@ use gdcm_sysid::records::RecordColumn;
 
 use super::column_labels::ColumnLabels;
 use super::samples::samples_of;
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
@@ -62,10 +63,9 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     }
     let mut notes = Vec::new();
     if !arrays.left_out.is_empty() {
-        notes.push(format!(
-            "omitted because of another length: {}",
-            arrays.left_out.join(", ")
-        ));
+        notes.push(ReadingNote::OtherLengths {
+            names: arrays.left_out,
+        });
     }
     Some(Columns {
         named: arrays.have_names,

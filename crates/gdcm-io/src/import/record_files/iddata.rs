@@ -11,6 +11,7 @@ use gdcm_sysid::records::RecordColumn;
 use super::samples::{first_number_of, named_columns, samples_of};
 use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;
+use crate::import::recognise::recognition_fault::RecognitionFault;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::{first_text_of, texts_of};
 
@@ -49,15 +50,18 @@ pub(super) fn is_iddata(record: &Record<'_>) -> bool {
 ///
 /// # Errors
 /// The reason if the data are in the frequency domain, or the outputs cannot be read.
-pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Columns>, String> {
+pub(super) fn experiments(
+    record: &Record<'_>,
+    variable: &str,
+) -> Result<Vec<Columns>, RecognitionFault> {
     if let Some(domain) = record.get(&["Domain"]).and_then(first_text_of)
         && domain.to_lowercase().starts_with('f')
     {
-        return Err("frequency-domain data are not a record; save time-domain data".to_owned());
+        return Err(RecognitionFault::FrequencyDomain);
     }
     let outputs = record
         .get(&OUTPUT_FIELDS.data)
-        .ok_or("its output data cannot be read; save t, u and y as matrices")?;
+        .ok_or(RecognitionFault::NoOutputData)?;
     let names = record
         .get(&["ExperimentName", "expname"])
         .and_then(texts_of)
@@ -82,7 +86,7 @@ fn experiment(
     output: &Value,
     index: usize,
     variable: String,
-) -> Result<Columns, String> {
+) -> Result<Columns, RecognitionFault> {
     let rows = samples_of(output, None).map(|samples| samples.rows);
     let mut columns = Vec::new();
     if let Some(instants) = part_of(record, &["SamplingInstants"], index)
@@ -102,7 +106,7 @@ fn experiment(
         .iter()
         .any(|column| Some(column.values.len()) != rows)
     {
-        return Err("its inputs and outputs have different numbers of samples".to_owned());
+        return Err(RecognitionFault::SampleCounts);
     }
     let step = part_of(record, &["Ts", "tsam"], index).and_then(first_number_of);
     Ok(Columns {

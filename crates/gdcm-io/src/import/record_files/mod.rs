@@ -41,6 +41,7 @@ use crate::formats::variables::Variable;
 use crate::formats::{
     Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, with_file_name,
 };
+use crate::import::recognise::recognition_fault::{RecognitionFault, fault_messages};
 use crate::reading_budget::{MOST_MEMORY, ReadingBudget, VariableFault};
 
 pub use self::dataset_entry::relative_entry;
@@ -280,7 +281,8 @@ impl FoundRecords {
         for columns in found.items {
             self.add_table(columns.in_file(name, sha256));
         }
-        self.faults.extend(with_file_name(name, found.faults));
+        self.faults
+            .extend(with_file_name(name, fault_messages(found.faults)));
         self.ignored.extend(with_file_name(name, found.ignored));
     }
 
@@ -301,7 +303,10 @@ pub(crate) fn search_records(
 }
 
 /// Reads the flight records that the fields of a record form; `None` if they form none.
-fn read_columns(record: &Record<'_>, variable: &str) -> Option<Vec<Result<Columns, String>>> {
+fn read_columns(
+    record: &Record<'_>,
+    variable: &str,
+) -> Option<Vec<Result<Columns, RecognitionFault>>> {
     if is_iddata(record) {
         return Some(match experiments(record, variable) {
             Ok(found) => found.into_iter().map(Ok).collect(),

@@ -2,12 +2,15 @@
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_sysid::records::layout_note::LayoutNote;
 use gdcm_sysid::records::{
     ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined,
 };
 
 use super::*;
+use crate::formats::reading_note::{NamedColumn, ReadingNote};
 use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
+use crate::import::recognise::recognition_fault::FoundFault;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
@@ -215,12 +218,13 @@ fn records_are_found_again_by_their_names_in_the_dataset() {
         load("units.csv", &[None])[0].as_ref().unwrap(),
         &read("units.csv").tables[0]
     );
-    let words = of_runs[1].as_ref().unwrap_err().to_string();
+    let error = of_runs[1].as_ref().unwrap_err();
     assert!(
-        words.ends_with(
-            "runs.csv: the record \"run 6\" is not in this file, which contains 2 records"
+        matches!(
+            error,
+            FileError::NoRecord { record: Some(record), held: 2, .. } if record == "run 6"
         ),
-        "{words}"
+        "{error:?}"
     );
 }
 
@@ -252,13 +256,12 @@ fn words_and_clock_times_among_the_numbers_of_a_log_are_read() {
         .map(|table| table.name.as_str())
         .collect();
     assert_eq!(names, ["log, manoeuvre 1", "log, manoeuvre 2"]);
-    assert!(
-        found.tables[1]
-            .notes
-            .iter()
-            .any(|note| note.contains("1 is LON sweep, 2 is LAT sweep")),
-        "{found:?}"
-    );
+    let numbered = ReadingNote::NumberedWords {
+        column: NamedColumn::Name("manoeuvre".to_owned()),
+        words: vec!["LON sweep".to_owned(), "LAT sweep".to_owned()],
+    }
+    .to_string();
+    assert!(found.tables[1].notes.contains(&numbered), "{found:?}");
     found
         .tables
         .iter()
@@ -287,10 +290,8 @@ fn a_log_that_is_begun_anew_with_other_columns_is_two_tables() {
         ),
         (1, 50, 3)
     );
-    assert_eq!(
-        found.tables[0].notes[0],
-        "one of 2 tables in the file, from line 6"
-    );
+    let one_of_tables = ReadingNote::OneOfTables { count: 2, line: 6 };
+    assert_eq!(found.tables[0].notes[0], one_of_tables.to_string());
     assert_eq!(found.tables[0].source.variable.as_deref(), Some("table 2"));
 }
 
@@ -453,7 +454,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
     );
     assert_eq!(
         searched("z", over_frequency).faults,
-        ["z: frequency-domain data are not a record; save time-domain data"]
+        [FoundFault::new("z", RecognitionFault::FrequencyDomain)]
     );
 }
 
@@ -556,11 +557,9 @@ fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentati
     let found = records_of_bytes(bytes, "quadrotor.ulg", &ReadingBudget::new(MOST_MEMORY)).unwrap();
     assert_eq!(found.tables.len(), 1);
     let channels = sides(&["LAT", "LON", "PED"], &["P", "Q", "R", "NX"]);
-    let (record, notes) = LaidOutRecord::proposed(
-        found.tables.into_iter().next().unwrap(),
-        &channels,
-        &TimeWish::default(),
-    );
+    let table = found.tables.into_iter().next().unwrap();
+    let notes = RecordLayout::proposed(&table, &channels, &TimeWish::default()).notes;
+    let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
     assert!(record.problems.is_empty(), "{:?}", record.problems);
     let unit = |used: &Option<ColumnUse>| {
         record.table.columns[used.unwrap().column]
@@ -573,12 +572,13 @@ fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentati
         ["rad/s", "rad/s", "rad/s", "m/s^2"]
     );
     // The acceleration is logged at 20 Hz, the other signals at 50 Hz.
-    assert!(
-        notes
-            .iter()
-            .any(|note| note.contains("LAT 50.0 Hz") && note.contains("NX 20.0 Hz")),
-        "{notes:?}"
-    );
+    let Some(LayoutNote::Resampled { logged, .. }) = notes.last() else {
+        panic!("{notes:?}")
+    };
+    for (channel, rate_hz) in [("LAT", 50.0), ("NX", 20.0)] {
+        let found = logged.iter().find(|rate| rate.channel == channel);
+        assert!((found.unwrap().rate_hz - rate_hz).abs() < 0.05, "{notes:?}");
+    }
     let flight = record.flight.unwrap();
     assert!(
         flight.time_s.len() > 250 && flight.time_s[0] > 120.0,
@@ -691,12 +691,8 @@ fn a_first_line_that_numbers_the_columns_is_no_sample() {
         (found.tables[0].rows(), found.tables[0].columns[2].values[1]),
         (60, 2.0)
     );
-    assert!(
-        found.tables[0]
-            .notes
-            .iter()
-            .any(|note| note.contains("column numbers"))
-    );
+    let skipped = ReadingNote::ColumnNumbers.to_string();
+    assert!(found.tables[0].notes.contains(&skipped));
 }
 
 #[test]

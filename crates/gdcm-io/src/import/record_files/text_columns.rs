@@ -3,6 +3,7 @@
 use gdcm_sysid::records::RecordColumn;
 use gdcm_sysid::records::separation::Separation;
 
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::text::sections::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
@@ -39,10 +40,9 @@ pub(super) fn text_columns(
             continue;
         }
         columns.variable = format!("table {}", index + 1);
-        columns.notes.insert(
-            0,
-            format!("one of {count} tables in the file, from line {line}"),
-        );
+        columns
+            .notes
+            .insert(0, ReadingNote::OneOfTables { count, line });
         found.push(columns);
     }
     if found.is_empty() {
@@ -108,7 +108,7 @@ fn table_columns(table: TextTable) -> Columns {
 }
 
 /// Removes a first line that numbers the columns: 1, 2, 3, …
-fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<String>) {
+fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<ReadingNote>) {
     let is_numbering = columns
         .iter()
         .enumerate()
@@ -119,5 +119,5 @@ fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<String>) {
     for values in columns {
         values.remove(0);
     }
-    notes.push("the first line contains column numbers and was skipped".to_owned());
+    notes.push(ReadingNote::ColumnNumbers);
 }

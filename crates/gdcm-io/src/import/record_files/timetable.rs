@@ -9,6 +9,7 @@
 use gdcm_sysid::records::RecordColumn;
 
 use super::samples::{first_column_of, first_number_of, named_columns, samples_of};
+use crate::formats::reading_note::ReadingNote;
 use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
@@ -40,7 +41,7 @@ fn read_timetable(record: &Record<'_>, variable: &str) -> Option<Columns> {
         RowTimes::Step(step_s) => sample_time_s = Some(step_s),
         RowTimes::Stamps { time_s, is_clock } => {
             if is_clock {
-                notes.push("clock times: converted to seconds since the first sample".to_owned());
+                notes.push(ReadingNote::ClockTimes);
             }
             if time_s.len() == rows {
                 let time = RecordColumn {

@@ -31,35 +31,47 @@ fn load(bytes: &[u8]) -> Result<gdcm_io::LoadedDataset, FileError> {
     load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from("test.json")))
 }
 
-/// Returns the message with which these bytes are rejected; asserts that it is a single line and
-/// names the file.
-fn refusal(bytes: &[u8]) -> String {
-    let message = load(bytes)
-        .expect_err("the file is wrong and has to be refused")
-        .to_string();
+/// Returns the error with which these bytes are rejected; asserts that its message is a single line
+/// and names the file.
+fn refusal(bytes: &[u8]) -> FileError {
+    let error = load(bytes).expect_err("the file is wrong and has to be refused");
+    let message = error.to_string();
     assert!(
-        message.starts_with("test.json: ") && !message.contains('\n'),
+        message.starts_with("test.json: ") && message.lines().count() == 1,
         "{message}"
     );
-    message
+    error
 }
 
-/// Asserts that the small dataset after `change` is rejected with a message that contains all of
-/// `words`.
-fn assert_refused(change: impl FnOnce(&mut Value), words: &[&str]) {
-    let message = refusal(&small(change));
-    for word in words {
-        assert!(message.contains(word), "expected \"{word}\" in: {message}");
-    }
+/// Returns the code with which these bytes are rejected.
+fn refusal_code(bytes: &[u8]) -> &'static str {
+    refusal(bytes).code().unwrap()
+}
+
+/// Asserts that the small dataset after `change` is rejected: the code of the error, a part of its
+/// place, and values that its message gives, such as "found -5".
+fn assert_refused(change: impl FnOnce(&mut Value), code: &str, place: &str, values: &[&str]) {
+    assert_error(&refusal(&small(change)), code, place, values);
 }
 
 /// Asserts the same for the text of the small dataset in which the first `from` is replaced by
 /// `to`.
-fn assert_text_refused(from: &str, to: &str, words: &[&str]) {
+fn assert_text_refused(from: &str, to: &str, code: &str, place: &str, values: &[&str]) {
     assert!(SMALL.contains(from), "{from}");
-    let message = refusal(SMALL.replacen(from, to, 1).as_bytes());
-    for word in words {
-        assert!(message.contains(word), "expected \"{word}\" in: {message}");
+    let error = refusal(SMALL.replacen(from, to, 1).as_bytes());
+    assert_error(&error, code, place, values);
+}
+
+fn assert_error(error: &FileError, code: &str, place: &str, values: &[&str]) {
+    assert_eq!(error.code(), Some(code), "{error}");
+    let found = error.place().map(ToString::to_string).unwrap_or_default();
+    assert!(found.contains(place), "expected \"{place}\" in: {found}");
+    let message = error.to_string();
+    for value in values {
+        assert!(
+            message.contains(value),
+            "expected \"{value}\" in: {message}"
+        );
     }
 }
 

@@ -14,14 +14,15 @@ use gdcm_io::{
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
+use gdcm_study::decisions::edit_refusal::EditRefusal;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
-use gdcm_words::dataset_differences::dataset_difference_text;
 
-use super::SMALL;
+use super::{SMALL, assert_error};
 
 /// A directory with the small dataset in `data/`, and an empty `studies/` beside it.
 struct Desk {
@@ -58,9 +59,9 @@ impl Desk {
         fs::write(self.study(), serde_json::to_vec(&value).unwrap()).unwrap();
     }
 
-    fn refusal(&self, change: impl FnOnce(&mut Json)) -> String {
+    fn refusal(&self, change: impl FnOnce(&mut Json)) -> FileError {
         self.saved(change);
-        open_study(&self.study()).unwrap_err().to_string()
+        open_study(&self.study()).unwrap_err()
     }
 }
 
@@ -171,9 +172,11 @@ fn flags_of_older_studies_say_whether_delays_are_scheduled() {
     );
     let refusal =
         Desk::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
-    assert!(
-        refusal.contains("\"automatic\"") && refusal.contains("sometimes"),
-        "{refusal}"
+    assert_error(
+        &refusal,
+        "unknown-word",
+        "settings, schedule_delays",
+        &["\"automatic\"", "sometimes"],
     );
 }
 
@@ -259,16 +262,18 @@ fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_
 #[test]
 fn a_wrong_variant_is_refused_with_its_name() {
     let desk = Desk::new();
-    let message = desk.refusal(|text| {
+    let error = desk.refusal(|text| {
         let settings = text["settings"].clone();
         let conditions = text["conditions"].clone();
         text["variants"] =
             json!([{"name": "soft", "settings": settings, "conditions": conditions}]);
         text["variants"][0]["settings"]["alpha_gain"] = json!(-1);
     });
-    assert!(
-        message.contains("variant \"soft\", settings, alpha_gain") && message.contains("found -1"),
-        "{message}"
+    assert_error(
+        &error,
+        "out-of-range",
+        "variant \"soft\", settings, alpha_gain",
+        &["found -1"],
     );
 }
 
@@ -323,25 +328,20 @@ fn a_study_whose_dataset_is_gone_says_which() {
     let desk = Desk::new();
     desk.saved(|_| {});
     fs::remove_file(desk.dataset()).unwrap();
-    let message = open_study(&desk.study()).unwrap_err().to_string();
+    let error = open_study(&desk.study()).unwrap_err();
+    let FileError::StudyDataset { path, dataset } = error else {
+        panic!("{error}")
+    };
+    assert_eq!(path, desk.study());
     assert!(
-        message.contains("a.gdcm-study.json: the study's dataset cannot be opened: "),
-        "{message}"
-    );
-    assert!(
-        message.contains("small.json: there is no such file") && message.contains("--dataset"),
-        "{message}"
+        matches!(&*dataset, FileError::Missing { path } if path.ends_with("small.json")),
+        "{dataset}"
     );
 }
 
-/// Returns the differences of the dataset that are reported when the study is opened, one per line.
-fn differences(desk: &Desk) -> Vec<String> {
-    open_study(&desk.study())
-        .unwrap()
-        .differences
-        .iter()
-        .map(dataset_difference_text)
-        .collect()
+/// Returns the differences of the dataset that are reported when the study is opened.
+fn differences(desk: &Desk) -> Vec<Difference> {
+    open_study(&desk.study()).unwrap().differences
 }
 
 #[test]
@@ -368,18 +368,29 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
     fs::write(desk.dataset(), serde_json::to_vec(&value).unwrap()).unwrap();
 
     let found = differences(&desk);
-    for words in [
-        "condition 7 is at 61 kt",
-        "condition 7, physics model \"nominal\" has changed",
-        "condition 7, physics model \"V+5kt\" was removed",
-        "condition 7, physics model \"V+6kt\" was added",
-        "a decision no longer applies: reject V+5kt (condition 7): condition 7 has no physics model \"V+5kt\"",
+    let physics = |name: &str| model(7, BundleKind::Physics, name);
+    for difference in [
+        Difference::AirspeedChanged {
+            condition: ConditionId(7),
+            before_kt: 0.0,
+            now_kt: 61.0,
+        },
+        Difference::ModelChanged(physics("nominal")),
+        Difference::ModelRemoved(physics("V+5kt")),
+        Difference::ModelAdded(physics("V+6kt")),
     ] {
-        assert!(
-            found.iter().any(|line| line.contains(words)),
-            "expected \"{words}\" in {found:?}"
-        );
+        assert!(found.contains(&difference), "{difference:?} in {found:?}");
     }
+    assert!(
+        found.iter().any(|difference| matches!(
+            difference,
+            Difference::NotApplied {
+                why: NotApplied::Refused(EditRefusal::NoModel { .. }),
+                ..
+            }
+        )),
+        "{found:?}"
+    );
     assert_eq!(found.len(), 5, "{found:?}");
     let opened = open_study(&desk.study()).unwrap().study;
     assert_eq!(
@@ -400,18 +411,21 @@ fn a_dataset_written_in_another_way_is_not_different() {
         serde_json::to_string_pretty(&value).unwrap(),
     )
     .unwrap();
-    assert_eq!(differences(&desk), [""; 0]);
+    assert_eq!(differences(&desk), []);
 }
 
 #[test]
 fn a_study_that_does_not_say_what_its_dataset_held_says_that_it_has_changed() {
     let desk = Desk::new();
     desk.saved(|file| drop(file["dataset"].as_object_mut().unwrap().remove("holds")));
-    assert_eq!(differences(&desk), [""; 0], "the same file");
+    assert_eq!(differences(&desk), [], "the same file");
     fs::write(desk.dataset(), SMALL.replace("6600", "6601")).unwrap();
     let found = differences(&desk);
     assert!(
-        found.len() == 1 && found[0].contains(&desk.loaded().sha256),
+        matches!(
+            found.as_slice(),
+            [Difference::AnotherFile { found, .. }] if *found == desk.loaded().sha256
+        ),
         "{found:?}"
     );
 }
@@ -440,47 +454,60 @@ fn a_dataset_that_has_moved_is_found_beside_the_study_or_where_it_is_said_to_be(
 fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
     let desk = Desk::new();
     type Change = fn(&mut Json);
-    let cases: [(Change, &str); 8] = [
+    let cases: [(Change, &str, &str, &str); 8] = [
         (
             |file| file["version"] = json!(9),
-            "expected version 1 of gdcm-study, found 9",
+            "other-version",
+            "",
+            "found 9",
         ),
         (
             |file| file["settings"]["alpha_gain"] = json!(-1),
-            "settings, alpha_gain: α of the gains: expected a number from 0",
+            "out-of-range",
+            "settings, alpha_gain",
+            "found -1",
         ),
         (
             |file| file["settings"]["points"] = json!(1),
+            "out-of-range",
             "settings, points",
+            "found 1",
         ),
         (
             |file| file["settings"]["band_rad_s"] = json!([2, 1]),
-            "settings, band_rad_s: the frequency band must be 0.0001 <= min < max",
+            "band",
+            "settings, band_rad_s",
+            "min 2, max 1",
         ),
         (
             |file| file["settings"]["gain_bounds"] = json!([2, 1]),
-            "settings, gain_bounds: gain bounds",
+            "out-of-range",
+            "settings, gain_bounds",
+            "found 1",
         ),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),
-            "settings, schedule: degree: expected a whole number from 0 to 3",
+            "out-of-range",
+            "settings, schedule",
+            "found 4",
         ),
         (
             |file| file["settings"]["cost_average"] = json!("mode"),
+            "unknown-word",
             "settings, cost_average",
+            "mode",
         ),
         (
             |file| file["conditions"][1]["id"] = json!(7),
-            "condition 7 (number 2 in the file): duplicate condition 7",
+            "duplicate-condition",
+            "condition 7 (number 2 in the file)",
+            "7",
         ),
     ];
-    for (change, words) in cases {
-        let message = desk.refusal(change);
-        assert!(
-            message.contains("a.gdcm-study.json: ") && message.contains(words),
-            "expected \"{words}\" in: {message}"
-        );
-        assert_eq!(message.lines().count(), 1);
+    for (change, code, place, value) in cases {
+        let error = desk.refusal(change);
+        assert_error(&error, code, place, &[value, "a.gdcm-study.json: "]);
+        assert_eq!(error.to_string().lines().count(), 1);
     }
 }
 

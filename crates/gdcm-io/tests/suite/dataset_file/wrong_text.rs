@@ -4,10 +4,12 @@ use super::*;
 
 #[test]
 fn a_file_that_is_not_there_is_named() {
-    let message = load_dataset(Path::new("no/such/file.json"))
-        .unwrap_err()
-        .to_string();
-    assert_eq!(message, "no/such/file.json: there is no such file");
+    let error = load_dataset(Path::new("no/such/file.json")).unwrap_err();
+    assert!(
+        matches!(&error, FileError::Missing { path } if path == Path::new("no/such/file.json")),
+        "{error}"
+    );
+    assert_eq!(error.code(), Some("missing-file"));
 }
 
 #[test]
@@ -40,43 +42,57 @@ fn text_that_is_not_json_is_refused_with_its_line() {
         "{'format': 1}",
         "\u{feff}\u{feff}{}",
     ] {
-        let message = refusal(text.as_bytes());
+        let error = refusal(text.as_bytes());
         assert!(
-            message.contains("JSON") && message.contains("line 1"),
-            "{message}"
+            matches!(
+                error,
+                FileError::NotJson { line: 1, .. } | FileError::CutOff { line: 1, .. }
+            ),
+            "{error:?}"
         );
     }
     assert_text_refused(
         "\"mass_kg\": 6600",
         "\"mass_kg\": 6600,,",
-        &["condition 7", "this is not JSON", "line"],
+        "not-json",
+        "condition 7",
+        &["line"],
     );
 }
 
 #[test]
 fn a_file_that_is_cut_off_says_where() {
     let cut = SMALL.find("\"V+5kt\"").unwrap() + 120;
-    let message = refusal(&SMALL.as_bytes()[..cut]);
-    assert!(
-        message.contains("condition 7 (number 1 in the file), physics model \"V+5kt\" (number 2)"),
-        "{message}"
+    let place = "condition 7 (number 1 in the file), physics model \"V+5kt\" (number 2)";
+    assert_error(
+        &refusal(&SMALL.as_bytes()[..cut]),
+        "json-cut-off",
+        place,
+        &[],
     );
-    assert!(message.contains("ends too early"), "{message}");
 }
 
 #[test]
 fn text_after_the_end_is_refused() {
-    assert!(refusal(format!("{SMALL}{{}}").as_bytes()).contains("trailing characters"));
+    let error = refusal(format!("{SMALL}{{}}").as_bytes());
+    let last_line = SMALL.lines().count();
+    assert!(
+        matches!(error, FileError::NotJson { line, .. } if line >= last_line),
+        "{error:?}"
+    );
 }
 
 #[test]
 fn a_broken_gzip_file_is_refused() {
     let mut packed = gzip(SMALL.as_bytes());
     let middle = packed.len() / 2;
-    assert!(refusal(&packed[..middle]).contains("end too early"));
+    assert_eq!(refusal_code(&packed[..middle]), "gzip-cut-off");
     packed[middle] ^= 0xff;
-    assert!(refusal(&packed).contains("gzip data"));
-    assert!(refusal(&[0x1f, 0x8b, 0, 0]).contains("gzip data"));
+    assert!(matches!(
+        refusal_code(&packed),
+        "damaged-gzip" | "gzip-cut-off"
+    ));
+    assert_eq!(refusal_code(&[0x1f, 0x8b, 0, 0]), "gzip-cut-off");
 }
 
 #[test]
@@ -86,8 +102,11 @@ fn a_small_file_that_unpacks_to_more_than_the_limit_is_refused() {
     for _ in 0..=LARGEST_TEXT >> 20 {
         encoder.write_all(&blank).unwrap();
     }
-    let message = refusal(&encoder.finish().unwrap());
-    assert!(message.contains("exceeds 128 MiB"), "{message}");
+    let error = refusal(&encoder.finish().unwrap());
+    assert!(
+        matches!(error, FileError::TooLarge { most_mib: 128, .. }),
+        "{error:?}"
+    );
 }
 
 #[test]
@@ -96,41 +115,57 @@ fn deep_nesting_is_refused_where_it_starts() {
     assert_text_refused(
         "\"altitude_ft\": 500",
         &format!("\"altitude_ft\": {deep}"),
-        &["condition 7", "altitude_ft"],
+        "wrong-type",
+        "altitude_ft",
+        &[],
     );
     assert_text_refused(
         "\"A\": [",
         &format!("\"A\": [{deep}"),
-        &["physics model \"nominal\"", "matrix A, row 1"],
+        "wrong-type",
+        "physics model \"nominal\" (number 1), matrix A, row 1",
+        &[],
     );
-    assert!(refusal(deep.as_bytes()).contains("expected an object, found a list"));
+    assert_eq!(refusal_code(deep.as_bytes()), "wrong-type");
     // The value of an unknown key is skipped without recursion, so the only error is the missing
     // end.
-    assert_text_refused("\"version\": 1", &format!("\"x\": {deep}"), &["line"]);
+    let skipped = SMALL.replacen("\"version\": 1", &format!("\"x\": {deep}"), 1);
+    assert!(matches!(
+        refusal(skipped.as_bytes()),
+        FileError::CutOff { .. } | FileError::NotJson { .. }
+    ));
 }
 
 #[test]
 fn another_format_or_version_is_told_before_anything_else() {
     assert_refused(
         |file| file["format"] = json!("other"),
-        &["expected \"format\": \"gdcm-dataset\", found \"other\""],
+        "other-format",
+        "",
+        &["\"gdcm-dataset\"", "\"other\""],
     );
     assert_refused(
         |file| file["version"] = json!(2),
-        &["expected version 1 of gdcm-dataset, found 2", "newer gdcm"],
+        "other-version",
+        "",
+        &["version 1 of gdcm-dataset", "found 2"],
     );
     let future = |file: &mut Value| {
         file["version"] = json!(2);
         file["conditions"] = json!("elsewhere");
     };
-    assert_refused(future, &["expected version 1"]);
+    assert_refused(future, "other-version", "", &[]);
     assert_refused(
         |file| drop(file.as_object_mut().unwrap().remove("format")),
-        &["the key \"format\" is missing"],
+        "missing-key",
+        "",
+        &["\"format\""],
     );
     assert_refused(
         |file| file["version"] = json!("one"),
-        &["expected version 1 of gdcm-dataset, found \"one\""],
+        "other-version",
+        "",
+        &["found \"one\""],
     );
 }
 
@@ -139,13 +174,13 @@ fn neither_a_dataset_nor_a_study_is_refused_as_such() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("file.json");
     std::fs::write(&path, r#"{"format": "gdcm-corrections", "version": 1}"#).unwrap();
-    let message = load_any(&path, &Default::default())
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.ends_with(
-            "expected \"format\": \"gdcm-dataset\" or \"gdcm-study\", found \"gdcm-corrections\""
-        ),
-        "{message}"
-    );
+    let error = load_any(&path, &Default::default()).unwrap_err();
+    let FileError::Format {
+        expected, found, ..
+    } = error
+    else {
+        panic!("{error}")
+    };
+    assert_eq!(expected, "gdcm-dataset\" or \"gdcm-study");
+    assert_eq!(found, "\"gdcm-corrections\"");
 }

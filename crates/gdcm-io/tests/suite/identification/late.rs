@@ -12,7 +12,6 @@ use gdcm_sysid::identification::{Preparation, ResponseEstimate};
 use gdcm_sysid::spectra::local_polynomial::local_polynomial;
 use gdcm_sysid::spectra::preparation::prepare;
 use gdcm_sysid::spectra::spectrum::spectra;
-use gdcm_words::channel_time_skew::time_skew_text;
 
 use crate::made_up::{Flight, Gusts, stable_aircraft};
 
@@ -87,25 +86,5 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     assert_eq!(
         ChannelTimeSkew::find(&clean, BAND, &with(of.a() * 1.6, of.c().clone())),
         None
-    );
-}
-
-#[test]
-fn words_say_what_is_seen_and_what_else_it_may_be() {
-    let late = ChannelTimeSkew {
-        role: ChannelSide::Output,
-        index: 1,
-        delay_s: -0.0401,
-    };
-    let words = time_skew_text(&late, "Q", "nominal");
-    assert!(
-        words.starts_with(
-            "Q seems to be logged 40 ms early in all records: compared with the physics model \"nominal\""
-        ),
-        "{words}"
-    );
-    assert!(
-        words.contains("Keep it if the sensor or servo really has this lag"),
-        "{words}"
     );
 }

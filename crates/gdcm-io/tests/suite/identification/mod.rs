@@ -7,7 +7,7 @@ mod example;
 mod late;
 mod lines;
 mod preparation;
-mod record_doubts;
 mod real_aircraft;
+mod record_doubts;
 mod validation;
 mod whole;

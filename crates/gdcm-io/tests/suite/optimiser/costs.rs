@@ -1,9 +1,8 @@
 //! Sensitivities and toggles, compared with solutions of the modified problem.
 
-use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity, sensitivities};
+use gdcm_method::correction::sensitivity::{ActiveConstraint, sensitivities};
 use gdcm_method::correction::toggles::toggles;
-use gdcm_method::correction::{Bounds, Channel, Problem, ProofBudget, Quantity};
-use gdcm_words::sensitivity::sensitivity_text;
+use gdcm_method::correction::{Bounds, Problem, ProofBudget};
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
@@ -100,60 +99,19 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
 }
 
 #[test]
-fn sensitivities_are_put_into_words() {
+fn the_sensitivities_are_those_of_the_held_entries() {
     let instance = &gain_instances()[0];
     let solution = solved(&instance.problem);
-    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    let inputs = names(&["LON", "LAT", "PED", "COL"]);
-    let outputs = names(&["P", "Q", "R", "NX", "NY", "NZ"]);
     let all = sensitivities(&instance.problem, &solution);
     // The five held entries of Table 2; the wide bounds of this instance are not active.
     assert_eq!(all.len(), 5);
     for sensitivity in all {
-        let words = sensitivity_text(&sensitivity, &inputs, &outputs);
-        let change = if sensitivity.per_unit > 0.0 {
-            "lowering"
-        } else {
-            "raising"
-        };
         assert!(
-            words.contains(&format!(
-                "is held: {change} its gain by 1 dB would lower the objective by about"
-            )),
-            "{words}"
+            matches!(sensitivity.constraint, ActiveConstraint::Held(pair) if instance.problem.constrained[pair]),
+            "{sensitivity:?}"
         );
+        assert_eq!(sensitivity.step(), 1.0);
     }
-}
-
-#[test]
-fn no_constraint_is_said_to_cost_more_than_the_whole_objective() {
-    let words = |share_per_unit: f64| {
-        let constraint = ActiveConstraint::LowerBound(Channel::Input(0));
-        let per_unit = 1e-6 * share_per_unit;
-        let sensitivity = Sensitivity {
-            quantity: Quantity::Delay,
-            constraint,
-            per_unit,
-            share_per_unit,
-        };
-        (
-            sensitivity.step(),
-            sensitivity_text(&sensitivity, &["LON".to_owned()], &[]),
-        )
-    };
-    let (step, of_much) = words(1.2156);
-    assert_eq!(step, 0.1);
-    assert_eq!(
-        of_much,
-        "τ_LON is 0: 0.1 ms of lead would lower the objective by about 12.16 %."
-    );
-    assert_eq!(
-        words(0.3).1,
-        "τ_LON is 0: 1 ms of lead would lower the objective by about 30.00 %."
-    );
-    let (least, of_all) = words(1e12);
-    assert_eq!(least, 1e-6);
-    assert!(of_all.ends_with("by about 100.00 %."), "{of_all}");
 }
 
 #[test]

@@ -5,7 +5,6 @@ use proptest::prelude::*;
 use gdcm_method::correction::conflict::{Conflict, ConflictKind};
 use gdcm_method::correction::{Bounds, Channel, GainObjective, Problem, ProofBudget, Quantity};
 use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_words::conflict_text::{agreement_text, conflict_text, miss_text, remedy_text};
 
 use super::instances::{delay_instances, gain_instances, on_axis};
 use super::random::{Pattern, delay_problems, gain_problems};
@@ -18,13 +17,6 @@ const BUDGET: ProofBudget = ProofBudget {
     listing: 0,
     bytes: 0,
 };
-
-const INPUTS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
-const OUTPUTS: [&str; 6] = ["P", "Q", "R", "NX", "NY", "NZ"];
-
-fn names(list: &[&str]) -> Vec<String> {
-    list.iter().map(|&name| name.to_owned()).collect()
-}
 
 fn holding(problem: &Problem, entries: &[Pair]) -> Problem {
     Problem {
@@ -75,15 +67,18 @@ fn a_product_above_the_bounds_is_explained() {
         panic!("{:?}", solution.conflicts)
     };
     // The required product is 2.5: 1.58^2 = 2.496 is too small, 1.59^2 = 2.528 suffices.
-    assert!(
-        matches!(conflict.kind, ConflictKind::AboveUpper { upper, .. } if upper == 1.59),
-        "{conflict:?}"
-    );
-    assert_eq!(
-        conflict_text(conflict, &names(&INPUTS), &names(&OUTPUTS)),
-        "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, but 2.500 is required; set \
-         the upper bound to 1.59 or release it."
-    );
+    let ConflictKind::AboveUpper {
+        channels,
+        asked,
+        upper,
+    } = conflict.kind
+    else {
+        panic!("{conflict:?}")
+    };
+    assert_eq!(channels, [Channel::Input(1), Channel::Output(0)]);
+    assert!((asked - 2.5).abs() < 1e-12, "{asked}");
+    assert_eq!(upper, 1.59);
+    assert_eq!(conflict.entries, [Pair::new(0, 1)]);
     assert!(is_matched(&bounded(&problem, 0.7, 1.59)));
     assert!(!is_matched(&bounded(&problem, 0.7, 1.58)));
     let miss = &solution.unmatched[0];
@@ -132,11 +127,20 @@ fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
     let [conflict] = solution.conflicts.as_slice() else {
         panic!("{:?}", solution.conflicts)
     };
-    assert_eq!(
-        conflict_text(conflict, &names(&INPUTS), &names(&OUTPUTS)),
-        "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, but 2.500 is \
-         required; set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
-    );
+    let ConflictKind::TooFarApart {
+        greater,
+        lesser,
+        asked,
+        upper,
+        lower,
+    } = conflict.kind
+    else {
+        panic!("{conflict:?}")
+    };
+    assert_eq!([greater, lesser], [Channel::Output(4), Channel::Output(2)]);
+    assert!((asked - 2.5).abs() < 1e-12, "{asked}");
+    assert_eq!((upper, lower), (1.75, Some(0.56)));
+    assert_eq!(conflict.entries, [Pair::new(2, 2), Pair::new(4, 2)]);
     assert!(
         is_matched(&bounded(&problem, 0.7, 1.75)) && !is_matched(&bounded(&problem, 0.7, 1.74))
     );
@@ -189,12 +193,6 @@ fn a_cycle_of_constraints_is_explained() {
                 instance.id
             );
         }
-        let words = conflict_text(&solution.conflicts[0], &names(&INPUTS), &names(&OUTPUTS));
-        assert!(
-            words.contains("form a loop: their ratios disagree by")
-                && words.ends_with("release one of them."),
-            "{words}"
-        );
     }
 }
 
@@ -215,10 +213,16 @@ fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
     }
 }
 
+/// Returns the deviation of a loop, without its sign \[dB\].
+fn loop_mismatch_db(conflict: &Conflict) -> f64 {
+    match conflict.kind {
+        ConflictKind::Loop { mismatch } => mismatch.abs(),
+        _ => panic!("{conflict:?}"),
+    }
+}
+
 #[test]
 fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_said_to() {
-    let inputs = names(&INPUTS);
-    let outputs = names(&OUTPUTS);
     let agreeing = solved_within(&near_loop(0.04, 0.05), BUDGET);
     assert!(
         agreeing.matched && agreeing.unmatched.is_empty() && agreeing.conflicts.is_empty(),
@@ -228,11 +232,7 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
     let [agreement] = agreeing.agreeing.as_slice() else {
         panic!("{:?}", agreeing.agreeing)
     };
-    let words = agreement_text(agreement, &inputs, &outputs);
-    assert!(
-        words.contains("form a loop: their ratios agree to 0.040 dB"),
-        "{words}"
-    );
+    assert!((loop_mismatch_db(agreement) - 0.04).abs() < 1e-9);
     // Least squares distributes the mismatch evenly over the four entries.
     for (pair, target) in agreeing
         .targets
@@ -249,30 +249,17 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
     }
     let disagreeing = solved_within(&near_loop(0.06, 0.05), BUDGET);
     assert!(!disagreeing.matched && disagreeing.agreeing.is_empty());
-    let words = conflict_text(&disagreeing.conflicts[0], &inputs, &outputs);
-    assert!(
-        words.contains("form a loop: their ratios disagree by 0.060 dB"),
-        "{words}"
-    );
+    assert!((loop_mismatch_db(&disagreeing.conflicts[0]) - 0.06).abs() < 1e-9);
 }
 
 #[test]
-fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
-    let inputs = names(&INPUTS);
-    let outputs = names(&OUTPUTS);
+fn what_disagrees_by_little_is_not_rounded_to_nothing() {
     let solution = solved_within(&near_loop(0.002, 0.0), BUDGET);
-    let words = conflict_text(&solution.conflicts[0], &inputs, &outputs);
-    assert!(words.contains("disagree by 0.0020 dB"), "{words}");
+    assert!((loop_mismatch_db(&solution.conflicts[0]) - 0.002).abs() < 1e-9);
+    // Least squares distributes the mismatch evenly over the four entries.
+    assert_eq!(solution.unmatched.len(), 4);
     for miss in &solution.unmatched {
-        let words = miss_text(miss, 12.0, &inputs, &outputs);
-        let figures: Vec<&str> = words
-            .split(' ')
-            .filter(|word| word.starts_with("1.0") || word.starts_with("0.9"))
-            .collect();
-        assert!(
-            figures.len() == 2 && figures[0] != figures[1] && !words.contains("0.0 dB"),
-            "{words}"
-        );
+        assert!((miss.excess.abs() - 0.0005).abs() < 1e-7, "{miss:?}");
     }
     let problem = table_two(
         &[(0, 1, 1.960_1)],
@@ -281,14 +268,14 @@ fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
             upper: 1.4,
         },
     );
-    let words = conflict_text(
-        &solved_within(&problem, BUDGET).conflicts[0],
-        &inputs,
-        &outputs,
-    );
+    let solution = solved_within(&problem, BUDGET);
     assert!(
-        words.contains("is at most 1.9600, but 1.9601 is required;"),
-        "{words}"
+        matches!(
+            solution.conflicts[0].kind,
+            ConflictKind::AboveUpper { asked, .. } if (asked - 1.960_1).abs() < 1e-12
+        ),
+        "{:?}",
+        solution.conflicts
     );
 }
 
@@ -337,7 +324,7 @@ fn unreachable_reference_instances_are_explained_as_they_were_made() {
 }
 
 #[test]
-fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
+fn an_answer_has_a_proof_its_misses_and_its_remedies() {
     let problem = table_two(
         &[(2, 2, 0.6), (4, 2, 1.5)],
         Bounds {
@@ -346,31 +333,28 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
         },
     );
     let solution = solved(&problem);
-    let inputs = names(&INPUTS);
-    let outputs = names(&OUTPUTS);
     assert!(matches!(
         solution.proof.outcome,
         gdcm_method::correction::Outcome::Proven { .. }
     ));
     // The ratio of 2.5 is reduced to 2 by the factor 1.25, of which each entry takes half (0.97
     // dB).
-    let misses: Vec<String> = solution
-        .unmatched
-        .iter()
-        .map(|miss| miss_text(miss, 12.0, &inputs, &outputs))
-        .collect();
-    assert_eq!(
-        misses,
-        [
-            "PED → R is held at 0.671 instead of 0.600 (+1.0 dB).",
-            "PED → NY is held at 1.342 instead of 1.500 (-1.0 dB)."
-        ]
+    let [rate, force] = solution.unmatched.as_slice() else {
+        panic!("{:?}", solution.unmatched)
+    };
+    assert_eq!([rate.pair, force.pair], [Pair::new(2, 2), Pair::new(4, 2)]);
+    assert!(
+        (rate.target - 0.6 * 1.25_f64.sqrt()).abs() < 1e-6,
+        "{rate:?}"
     );
-    assert_eq!(
-        remedy_text(&solution.remedy.unwrap(), &inputs, &outputs),
-        "Any one of these changes allows all responses to be held: an upper bound of 1.75; a lower bound of 0.56; releasing PED → R; \
-         releasing PED → NY."
+    assert!(
+        (force.target - 1.5 / 1.25_f64.sqrt()).abs() < 1e-6,
+        "{force:?}"
     );
+    assert!((rate.excess - 0.969).abs() < 1e-3 && (force.excess + 0.969).abs() < 1e-3);
+    let remedy = solution.remedy.unwrap();
+    assert_eq!((remedy.upper, remedy.lower), (Some(1.75), Some(0.56)));
+    assert_eq!(remedy.free, [rate.pair, force.pair]);
 }
 
 #[test]
@@ -388,10 +372,8 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
     );
     // 0.034 s at 12 rad/s are 0.408 rad.
     assert!((miss.phase_left_deg(12.0) - 0.408_f64.to_degrees()).abs() <= 1e-12);
-    assert_eq!(
-        miss_text(miss, 12.0, &names(&INPUTS), &names(&OUTPUTS)),
-        "LAT → P needs 34.0 ms of lead, which a delay cannot provide; a phase error of 23° remains at 12 rad/s."
-    );
+    assert!(miss.why.is_lone_lead());
+    assert_eq!((miss.pair, miss.why.entries.len()), (Pair::new(0, 1), 1));
     assert_eq!(solution.remedy.unwrap().upper, None);
 }
 

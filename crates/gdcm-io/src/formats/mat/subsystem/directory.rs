@@ -19,6 +19,7 @@ use crate::formats::mat::cursor::ByteOrder;
 use crate::formats::mat::element::decode_name;
 use crate::formats::mat::subsystem::damaged;
 use crate::reading_budget::VariableFault;
+use crate::variable_fault::damage::Damage;
 
 /// Length of the header \[bytes\].
 const HEADER_BYTES: usize = 40;
@@ -193,12 +194,10 @@ impl<'b> DirectoryBytes<'b> {
             ByteOrder::Big => big,
         };
         let &[version, name_count, ref regions @ ..] = head.as_slice() else {
-            return Err(damaged("the directory of objects is cut off"));
+            return Err(damaged(Damage::DirectoryCutOff));
         };
         if !(1..=NEWEST).contains(&version) {
-            return Err(damaged(format!(
-                "the directory of objects has the unknown version {version}"
-            )));
+            return Err(damaged(Damage::DirectoryVersion { version }));
         }
         Ok(Self {
             bytes,
@@ -213,7 +212,7 @@ impl<'b> DirectoryBytes<'b> {
     fn names(&self) -> Result<Vec<String>, VariableFault> {
         let first = self.regions.first().map_or(0, |&at| at as usize);
         let Some(names) = self.bytes.get(HEADER_BYTES..first) else {
-            return Err(damaged("the names of objects are cut off"));
+            return Err(damaged(Damage::ObjectNamesCutOff));
         };
         Ok(names
             .split(|&byte| byte == 0)
@@ -231,7 +230,7 @@ impl<'b> DirectoryBytes<'b> {
         };
         match words {
             Some(bytes) => Ok(decode_words(bytes, self.order)),
-            None => Err(damaged("the directory of objects exceeds its cell")),
+            None => Err(damaged(Damage::DirectoryLength)),
         }
     }
 }
@@ -262,7 +261,7 @@ fn property_lists(words: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
     while let [count, after @ ..] = rest {
         let length = (*count as usize).saturating_mul(PROPERTY_WORDS);
         let Some((list, after)) = after.split_at_checked(length) else {
-            return Err(damaged("the properties of an object are cut off"));
+            return Err(damaged(Damage::PropertiesCutOff));
         };
         let (properties, _) = list.as_chunks();
         lists.push(properties.iter().copied().map(decode_property).collect());

@@ -32,6 +32,8 @@ use crate::formats::mat::unreadable::unreadable;
 use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::{StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::ObjectFault;
 
 pub(in crate::formats::mat) use crate::formats::mat::subsystem::reference::Reference;
 
@@ -101,7 +103,11 @@ impl Subsystem {
     ) -> Result<Value, VariableFault> {
         match Reference::parse(reference) {
             Some(reference) => self.resolve(&reference, &ValuePath::start(variable), budget),
-            None => Ok(unreadable("object", "its reference is damaged", variable)),
+            None => Ok(unreadable(
+                "object",
+                ObjectFault::DamagedReference,
+                variable,
+            )),
         }
     }
 
@@ -131,11 +137,7 @@ impl Subsystem {
                     .map_err(|fault| path.locate(fault))?;
                 Ok(members.into_value())
             }
-            Err(class) => Ok(unreadable(
-                class,
-                "the members of the enumeration cannot be decoded",
-                &path.text(),
-            )),
+            Err(class) => Ok(unreadable(class, ObjectFault::Enumeration, &path.text())),
         }
     }
 }
@@ -143,14 +145,12 @@ impl Subsystem {
 /// Returns the bytes of the directory, which are stored as the numbers in a cell.
 fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
     let Some(Value::Array(array)) = cell else {
-        return Err(damaged("the directory of objects is missing"));
+        return Err(damaged(Damage::DirectoryMissing));
     };
     let mut bytes = Vec::new();
     for &number in &array.re {
         if !(0.0..256.0).contains(&number) {
-            return Err(damaged(
-                "the directory of objects does not consist of bytes",
-            ));
+            return Err(damaged(Damage::DirectoryBytes));
         }
         bytes.push(number as u8);
     }
@@ -158,8 +158,8 @@ fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
 }
 
 /// Returns the error for damaged objects, without a position in the file.
-fn damaged(what: impl Into<String>) -> VariableFault {
-    VariableFault::damaged("", what, 0)
+fn damaged(damage: Damage) -> VariableFault {
+    VariableFault::damaged("", damage, 0)
 }
 
 #[cfg(test)]
@@ -173,6 +173,7 @@ mod tests {
         reference, words_of,
     };
     use crate::formats::variables::{Array, TextArray};
+    use crate::variable_fault::unread::Unread;
 
     const NAMES: [&str; 12] = [
         "ss", "ssdata", "ltipack", "string", "node", "Data_", "Name_", "any", "a", "self", "Mode_",
@@ -313,10 +314,9 @@ mod tests {
             panic!()
         };
         assert_eq!(class, "node");
-        assert!(
-            why.contains("itself") && why.contains("struct(ring.self)"),
-            "{why}"
-        );
+        let command = "data = struct(ring.self); save out.mat data".to_owned();
+        let fault = ObjectFault::Cycle;
+        assert_eq!(**why, Unread::Object { fault, command });
     }
 
     #[test]
@@ -329,10 +329,20 @@ mod tests {
             panic!()
         };
         assert_eq!(class, "ss");
-        assert!(
-            why.contains("unknown version 9") && why.contains("ssdata(sys)"),
-            "{why}"
-        );
+        let Unread::Object {
+            fault: ObjectFault::ObjectPart(fault),
+            ..
+        } = why.as_ref()
+        else {
+            panic!("{why:?}")
+        };
+        assert!(matches!(
+            **fault,
+            VariableFault::Damaged {
+                damage: Damage::DirectoryVersion { version: 9 },
+                ..
+            }
+        ));
         assert!(unknown.contains_key("x"));
     }
 

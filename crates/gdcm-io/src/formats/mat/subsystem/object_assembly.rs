@@ -17,6 +17,8 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::unread::ObjectFault;
 
 /// Property that holds the value that a class saves instead of an object; such an object has no
 /// defaults.
@@ -84,11 +86,7 @@ impl<'s> Assembly<'s> {
         if let ("string", &[object]) = (class, reference.objects.as_slice()) {
             return Ok(match self.packed_texts(object)? {
                 Some(texts) => Value::Text(texts),
-                None => unreadable(
-                    class,
-                    "its strings are stored in an unknown form",
-                    &path.text(),
-                ),
+                None => unreadable(class, ObjectFault::Strings, &path.text()),
             });
         }
         let contains_itself = reference
@@ -96,7 +94,7 @@ impl<'s> Assembly<'s> {
             .iter()
             .any(|&object| object != 0 && self.open.contains(&object));
         if contains_itself {
-            return Ok(unreadable(class, "it contains itself", &path.text()));
+            return Ok(unreadable(class, ObjectFault::Cycle, &path.text()));
         }
         let open_before = self.open.len();
         let records = self.records(reference, path);
@@ -107,12 +105,14 @@ impl<'s> Assembly<'s> {
                 class: class.to_owned(),
                 records,
             })),
-            Err(VariableFault::TooDeep { .. }) => Ok(unreadable(
+            Err(VariableFault::TooDeep { .. }) => {
+                Ok(unreadable(class, ObjectFault::TooDeep, &path.text()))
+            }
+            Err(VariableFault::Damaged { damage, .. }) => Ok(unreadable(
                 class,
-                "its values are nested too deeply",
+                ObjectFault::Damaged(damage),
                 &path.text(),
             )),
-            Err(VariableFault::Damaged { what, .. }) => Ok(unreadable(class, &what, &path.text())),
             Err(fault) => Err(path.locate(fault)),
         }
     }
@@ -197,15 +197,13 @@ impl<'s> Assembly<'s> {
         }
         let subsystem = self.subsystem;
         let Some(saved) = subsystem.directory.object(object) else {
-            return Err(damaged(format!(
-                "class {class} has no object with number {object}"
-            )));
+            return Err(damaged(Damage::NoSuchObject { class, object }));
         };
         let mut properties = Vec::new();
         let mut known: HashSet<&str> = HashSet::new();
         for property in saved.properties {
             let Some(name) = subsystem.directory.name(property.name) else {
-                return Err(damaged("a property has no name"));
+                return Err(damaged(Damage::PropertyWithoutName));
             };
             if known.insert(name) {
                 let value = self.property(property, &path.step(Step::Field(name))?)?;
@@ -243,7 +241,7 @@ impl<'s> Assembly<'s> {
         match property.content {
             Content::Cell(cell) => match subsystem.values.get(cell) {
                 Some(value) => self.copy(value, path),
-                None => Err(damaged("a property has no value")),
+                None => Err(damaged(Damage::PropertyWithoutValue)),
             },
             Content::Name(name) => Ok(Value::text(
                 subsystem.directory.name(name).unwrap_or_default(),

@@ -1,17 +1,30 @@
 //! Reasons why the variables in a file could not be read.
 
+pub mod column_place;
+pub mod damage;
+pub mod found_content;
+pub mod line_fault;
+pub mod matlab_fault;
+pub mod octave_fault;
+pub mod unread;
+pub mod unsupported_content;
+
 use gdcm_model::message_text::shortened_name;
+
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::found_content::FoundContent;
+use crate::variable_fault::line_fault::LineFault;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Reason why variables could not be read. Field `variable` is the path of the affected variable,
 /// such as "sys.A" or "models{3}.B"; it is empty if none was begun.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VariableFault {
     /// The file has another format.
     #[error("expected {expected}, found {found}")]
     Format {
         expected: &'static str,
-        /// Description of the bytes with which the file begins.
-        found: String,
+        found: FoundContent,
     },
     /// The file ends prematurely.
     #[error("{}the file is cut off (byte {offset}); copy it again", at(variable))]
@@ -22,32 +35,28 @@ pub enum VariableFault {
     },
     /// The bytes contradict the format.
     #[error(
-        "{}{what} (byte {offset}): the file is damaged; write it again",
+        "{}{damage} (byte {offset}): the file is damaged; write it again",
         at(variable)
     )]
     Damaged {
         variable: String,
-        what: String,
+        damage: Damage,
         /// Position in the file \[bytes\].
         offset: u64,
     },
     /// A line is invalid.
-    #[error("{}line {line}: {what}", at(variable))]
+    #[error("{}line {line}: {fault}", at(variable))]
     Line {
         variable: String,
         /// Line number, from 1.
         line: usize,
-        /// Description of the fault and of its remedy.
-        what: String,
+        fault: LineFault,
     },
     /// The format permits the content, but this program does not read it.
-    #[error("{}{what} cannot be read; {remedy}", at(variable))]
+    #[error("{}{content} cannot be read; {}", at(variable), content.remedy())]
     Unsupported {
         variable: String,
-        what: String,
-        /// How to export the data in another format; `{file}` and `{stem}` represent the file name
-        /// with and without its extension.
-        remedy: String,
+        content: UnsupportedContent,
     },
     /// The file contains, or claims to contain, more data than the memory limit permits.
     #[error(
@@ -83,20 +92,48 @@ pub enum VariableFault {
 }
 
 impl VariableFault {
-    /// Creates the error for a file with another format.
-    pub(crate) fn format(expected: &'static str, found: impl Into<String>) -> Self {
-        Self::Format {
-            expected,
-            found: found.into(),
+    /// Returns the stable code by which scripts and tests distinguish the reasons.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Format { .. } => "unexpected-format",
+            Self::CutOff { .. } => "cut-off",
+            Self::Damaged { .. } => "damaged-file",
+            Self::Line { fault, .. } => fault.code(),
+            Self::Unsupported { .. } => "unsupported-content",
+            Self::TooLarge { .. } => "too-much-memory",
+            Self::TooMuchWork { .. } => "too-much-work",
+            Self::TooDeep { .. } => "values-too-deep",
+            Self::Duplicate { .. } => "duplicate-name",
+            Self::Stopped => "stopped",
         }
+    }
+
+    /// Returns the message about a file with the name `file`, which the remedies of unsupported
+    /// contents mention; `stem` is the name without its extension.
+    pub(crate) fn words_for_file(&self, file: &str, stem: &str) -> String {
+        match self {
+            Self::Unsupported { variable, content } => {
+                let remedy = content
+                    .remedy()
+                    .replace("{file}", file)
+                    .replace("{stem}", stem);
+                format!("{}{content} cannot be read; {remedy}", at(variable))
+            }
+            _ => self.to_string(),
+        }
+    }
+
+    /// Creates the error for a file with another format.
+    pub(crate) fn format(expected: &'static str, found: FoundContent) -> Self {
+        Self::Format { expected, found }
     }
 
     /// Creates the error for a file with another format, with a description of its first bytes.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
         let found = if bytes.is_empty() {
-            "nothing"
+            FoundContent::Nothing
         } else {
-            "other bytes"
+            FoundContent::OtherBytes
         };
         Self::format(expected, found)
     }
@@ -110,33 +147,28 @@ impl VariableFault {
     }
 
     /// Creates the error for bytes that contradict the format.
-    pub(crate) fn damaged(variable: &str, what: impl Into<String>, offset: u64) -> Self {
+    pub(crate) fn damaged(variable: &str, damage: impl Into<Damage>, offset: u64) -> Self {
         Self::Damaged {
             variable: variable.to_owned(),
-            what: what.into(),
+            damage: damage.into(),
             offset,
         }
     }
 
     /// Creates the error for an invalid line.
-    pub(crate) fn line(variable: &str, line: usize, what: impl Into<String>) -> Self {
+    pub(crate) fn line(variable: &str, line: usize, fault: impl Into<LineFault>) -> Self {
         Self::Line {
             variable: variable.to_owned(),
             line,
-            what: what.into(),
+            fault: fault.into(),
         }
     }
 
     /// Creates the error for content that the format permits but this program does not read.
-    pub(crate) fn unsupported(
-        variable: &str,
-        what: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
+    pub(crate) fn unsupported(variable: &str, content: UnsupportedContent) -> Self {
         Self::Unsupported {
             variable: variable.to_owned(),
-            what: what.into(),
-            remedy: remedy.into(),
+            content,
         }
     }
 

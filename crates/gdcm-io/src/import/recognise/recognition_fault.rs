@@ -1,0 +1,346 @@
+//! Reasons why a model or a record among variables cannot be read.
+
+use std::fmt::{self, Display, Formatter};
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::limits::MOST_STATES;
+use gdcm_model::dataset::state_space::GREATEST_CHANNEL_DELAY_S;
+use gdcm_model::units::number;
+
+use crate::variable_fault::VariableFault;
+use crate::variable_fault::unread::Unread;
+
+/// Remedy in questions about delays.
+const CHANNEL_DELAYS: &str = "call it input_delays_s or output_delays_s (a number for each \
+    channel, in s), or rename it if it is not a delay";
+/// Remedy for delays that are not the sum of a delay of the input and a delay of the output.
+const APPROXIMATE: &str =
+    "approximate them first: sys = pade(sys, 3); in discrete time: sys = absorbDelay(sys)";
+
+/// Reason why a model or a record cannot be read, with the place among the variables.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FoundFault {
+    /// Files with the matrices of the model; empty if the model is in a single file.
+    pub(crate) files: String,
+    /// Path of the variable; empty if the variables of a file together form the model.
+    pub(crate) variable: String,
+    /// Class of an object that could not be read.
+    pub(crate) class: Option<String>,
+    pub(crate) fault: RecognitionFault,
+}
+
+impl FoundFault {
+    pub(crate) fn new(variable: &str, fault: RecognitionFault) -> Self {
+        Self {
+            files: String::new(),
+            variable: variable.to_owned(),
+            class: None,
+            fault,
+        }
+    }
+}
+
+/// Returns the messages of faults, for the user.
+pub(crate) fn fault_messages(faults: Vec<FoundFault>) -> Vec<String> {
+    faults.iter().map(ToString::to_string).collect()
+}
+
+impl Display for FoundFault {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        if !self.files.is_empty() {
+            write!(out, "{}: ", self.files)?;
+        }
+        match &self.class {
+            Some(class) => write!(out, "{} ({class}): ", self.variable)?,
+            None if self.variable.is_empty() => {}
+            None => write!(out, "{}: ", self.variable)?,
+        }
+        write!(out, "{}", self.fault)
+    }
+}
+
+/// Reason why a model or a record cannot be read; the message contains its remedy. Field `name` is
+/// the name of the affected field of the model, such as "B".
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum RecognitionFault {
+    #[error("matrix {name} is missing")]
+    MissingMatrix { name: &'static str },
+    /// Matrices in separate files do not form a model.
+    #[error("a model needs A, B and C")]
+    MissingMatrices,
+    #[error("{name}: expected {expected}, found {found}")]
+    Kind {
+        name: String,
+        /// Expected kind of value.
+        expected: &'static str,
+        /// Description of the value.
+        found: String,
+    },
+    #[error("{name}, row {row}, column {column}: expected a finite number, found {value}")]
+    MatrixNotFinite {
+        name: String,
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        value: f64,
+    },
+    #[error("{name}, entry {entry}: expected a finite number, found {}", number(*value))]
+    ListNotFinite {
+        name: String,
+        /// Entry, from 1.
+        entry: usize,
+        value: f64,
+    },
+    #[error("{name}: expected finite numbers")]
+    ImaginaryNotFinite { name: String },
+    #[error("{name}, frequency {frequency}: expected a finite number")]
+    ResponseNotFinite {
+        name: &'static str,
+        /// Index of the frequency, from 1.
+        frequency: usize,
+    },
+    #[error("{name}: expected {expected} matrices as in A, found {found}")]
+    PageCount {
+        name: String,
+        expected: usize,
+        /// Description of the value.
+        found: String,
+    },
+    #[error("{place}: {count} {counted}; at most {MOST_STATES} are read")]
+    TooMany {
+        place: String,
+        count: usize,
+        /// "states", "inputs", "outputs" or "channels".
+        counted: &'static str,
+    },
+    #[error("A: expected a square matrix, found {rows} x {columns}")]
+    NotSquare { rows: usize, columns: usize },
+    #[error(
+        "{name}: expected {} x {}, found {} x {}",
+        expected[0], expected[1], found[0], found[1]
+    )]
+    MatrixShape {
+        name: &'static str,
+        /// Numbers of rows and columns.
+        expected: [usize; 2],
+        /// Numbers of rows and columns.
+        found: [usize; 2],
+    },
+    #[error("E: expected {order} x {order}, like A, found {} x {}", found[0], found[1])]
+    DescriptorShape {
+        order: usize,
+        /// Numbers of rows and columns.
+        found: [usize; 2],
+    },
+    #[error(
+        "E is singular{}: the model has no state-space form; export it without E",
+        condition_words(*condition)
+    )]
+    SingularDescriptor {
+        /// Condition number; infinite for a singular matrix, `None` if the factorisation failed.
+        condition: Option<f64>,
+    },
+    #[error("no transfer function")]
+    NoTransferFunction,
+    #[error("response {response}: no {part}")]
+    ResponseWithout {
+        /// Number of the response, from 1.
+        response: usize,
+        /// "denominator", "poles" or "gain".
+        part: &'static str,
+    },
+    #[error("{place}: the denominator is zero")]
+    ZeroDenominator { place: String },
+    #[error(
+        "{place}: the numerator is of higher degree than the denominator; such a response has no \
+        state-space form"
+    )]
+    Improper { place: String },
+    #[error("real and imaginary parts have different dimensions")]
+    PartsDiffer,
+    #[error(
+        "coherence: {found} numbers for the {expected} of the response; write one for each output, \
+        input and frequency, or leave it out"
+    )]
+    CoherenceCount { found: usize, expected: usize },
+    #[error("{name}: may be γ or γ²; call γ² gamma2 or coherence, and square γ first")]
+    Gamma { name: String },
+    #[error(
+        "the response: expected outputs x inputs x {frequencies} frequencies, found {}",
+        shape_words(found)
+    )]
+    ResponseShape {
+        frequencies: usize,
+        /// Length of each dimension.
+        found: Vec<usize>,
+    },
+    #[error("frequencies are missing")]
+    NoFrequencies,
+    #[error(
+        "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" \
+        or \"Hz\" beside them as frequency_unit"
+    )]
+    NoFrequencyUnit,
+    #[error("frequencies are in \"{unit}\"; expected rad/s or Hz")]
+    FrequencyUnit { unit: String },
+    #[error("{name}: delay without a model; put it beside A, B, C and D, as input_delays_s")]
+    DelayWithoutModel { name: String },
+    #[error(
+        "{name}: a measured response must contain its delays; include them in it (in MATLAB: sys = \
+        absorbDelay(sys)), or remove the field"
+    )]
+    DelayOfResponse { name: String },
+    #[error(
+        "{name} looks like a delay, but its name gives neither the delayed signals nor the unit: \
+        {CHANNEL_DELAYS}"
+    )]
+    UnclearDelay { name: String },
+    #[error("{name}: internal delays are not supported; {APPROXIMATE}")]
+    InternalDelay { name: String },
+    #[error("{name}: delays of single responses are given twice; remove one")]
+    ResponseDelaysTwice { name: String },
+    #[error("{name}: these delays are given twice, with different numbers; remove one")]
+    ContradictoryDelays { name: String },
+    #[error(
+        "{name}: expected {expected} delays, one for each {}, found {found}",
+        side
+    )]
+    DelayCount {
+        name: String,
+        side: ChannelSide,
+        expected: usize,
+        found: usize,
+    },
+    #[error(
+        "{name}, output {output}, input {input}: the delays of single responses are not the sum of \
+        an output delay and an input delay; {APPROXIMATE}"
+    )]
+    NotASumOfDelays {
+        name: String,
+        /// Number of the output, from 1.
+        output: usize,
+        /// Number of the input, from 1.
+        input: usize,
+    },
+    #[error(
+        "{name}: expected a delay for each response, {outputs} x {inputs} (outputs x inputs), found \
+        {found}; {CHANNEL_DELAYS}"
+    )]
+    ResponseDelayShape {
+        name: String,
+        outputs: usize,
+        inputs: usize,
+        /// Description of the value.
+        found: String,
+    },
+    #[error(
+        "{name}: expected delays from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}",
+        number(*value)
+    )]
+    DelayRange { name: String, value: f64 },
+    #[error("{name}: {unit}; call it {}_s and give it in s", name.trim_end_matches('_'))]
+    DelayUnit {
+        name: String,
+        unit: UnclearDelayUnit,
+    },
+    #[error(
+        "the sample time is {}: a discrete-time model without a known sample time cannot be \
+        compared; set Ts",
+        number(*.value)
+    )]
+    SampleTime { value: f64 },
+    #[error("the sample time: expected a number, found {found}")]
+    SampleTimeKind {
+        /// Description of the value.
+        found: String,
+    },
+    #[error("its time unit is {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')")]
+    TimeUnit { unit: String },
+    #[error(
+        "{name}: contradictory values {} and {} for the same model; correct one",
+        number(values[0]), number(values[1])
+    )]
+    Contradiction {
+        name: &'static str,
+        values: [f64; 2],
+    },
+    #[error("{name}: {found} numbers for {models} models; write one for each")]
+    NumberForEachModel {
+        name: String,
+        found: usize,
+        models: usize,
+    },
+    #[error(
+        "{name}: {found} entries for the {expected} {}s of the model; write one for each, in the \
+        order of the matrices",
+        side
+    )]
+    LabelCount {
+        name: String,
+        side: ChannelSide,
+        found: usize,
+        expected: usize,
+    },
+    #[error("{name}: expected the names of channels, found {found}")]
+    Labels {
+        name: String,
+        /// Description of the value.
+        found: String,
+    },
+    #[error(
+        "{name}: its channels have no order or no names; write a list of names, or of {{\"name\": …, \
+        \"unit\": …}}, in the order of the matrices"
+    )]
+    LabelOrder { name: String },
+    /// Identification data in the frequency domain.
+    #[error("frequency-domain data are not a record; save time-domain data")]
+    FrequencyDomain,
+    #[error("its output data cannot be read; save t, u and y as matrices")]
+    NoOutputData,
+    #[error("its inputs and outputs have different numbers of samples")]
+    SampleCounts,
+    /// There are more models than the search reads, or values are nested more deeply.
+    #[error("too many values, or values nested too deeply")]
+    SearchLimit,
+    /// A value that its format reader could not read.
+    #[error("{0}")]
+    Unread(Box<Unread>),
+    /// The memory or the steps of work are exhausted.
+    #[error("{0}")]
+    Variables(VariableFault),
+}
+
+/// Reason why the unit of a delay is unclear.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum UnclearDelayUnit {
+    #[error("in samples, but the model has no sample time")]
+    SamplesOfContinuousModel,
+    #[error(
+        "MATLAB counts the delays of a discrete-time model in samples, but these are not whole \
+        numbers"
+    )]
+    PartsOfSamples,
+    #[error("can be seconds or samples of this discrete-time model")]
+    SecondsOrSamples,
+    #[error("{} can be seconds or milliseconds", number(*.greatest))]
+    SecondsOrMilliseconds {
+        /// Greatest delay, in the unclear unit.
+        greatest: f64,
+    },
+}
+
+fn condition_words(condition: Option<f64>) -> String {
+    match condition {
+        Some(condition) if condition.is_finite() => {
+            format!(" (condition {})", number(condition))
+        }
+        Some(_) => " (condition infinite)".to_owned(),
+        None => String::new(),
+    }
+}
+
+fn shape_words(shape: &[usize]) -> String {
+    let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
+    sides.join(" x ")
+}

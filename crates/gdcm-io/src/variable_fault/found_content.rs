@@ -1,0 +1,82 @@
+//! What a file contains instead of the expected format.
+
+use std::fmt::{Display, Formatter, Result};
+
+use gdcm_model::number_format::counted;
+
+use crate::variable_fault::column_place::ColumnPlace;
+
+/// What a file contains instead of the expected format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FoundContent {
+    #[error("nothing")]
+    Nothing,
+    #[error("an empty file")]
+    EmptyFile,
+    #[error("other bytes")]
+    OtherBytes,
+    #[error("a binary file (byte {byte} is zero)")]
+    Binary {
+        /// Position of the first zero byte.
+        byte: usize,
+    },
+    #[error("no row of numbers (the text begins with \"{start}\")")]
+    NoRow { start: String },
+    #[error("no name with numbers below it")]
+    NoNamedNumbers,
+    #[error("{} for {}", counted(*headings, "heading"), counted(*columns, "column"))]
+    HeadingCount { headings: usize, columns: usize },
+    #[error("an HDF5 file, as written by MATLAB with -v7.3")]
+    Hdf5,
+    #[error("a .mat file of unknown version {major}")]
+    MatVersion { major: u8 },
+    #[error("a text that begins with {start:?}")]
+    Text { start: String },
+    #[error("a file that begins with the bytes {}", hexadecimal(bytes))]
+    Bytes { bytes: Vec<u8> },
+    /// A table that is not recognised as a frequency response.
+    #[error(
+        "a table with {lacking} among its columns; name each column in the first line, with \
+        --headings, or under \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \
+        \"phase Q/LON [deg]\""
+    )]
+    NotAResponse { lacking: ResponseLack },
+}
+
+/// What a table lacks to be a frequency response.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ResponseLack {
+    Frequency,
+    /// There is neither magnitude and phase nor real and imaginary part of the same response.
+    Parts,
+    Units(Vec<MissingUnit>),
+}
+
+/// A column whose unit is not given and may be either of two.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingUnit {
+    pub place: ColumnPlace,
+    /// The two possible units, as written in a heading.
+    pub units: [&'static str; 2],
+}
+
+impl Display for ResponseLack {
+    fn fmt(&self, out: &mut Formatter<'_>) -> Result {
+        match self {
+            Self::Frequency => out.write_str("no frequency"),
+            Self::Parts => out.write_str("neither magnitude and phase nor real and imaginary part"),
+            Self::Units(columns) => {
+                let mut questions = Vec::with_capacity(columns.len());
+                for MissingUnit { place, units } in columns {
+                    questions.push(format!("{place} (write [{}] or [{}])", units[0], units[1]));
+                }
+                write!(out, "no unit of {}", questions.join(", of "))
+            }
+        }
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    let bytes: Vec<String> = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    bytes.join(" ")
+}

@@ -1,0 +1,141 @@
+//! Reasons why a value in a file could not be read although the others could.
+
+use crate::variable_fault::VariableFault;
+use crate::variable_fault::damage::Damage;
+use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::unsupported_content::UnsupportedContent;
+
+/// Reason why a value could not be read; the message contains its remedy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unread {
+    /// An assignment in MATLAB or Octave statements.
+    #[error("line {line}, column {column}: {fault}")]
+    Statement {
+        /// Line number, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        fault: MatlabFault,
+    },
+    /// A field is assigned to a variable that is not a struct.
+    #[error("field {field} is set in {value}, which cannot have fields; use different names")]
+    FieldOfOtherValue {
+        field: String,
+        /// Description of the value of the variable.
+        value: String,
+    },
+    /// An object of a MATLAB class.
+    #[error("{fault}; in MATLAB, save its data: {command}")]
+    Object {
+        fault: ObjectFault,
+        /// MATLAB command that exports the data of the object.
+        command: String,
+    },
+    /// An object of another class system, such as Java.
+    #[error(
+        "only objects of MATLAB classes are supported; in MATLAB, save its data as numbers or text"
+    )]
+    ClassSystem,
+    /// The object part of the file, to which all objects refer, cannot be read.
+    #[error("{0}")]
+    ObjectPart(VariableFault),
+    #[error("the file has no object part")]
+    NoObjectPart,
+    #[error("its reference is damaged")]
+    DamagedReference,
+    #[error("enumerations are not supported")]
+    Enumeration,
+    #[error("functions cannot be read as data")]
+    Function,
+    #[error("it is empty")]
+    Empty,
+    #[error("it is neither a dataset nor a group")]
+    NeitherDatasetNorGroup,
+    #[error("it holds neither numbers nor strings")]
+    NeitherNumbersNorStrings,
+    /// A field of a record in an HDF5 dataset.
+    #[error("it is neither a number nor a string of fixed length")]
+    RecordField,
+    #[error("{}", .0.remedy())]
+    Unsupported(UnsupportedContent),
+    /// The length of an unsupported value is unknown, so that later values cannot be found.
+    #[error("this value and all later values cannot be read; {}", .0.remedy())]
+    UnsupportedEnd(UnsupportedContent),
+    /// A value of an unsupported type in an HDF5 file of GNU Octave.
+    #[error("save it with -v7")]
+    OctaveType,
+}
+
+/// Reason why an object of a MATLAB class could not be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ObjectFault {
+    #[error("values of this class are not supported")]
+    Class,
+    #[error("it contains itself")]
+    Cycle,
+    #[error("its values are nested too deeply")]
+    TooDeep,
+    #[error("it is nested inside another object, which is not supported")]
+    Nested,
+    #[error("its strings are stored in an unknown form")]
+    Strings,
+    #[error("the members of the enumeration cannot be decoded")]
+    Enumeration,
+    #[error("its reference is damaged")]
+    DamagedReference,
+    #[error("its reference points to no object")]
+    NoTarget,
+    #[error("{0}")]
+    Damaged(Damage),
+    #[error("the objects of this file cannot be read: {}", reason(.0))]
+    ObjectPart(Box<VariableFault>),
+}
+
+impl Unread {
+    /// Returns the stable code by which scripts and tests distinguish the reasons.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Statement { fault, .. } => fault.code(),
+            Self::FieldOfOtherValue { .. } => "field-of-other-value",
+            Self::Object { fault, .. } => fault.code(),
+            Self::ClassSystem => "class-system",
+            Self::ObjectPart(fault) => fault.code(),
+            Self::NoObjectPart => "no-object-part",
+            Self::DamagedReference => "damaged-reference",
+            Self::Enumeration => "enumeration",
+            Self::Function => "function",
+            Self::Empty => "empty-object",
+            Self::NeitherDatasetNorGroup => "neither-dataset-nor-group",
+            Self::NeitherNumbersNorStrings => "neither-numbers-nor-strings",
+            Self::RecordField => "record-field",
+            Self::Unsupported(_) | Self::UnsupportedEnd(_) | Self::OctaveType => {
+                "unsupported-content"
+            }
+        }
+    }
+}
+
+impl ObjectFault {
+    fn code(&self) -> &'static str {
+        match self {
+            Self::Class => "object-class",
+            Self::Cycle => "object-cycle",
+            Self::TooDeep => "object-too-deep",
+            Self::Nested => "nested-object",
+            Self::Strings => "packed-strings",
+            Self::Enumeration => "enumeration-members",
+            Self::DamagedReference => "damaged-reference",
+            Self::NoTarget => "reference-without-target",
+            Self::Damaged(_) => "damaged-object",
+            Self::ObjectPart(_) => "unread-object-part",
+        }
+    }
+}
+
+/// Returns the message of a fault; for damaged bytes without their position and remedy.
+fn reason(fault: &VariableFault) -> String {
+    match fault {
+        VariableFault::Damaged { damage, .. } => damage.to_string(),
+        fault => fault.to_string(),
+    }
+}

@@ -1,0 +1,91 @@
+//! Contents that a format permits but this program does not read.
+
+/// Content that the format permits but this program does not read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnsupportedContent {
+    /// A file of another program, recognised by its first bytes.
+    #[error("{format}")]
+    ForeignFile {
+        format: &'static str,
+        /// How to export the data in another format; `{file}` and `{stem}` represent the file name
+        /// with and without its extension.
+        remedy: &'static str,
+    },
+    #[error("a GNU Octave {type_name}")]
+    OctaveType { type_name: String },
+    #[error("a character array with more than two dimensions")]
+    OctavePages,
+    #[error("an encrypted entry")]
+    EncryptedEntry,
+    #[error("an entry compressed with method {method}")]
+    CompressionMethod {
+        /// Number of the method in the specification of the zip format.
+        method: u16,
+    },
+    #[error("a ULog of a later version")]
+    UlogVersion,
+    #[error("a blackbox log of data version \"{version}\", or with fields of a later version")]
+    BlackboxVersion { version: String },
+    #[error("a dataset with several unlimited dimensions")]
+    UnlimitedDimensions,
+    #[error("a dataset of this kind ({message})")]
+    HdfDataset {
+        /// Message of the library that reads HDF5.
+        message: String,
+    },
+    #[error("numbers of type {code}")]
+    NumpyNumbers { code: String },
+    #[error("dates or times of type {code}")]
+    NumpyTimes { code: String },
+    #[error("an array of Python objects")]
+    PythonObjects,
+    #[error("version {version} of the .npy format")]
+    NpyVersion { version: u8 },
+    #[error("data after the array")]
+    DataAfterArray,
+    /// A value other than numbers and strings, which a NumPy archive cannot contain.
+    #[error("{value} cannot be written, and therefore")]
+    ValueNotWritten {
+        /// Description of the value.
+        value: String,
+    },
+    #[error("a name this long cannot be written, and therefore")]
+    LongNameNotWritten,
+    #[error("an archive this large cannot be written, and therefore")]
+    LargeArchiveNotWritten,
+}
+
+impl UnsupportedContent {
+    /// Returns how to export the data in another format; `{file}` and `{stem}` represent the file
+    /// name with and without its extension.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::ForeignFile { remedy, .. } => remedy,
+            Self::OctaveType { .. } => "save the file without this variable, or with -v7",
+            Self::OctavePages => "save it as a cell array",
+            Self::EncryptedEntry | Self::CompressionMethod { .. } => {
+                "compress it again with deflate, without a password"
+            }
+            Self::UlogVersion => "save its topics as CSV: ulog2csv \"{file}\"",
+            Self::BlackboxVersion { .. } => "save it as CSV: blackbox_decode \"{file}\"",
+            Self::UnlimitedDimensions => "write it with a fixed shape",
+            // A program that requests the latest format of HDF5 2.0 writes a new chunk layout.
+            Self::HdfDataset { .. } => {
+                "write it with gzip compression or none, in a single file, in the format of HDF5 \
+                1.14 or earlier"
+            }
+            Self::NumpyNumbers { .. } => "save it as float64",
+            Self::NumpyTimes { .. } => "save them as float64, with the unit in the name",
+            Self::PythonObjects => "save plain arrays, one for each name",
+            Self::NpyVersion { .. } => "save a plain array with numpy.save",
+            Self::DataAfterArray => {
+                "save a single array in each .npy file, or several with numpy.savez"
+            }
+            Self::ValueNotWritten { .. }
+            | Self::LongNameNotWritten
+            | Self::LargeArchiveNotWritten => {
+                "write only arrays and strings, under shorter names or in several files"
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Notes on the columns proposed for the time and the channels of a record.
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::units::{number, telling};
+
+/// Note on a choice in a proposed layout. Columns are given as displayed, in quotation marks.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LayoutNote {
+    #[error("time from the stamps of each topic")]
+    TopicStamps,
+    #[error("sample time {} s, as requested", number(*step_s))]
+    RequestedStep {
+        /// Sample time \[s\].
+        step_s: f64,
+    },
+    #[error("sample time {} s, from the file", number(*step_s))]
+    StepOfFile {
+        /// Sample time \[s\].
+        step_s: f64,
+    },
+    #[error("time from column {column}, in {unit}{reason}")]
+    TimeColumn {
+        column: String,
+        unit: &'static str,
+        /// Reason for the unit, in parentheses; empty if the file gives it.
+        reason: String,
+    },
+    #[error("the file marks {count} columns with other names as {side}s: assigned in order")]
+    MarkedInOrder { side: ChannelSide, count: usize },
+    /// A column with the conversion to the unit of a channel.
+    #[error("{channel}: column {column}{conversion}")]
+    Column {
+        channel: String,
+        column: String,
+        conversion: ColumnConversion,
+    },
+    #[error(
+        "{channel}: sign of column {column} reversed, {}",
+        if *is_requested { "as requested" } else { "as its name indicates" }
+    )]
+    SignReversed {
+        channel: String,
+        column: String,
+        /// Whether the alias of the channel asks for it.
+        is_requested: bool,
+    },
+    #[error(
+        "resampled to {} Hz; every channel is filtered by the same low-pass at {} rad/s (logged: \
+        {})",
+        telling(*rate_hz, 2),
+        telling(*cut_off_rad_s, 1),
+        rate_list(logged)
+    )]
+    Resampled {
+        /// Rate of the common clock \[Hz\].
+        rate_hz: f64,
+        /// Cut-off frequency of the low-pass filter \[rad/s\].
+        cut_off_rad_s: f64,
+        logged: Vec<LoggedRate>,
+    },
+    #[error(
+        "{}: treated as held between samples, and therefore moved half a sample later",
+        channels.join(", ")
+    )]
+    Held { channels: Vec<String> },
+}
+
+/// Conversion of a column to the unit of its channel.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ColumnConversion {
+    #[error(", × {} as requested", number(*.0))]
+    RequestedFactor(f64),
+    /// The channel has no unit; the file may give one.
+    #[error(" unchanged{}", unit_words(.0.as_deref()))]
+    NoUnitOfChannel(Option<String>),
+    #[error(", {from} → {to} (× {})", number(*factor))]
+    Converted {
+        from: String,
+        to: String,
+        factor: f64,
+    },
+    /// The column has the unit of the channel, according to the file or the user.
+    #[error(", in {0}")]
+    SameUnit(String),
+    /// The column has the unit of the channel, according to the rule for files without units.
+    #[error(", in {0} as set for the channel")]
+    UnitOfRule(String),
+    /// The samples are plausible in a single unit.
+    #[error(
+        ", assumed to be in {unit}: the file gives no unit, and the samples are plausible in no \
+        other unit{}",
+        factor_words(*factor)
+    )]
+    OnlyPlausibleUnit { unit: String, factor: f64 },
+    #[error(" unchanged: the file gives no unit")]
+    NoUnitOfFile,
+}
+
+/// Rate at which a channel was logged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoggedRate {
+    pub channel: String,
+    /// Rate \[Hz\].
+    pub rate_hz: f64,
+}
+
+impl LayoutNote {
+    /// Returns the stable code by which scripts and tests distinguish the notes.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::TopicStamps => "topic-stamps",
+            Self::RequestedStep { .. } => "requested-sample-time",
+            Self::StepOfFile { .. } => "sample-time-of-file",
+            Self::TimeColumn { .. } => "time-column",
+            Self::MarkedInOrder { .. } => "marked-in-order",
+            Self::Column { .. } => "channel-column",
+            Self::SignReversed { .. } => "sign-reversed",
+            Self::Resampled { .. } => "resampled",
+            Self::Held { .. } => "held-inputs",
+        }
+    }
+}
+
+fn rate_list(rates: &[LoggedRate]) -> String {
+    let mut shown = Vec::with_capacity(rates.len());
+    for LoggedRate { channel, rate_hz } in rates {
+        shown.push(format!("{channel} {} Hz", telling(*rate_hz, 1)));
+    }
+    shown.join(", ")
+}
+
+fn unit_words(unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) => format!(", in {unit}"),
+        None => String::new(),
+    }
+}
+
+fn factor_words(factor: f64) -> String {
+    if factor == 1.0 {
+        String::new()
+    } else {
+        format!(" (× {})", number(factor))
+    }
+}

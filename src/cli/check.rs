@@ -27,7 +27,6 @@ use super::printed_lines::{caution_line, line};
 use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
 use super::terminal::{error, keep_caution, print};
-use crate::message_codes::file_error_code;
 
 /// Prints the contents of a dataset or study.
 pub(super) fn check(
@@ -67,7 +66,7 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
             for fault in &faults {
-                error(file_error_code(fault), &fault.to_string());
+                error(fault.code(), &fault.to_string());
             }
             Failure::Faulty {
                 path: sanitized_path(file),

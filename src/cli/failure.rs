@@ -7,7 +7,6 @@ use gdcm_model::number_format::counted;
 use gdcm_model::progress::Cancelled;
 
 use super::printed_lines::listed_paths;
-use crate::message_codes::file_error_code;
 
 /// Exit status if the command produced no complete result.
 pub(super) const NOT_DONE: u8 = 1;
@@ -121,7 +120,7 @@ impl Failure {
     /// Returns the stable code for scripts.
     pub(super) fn code(&self) -> &'static str {
         match self {
-            Failure::File(error) => file_error_code(error),
+            Failure::File(error) => error.code(),
             Failure::Option { code, .. } => code,
             Failure::UnknownCommand { .. } => "unknown-command",
             Failure::Different { .. } => "different-dataset",

@@ -63,12 +63,17 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
             }
             Err(why) => failures.push(ConditionMessage::new(
                 task.condition,
+                "no-models",
                 format!("no model was identified: {why}"),
             )),
         }
     }
     for message in shared_messages(failures) {
-        caution_for(&message.conditions, &message.text);
+        caution_for(
+            message.message.code,
+            &message.conditions,
+            &message.message.text,
+        );
     }
     if plans.is_empty() {
         return Err(Failure::NoModels {

@@ -6,7 +6,6 @@ use std::path::Path;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use gdcm::message_codes::file_error_code;
 use gdcm_io::files::study_file::open_study;
 use gdcm_io::{DatasetOrigin, FileError, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::GainBounds;
@@ -272,7 +271,7 @@ proptest! {
         } else {
             load_dataset_bytes(text.to_string().as_bytes(), DatasetOrigin::File("small.json".into())).err()
         };
-        prop_assert!(refused.as_ref().is_none_or(|error| file_error_code(error) != "not-json"));
+        prop_assert!(refused.as_ref().is_none_or(|error| error.code() != "not-json"));
         let message = refused.map(|error| error.to_string()).unwrap_or_default();
         prop_assert!(is_plain(&message) && message.lines().count() <= 1, "{}", message);
         prop_assert!(message.chars().count() < 500, "{}", message);
@@ -327,7 +326,7 @@ fn a_choice_of_words_is_refused_with_the_words_that_may_stand_there() {
 fn assert_refused(error: &FileError, code: &str, names: &[&str]) {
     let message = error.to_string();
     let beginning = &message[..message.len().min(400)];
-    assert_eq!(file_error_code(error), code, "{beginning}");
+    assert_eq!(error.code(), code, "{beginning}");
     for name in names {
         assert!(message.contains(name), "{name} in: {beginning}");
     }

@@ -139,7 +139,7 @@ fn a_larger_amplitude_needs_fewer_sweeps() {
 fn wrong_options_of_a_plan_are_refused_before_the_identification() {
     let desk = desk();
     let refusal =
-        |more: &[&str]| desk.refusal(&[&["plan", "lat.csv"], &CHANNELS[..], more].concat());
+        |more: &[&str]| desk.messages(&[&["plan", "lat.csv"], &CHANNELS[..], more].concat());
     refusal(&["--target", "Q/LAT@1=0.5"]).assert_code("unknown-response", &["--target", "Q/LAT"]);
     refusal(&["--amplitude", "COL=5"]).assert_code("unknown-channel", &["--amplitude", "COL"]);
     refusal(&["--amplitude", "PED=5", "--amplitude", "PED=6"])
@@ -148,5 +148,5 @@ fn wrong_options_of_a_plan_are_refused_before_the_identification() {
     refusal(&["--target", "P/LAT@50=0.5"]).assert_code("wrong-option", &["--target", "50"]);
     fs::write(desk.path("there.json"), "").unwrap();
     let exists = refusal(&["--out", "there.json"]);
-    exists.assert_reported("there.json");
+    exists.assert_code("output-exists", &["there.json"]);
 }

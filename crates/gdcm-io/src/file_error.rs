@@ -214,9 +214,9 @@ impl FileError {
         }
     }
 
-    /// Returns the stable code by which scripts and tests distinguish errors; there is always one.
-    pub fn code(&self) -> Option<&'static str> {
-        let code = match self {
+    /// Returns the stable code by which scripts and tests distinguish errors.
+    pub fn code(&self) -> &'static str {
+        match self {
             Self::Missing { .. } => "missing-file",
             Self::Directory { .. } => "input-is-a-directory",
             Self::NotAFile { .. } => "input-not-a-file",
@@ -242,8 +242,7 @@ impl FileError {
             Self::FigureWithoutNumbers { .. } => "figure-without-numbers",
             Self::Export { fault, .. } => fault.code(),
             Self::Unwritable { .. } => "not-writable",
-        };
-        Some(code)
+        }
     }
 
     /// Returns the place in the content of a file; `None` if the error concerns the whole file.

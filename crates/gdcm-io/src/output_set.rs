@@ -410,7 +410,7 @@ mod tests {
             Err(io::Error::from(ErrorKind::StorageFull))
         });
         let error = result.unwrap_err();
-        assert_eq!(error.code(), Some("not-writable"));
+        assert_eq!(error.code(), "not-writable");
         assert!(
             matches!(
                 &error,
@@ -497,7 +497,7 @@ mod tests {
                     matches!(&error, FileError::OutputNotAFile { kind, .. } if *kind == expected),
                     "{error}"
                 );
-                assert_eq!(error.code(), Some("output-not-a-file"));
+                assert_eq!(error.code(), "output-not-a-file");
                 assert_eq!(set.add(path, |_| Ok(())).unwrap_err().code(), error.code());
             }
         }

@@ -12,7 +12,6 @@ use gdcm_model::message_text::{sanitized, shortened_message};
 use super::setup::Setup;
 use crate::gui::state::opens_with::OpensWith;
 use crate::message::Message;
-use crate::message_codes::file_error_code;
 
 /// Result of reading the requested file; the example if there is none.
 pub(super) struct Loaded {
@@ -46,7 +45,7 @@ fn load(path: Option<PathBuf>) -> Loaded {
         },
         Err(error) => Loaded {
             opened: load_example(),
-            trouble: Some(Message::new(file_error_code(&error), short_message(&error))),
+            trouble: Some(Message::new(error.code(), short_message(&error))),
         },
     }
 }

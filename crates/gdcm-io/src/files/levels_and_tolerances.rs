@@ -109,7 +109,7 @@ mod tests {
         ];
         for (text, code, value) in cases {
             let error = read(text).unwrap_err();
-            assert_eq!(error.code(), Some(code), "{error}");
+            assert_eq!(error.code(), code, "{error}");
             let message = error.to_string();
             assert!(message.contains("levels.json"), "{message}");
             assert!(message.contains(value), "{message}");
@@ -159,7 +159,7 @@ mod tests {
         ] {
             std::fs::write(&path, right.replacen(from, to, 1)).unwrap();
             let error = load_tolerances(&path).unwrap_err();
-            assert_eq!(error.code(), Some(code), "{error}");
+            assert_eq!(error.code(), code, "{error}");
             assert!(error.to_string().contains(value), "{error}");
         }
         std::fs::write(&path, right.replacen("\"source\"", "\"sauce\"", 1)).unwrap();

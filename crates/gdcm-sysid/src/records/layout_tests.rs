@@ -661,7 +661,8 @@ fn the_user_s_unit_or_factor_overrides_the_file() {
         [1.0, -9.8]
     );
     let note = "NZ: column \"nz\", × -9.8 as requested".to_owned();
-    assert!(found.notes.contains(&note), "{:?}", found.notes);
+    let notes: Vec<String> = found.notes.iter().map(LayoutNote::to_string).collect();
+    assert!(notes.contains(&note), "{notes:?}");
 }
 
 #[test]
@@ -675,5 +676,6 @@ fn a_mark_before_an_alias_reverses_the_sign() {
         "{found:?}"
     );
     let note = "NZ: sign of column \"nz\" reversed, as requested".to_owned();
-    assert!(found.notes.contains(&note), "{:?}", found.notes);
+    let notes: Vec<String> = found.notes.iter().map(LayoutNote::to_string).collect();
+    assert!(notes.contains(&note), "{notes:?}");
 }

@@ -230,7 +230,7 @@ mod tests {
             ),
         ] {
             let table = table_with("t", unit, stamps(step));
-            assert_eq!(TimeBase::column_note(&table, 1), expected);
+            assert_eq!(TimeBase::column_note(&table, 1).to_string(), expected);
         }
     }
 

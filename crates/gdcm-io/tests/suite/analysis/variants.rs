@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::{Dataset, ModelId};
-use gdcm_study::decisions::dataset_differences::Difference;
+use gdcm_study::decisions::dataset_differences::{CarriedDecision, Difference};
 use gdcm_study::decisions::edit::LONGEST_REASON;
 use gdcm_study::decisions::edit_refusal::EditRefusal;
 use gdcm_study::decisions::history::History;
@@ -339,8 +339,14 @@ fn reasons_and_variants_are_reconciled_to_a_changed_dataset() {
     assert!(
         differences.iter().any(|difference| matches!(
             difference,
-            Difference::NotApplied { decision, .. }
-                if decision == "reject nominal (condition 10), of variant \"strict\""
+            Difference::NotApplied {
+                decision: CarriedDecision::Edit {
+                    edit: Edit::RejectBecause { model, .. } | Edit::Reject(model),
+                    ..
+                },
+                variant: Some(variant),
+                ..
+            } if *model == nominal_of_10() && variant == "strict"
         )),
         "{differences:?}"
     );

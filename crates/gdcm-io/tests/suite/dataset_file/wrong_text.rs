@@ -9,7 +9,7 @@ fn a_file_that_is_not_there_is_named() {
         matches!(&error, FileError::Missing { path } if path == Path::new("no/such/file.json")),
         "{error}"
     );
-    assert_eq!(error.code(), Some("missing-file"));
+    assert_eq!(error.code(), "missing-file");
 }
 
 #[test]

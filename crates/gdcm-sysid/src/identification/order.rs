@@ -75,13 +75,19 @@ impl OrderSearch<'_> {
     }
 
     /// Returns the models of the nearest order on each side whose criterion is close to that of the
-    /// chosen order.
+    /// chosen order. Orders that were given up before their minimum are left out: they differ from
+    /// the chosen model by more than the order.
     pub(crate) fn neighbours(&self) -> Vec<SchurModel> {
         let Some(best) = self.criteria.get(&self.order) else {
             return Vec::new();
         };
         let most = best * (1.0 + NEIGHBOUR);
-        let near = |order: &usize| self.criteria.get(order).is_some_and(|value| *value <= most);
+        let near = |order: &usize| {
+            self.fits
+                .get(order)
+                .is_some_and(|fit| fit.decrement < COMPARABLE)
+                && self.criteria.get(order).is_some_and(|value| *value <= most)
+        };
         let below = self
             .fits
             .keys()

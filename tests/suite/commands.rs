@@ -708,7 +708,7 @@ fn a_wrong_file_is_status_2_with_path_and_place() {
     );
     desk.messages(&["check", "missing.json"])
         .assert_code("missing-file", &["missing.json: "]);
-    desk.messages(&["check", "."]).assert_code("directory", &[]);
+    desk.messages(&["check", "."]).assert_code("input-is-a-directory", &[]);
 }
 
 #[test]
@@ -790,7 +790,7 @@ fn a_wrong_command_line_is_status_2_with_the_option() {
 fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
     let desk = Desk::new();
     desk.messages(&["analyze", "small.json", "--out", "small.json"])
-        .assert_code("not-a-directory", &["small.json: "]);
+        .assert_code("output-directory-is-a-file", &["small.json: "]);
 }
 
 #[test]
@@ -1017,7 +1017,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
         .assert_reported("airspeed-changed", &["condition 7", "61 kt"]);
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
     desk.messages(&["check", "a.gdcm-study.json"])
-        .assert_code("study-dataset", &["small.json: ", "--dataset"]);
+        .assert_code("dataset-of-study", &["small.json: ", "--dataset"]);
     assert_eq!(
         desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"])
             .status,
@@ -1207,7 +1207,7 @@ fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     fs::write(desk.path("a.svg"), "mine").unwrap();
     let existing = ["--view", "net-gain", "--out", "a.svg"];
     desk.messages(&[&figure[..], &existing].concat())
-        .assert_code("file-exists", &["a.svg", "--force"]);
+        .assert_code("output-exists", &["a.svg", "--force"]);
     assert_eq!(fs::read_to_string(desk.path("a.svg")).unwrap(), "mine");
     desk.run(&figure, &[&existing[..], &["--force"]].concat())
         .assert_done();
@@ -1233,7 +1233,7 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
     desk.messages(&["check", "large.json"])
         .assert_code("wrong-type", &["large.json: inputs: ", "5"]);
     desk.messages(&["analyze", "large.json", "--out", "out"])
-        .assert_code("too-large", &["128 MiB"]);
+        .assert_code("file-too-large", &["128 MiB"]);
 }
 
 #[test]
@@ -1276,8 +1276,10 @@ fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
     assert!(lines[3].contains("3 faults"), "{}", lines[3]);
     let told = desk.messages(&["check", "faulty.json"]);
     let codes: Vec<&str> = told.errors.iter().map(|error| &*error.code).collect();
-    let fault = "wrong-dataset";
-    assert_eq!(codes, [fault, fault, fault, "faulty-dataset"]);
+    assert_eq!(
+        codes,
+        ["wrong-band", "matrix-shape", "table-shape", "faulty-dataset"]
+    );
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
     told.assert_success().assert_reported("newly-unstable", &[]);
     for words in [
         "11 conditions",
-        "LAT receives 4.",
+        "LAT receives 3.9 %",
         "left out",
         "swashplate phase",
         "at 120 rad/s, ",

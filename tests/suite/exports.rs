@@ -59,7 +59,7 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
         assert!(ended.out.starts_with(&format!("{name}: ")), "{}", ended.out);
         let written = fs::read(desk.path(name)).unwrap();
         desk.messages(&arguments)
-            .assert_code("file-exists", &[name, "--force"]);
+            .assert_code("output-exists", &[name, "--force"]);
         desk.gdcm(&[&arguments[..], &["--force"]].concat())
             .assert_done();
         assert!(
@@ -122,7 +122,7 @@ fn what_cannot_be_exported_is_status_2_before_any_work() {
         ),
         (
             &["json", "--out", "small.json", "--force"],
-            "input-as-output",
+            "output-is-an-input",
             &["small.json: "],
         ),
         (
@@ -893,7 +893,7 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         "--out",
         "m.npz",
     ])
-    .assert_code("no-corrected-model", &names);
+    .assert_code("corrected-model", &names);
     assert!(!desk.path("m.npz").exists());
 }
 

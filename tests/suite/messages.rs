@@ -98,7 +98,7 @@ fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
         file["conditions"][0]["airspeed_kt"] = json!(-1e300)
     });
     desk.messages(&["check", "negative.json"])
-        .assert_code("wrong-dataset", &["[kt]", "-1e300"]);
+        .assert_code("flight-state", &["[kt]", "-1e300"]);
     desk.messages(&["analyze", "--out", "out", "--alpha", "1e300"])
         .assert_code("wrong-option", &["--alpha: ", "0", "1000000", "1e300"]);
     desk.messages(&["analyze", "--out", "out", "--band", "1e-300", "1e300"])
@@ -333,7 +333,7 @@ fn assert_refused(error: &FileError, code: &str, names: &[&str]) {
 }
 
 /// Code of a list or an object with more entries than its limit.
-const TOO_MANY: &str = "wrong-text";
+const TOO_MANY: &str = "too-many-entries";
 
 fn dataset_refusal(text: &str) -> FileError {
     load_dataset_bytes(text.as_bytes(), DatasetOrigin::File("small.json".into())).unwrap_err()

@@ -51,12 +51,12 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
     let mut names_of_all: Vec<&str> = all.iter().map(String::as_str).collect();
     names_of_all.push("--force");
     desk.messages(&analyze)
-        .assert_code("file-exists", &names_of_all);
+        .assert_code("output-exists", &names_of_all);
     fs::remove_file(desk.path("out/corrections.json")).unwrap();
     fs::remove_file(desk.path("out/assessment.csv")).unwrap();
     fs::remove_file(desk.path("out/corrections.sha256")).unwrap();
     let refused = desk.messages(&analyze);
-    refused.assert_code("file-exists", &["out/corrections.csv", "--force"]);
+    refused.assert_code("output-exists", &["out/corrections.csv", "--force"]);
     assert!(!refused.errors[0].text.contains("assessment.csv"));
     assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
     assert_eq!(
@@ -78,7 +78,7 @@ fn the_example_is_overwritten_only_by_force() {
     let desk = Desk::new();
     fs::write(desk.path("example-dataset.json"), "mine").unwrap();
     desk.messages(&["example", "."])
-        .assert_code("file-exists", &["./example-dataset.json", "--force"]);
+        .assert_code("output-exists", &["./example-dataset.json", "--force"]);
     assert_eq!(
         fs::read_to_string(desk.path("example-dataset.json")).unwrap(),
         "mine"
@@ -90,7 +90,7 @@ fn the_example_is_overwritten_only_by_force() {
 #[test]
 fn an_input_is_not_overwritten_even_by_force() {
     let desk = Desk::new();
-    let refused = "input-as-output";
+    let refused = "output-is-an-input";
     fs::write(desk.path("corrections.json"), SMALL).unwrap();
     desk.messages(&["analyze", "corrections.json", "--out", ".", "--force"])
         .assert_code(refused, &[]);

@@ -70,7 +70,7 @@ fn a_plan_has_a_table_for_each_input_and_the_ways_to_each_target() {
         "--out",
         "plan.json",
         "--target",
-        "P/LAT@1=0.01",
+        "P/LAT@1=0.001",
     ];
     let ended = desk.run(&line, &CHANNELS);
     assert_eq!(ended.status, 0, "{ended:?}");
@@ -119,7 +119,7 @@ fn a_larger_amplitude_needs_fewer_sweeps() {
             "--repeats",
             "100",
         ];
-        let wanted = ["--target", "R/PED@2=0.12", "--amplitude", amplitude];
+        let wanted = ["--target", "R/PED@2=0.03", "--amplitude", amplitude];
         let ended = desk.run(&[&line[..], &wanted].concat(), &CHANNELS);
         assert_eq!(ended.status, 0, "{ended:?}");
         let file = read_json(&desk.path(&name));
@@ -130,7 +130,7 @@ fn a_larger_amplitude_needs_fewer_sweeps() {
         )
     };
     let (now, few) = needed("PED=8");
-    assert!(now > 0.12, "the target is not reached now: {now}");
+    assert!(now > 0.03, "the target is not reached now: {now}");
     let (_, many) = needed("PED=4");
     assert!(few < many, "{few:?} {many:?}");
 }

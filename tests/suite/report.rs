@@ -410,7 +410,7 @@ fn a_report_is_overwritten_only_by_force_and_never_over_what_it_is_read_from() {
     let command = ["report", "small.json", "--out", "report.html"];
     fs::write(desk.path("report.html"), "mine").unwrap();
     desk.messages(&command)
-        .assert_code("file-exists", &["report.html", "--force"]);
+        .assert_code("output-exists", &["report.html", "--force"]);
     assert_eq!(
         fs::read_to_string(desk.path("report.html")).unwrap(),
         "mine"
@@ -424,7 +424,7 @@ fn a_report_is_overwritten_only_by_force_and_never_over_what_it_is_read_from() {
     );
     let over = ["report", "small.json", "--out", "small.json", "--force"];
     desk.messages(&over)
-        .assert_code("input-as-output", &["small.json: "]);
+        .assert_code("output-is-an-input", &["small.json: "]);
     desk.gdcm(&["report", "missing.json", "--out", "a.html"])
         .assert_failed(2, &["missing.json"]);
     assert!(!desk.path("a.html").exists());

@@ -620,7 +620,7 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
     assert_eq!(recurring.len(), 1, "{recurring:?}");
     assert_eq!(
         recurring[0].summarised_codes,
-        ["common-lead", "leads-offered", "needs-lead"]
+        ["common-lead", "held-farther", "leads-offered", "needs-lead"]
     );
     let words = told.text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!(words.matches(&recurring[0].text).count(), 1, "{words}");
@@ -671,7 +671,7 @@ fn long_names_of_short_words_are_shortened_and_remedies_name_the_file() {
     fs::write(desk.path("flight 7.parquet"), b"PAR1\x15\x04").unwrap();
     desk.messages(&["convert", "flight 7.parquet", "--out", "models.json"])
         .assert_code(
-            "unreadable-variables",
+            "unsupported-content",
             &["\"flight 7.parquet\"", "\"flight 7.csv\""],
         );
 }

@@ -6,13 +6,13 @@
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
 //! in its sentences.
 //!
-//! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and [`sensitivity`] for a condition; [`caution`],
-//! [`convention_doubt`] and [`channel_time_skew`] for suspected faults; [`missing_results`] for
-//! results that do not exist; [`coupling_remark`], [`couplings`], [`assessment`], [`schedule`],
-//! [`uncertainty`] for a study; [`edit`], [`decision_differences`] and [`dataset_differences`]. Settings:
-//! [`setting_words`]. Tables: [`table`], [`requirements`],
-//! [`requirements_overview`], [`time_histories`]. Explained results:
-//! [`derivation`].
+//! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
+//! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
+//! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
+//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
+//! [`decision_differences`] and [`dataset_differences`]; [`flight_plan`] for further flights.
+//! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
+//! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
 //!

@@ -87,7 +87,7 @@ mod tests {
             "the example"
         );
         let trouble = loaded.trouble.unwrap();
-        assert_eq!(trouble.code, "truncated-json");
+        assert_eq!(trouble.code, "json-cut-off");
         assert!(trouble.text.contains("broken.json"));
         let example = load(None);
         assert!(example.opened.is_ok());

@@ -329,11 +329,11 @@ mod tests {
             (count(5, 5), count(55, 55), "matched")
         );
         assert_eq!((phase.here, phase.everywhere), (count(0, 5), count(0, 55)));
-        // The constrained responses of the example need leads of 56 to 72 ms in condition 10
+        // The constrained responses of the example need leads of 57 to 71 ms in condition 10
         // (medians of D).
         assert_eq!(phase.message.code, "lag-remains");
         assert!(
-            phase.message.text.contains(" 66 "),
+            phase.message.text.contains(" 67 "),
             "{}",
             phase.message.text
         );

@@ -25,7 +25,7 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
     assert_notice(
         &window,
         NoticeKind::Trouble,
-        "truncated-json",
+        "json-cut-off",
         &["broken.json"],
     );
     assert_eq!(state(&window).study, before);

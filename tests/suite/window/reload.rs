@@ -148,7 +148,7 @@ fn a_changed_file_that_is_wrong_leaves_what_is_open() {
     assert_notice(
         &window,
         NoticeKind::Trouble,
-        "truncated-json",
+        "json-cut-off",
         &["my-dataset.json"],
     );
     assert_eq!(state(&window).study, before);

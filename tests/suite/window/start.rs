@@ -162,7 +162,7 @@ fn what_opens_first_is_a_preference() {
 
 #[test]
 fn what_went_wrong_before_the_window_opened_is_told_in_it() {
-    let trouble = Message::new("truncated-json", "broken.json (line 1)");
+    let trouble = Message::new("json-cut-off", "broken.json (line 1)");
     let window = begun_with(Setup {
         trouble: Some(trouble.clone()),
         ..preferring(OpensWith::StartPage)

@@ -33,7 +33,7 @@ pub struct BandError {
 impl BandError {
     /// Returns the stable code by which scripts and tests distinguish the error.
     pub fn code(&self) -> &'static str {
-        "band"
+        "wrong-band"
     }
 }
 

@@ -85,7 +85,7 @@ impl EditRefusal {
             Self::VariantExists { .. } => "variant-exists",
             Self::NoVariant { .. } => "unknown-variant",
             Self::OutOfRange { .. } => "out-of-range",
-            Self::Band(_) => "wrong-band",
+            Self::Band(error) => error.code(),
             Self::NotAValue { .. } => "not-a-value",
             Self::NoCondition { .. } => "unknown-condition",
             Self::NoModel { .. } => "unknown-model",

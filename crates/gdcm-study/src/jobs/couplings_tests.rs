@@ -348,7 +348,7 @@ fn the_embedded_example_reads_as_what_was_put_in() {
     let margins =
         [(low, high), (high, 10.0 * high)].map(|range| example.least_margin(&fit.matrices, range));
     assert!(
-        margins[0].least > 0.86 && margins[1].least > 0.95,
+        margins[0].least > 0.84 && margins[1].least > 0.95,
         "{margins:?}"
     );
     assert!(!margins.iter().any(LoopMargin::is_close_to_ringing));

@@ -122,7 +122,7 @@ const TRAPS: [Trap; 11] = [
         name: "clipped",
         code: "clipped",
         // The response of a clipped output is non-linear.
-        follows: &["order-limit", "points", "unstable"],
+        follows: &["inadequate", "order-limit", "points", "unstable"],
         flown: |seed| {
             let mut records = flights(3, seed, calm);
             for record in &mut records {

@@ -26,6 +26,7 @@ use super::known_answers_tests::response_at;
 use super::prepared_data::PreparedData;
 use super::real_flight_tests::Generator;
 use crate::diagnostics::bands::{BandModels, TWO_SIDED_95};
+use crate::diagnostics::cautions::IdentificationCaution;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
@@ -53,6 +54,11 @@ struct KnownFlight {
 impl KnownFlight {
     /// Simulates two sweeps of a minute for each input; the other inputs move a little.
     fn fly(inputs: usize, outputs: usize, seed: u64) -> Self {
+        Self::fly_for(60, inputs, outputs, seed)
+    }
+
+    /// Simulates two sweeps of this length for each input \[s\].
+    fn fly_for(seconds: i32, inputs: usize, outputs: usize, seed: u64) -> Self {
         let mut random = Generator::new(seed);
         let truth = aircraft(inputs, outputs, &mut random);
         let gusts = DMatrix::from_fn(truth.order(), 2, |_, _| random.normal());
@@ -62,7 +68,7 @@ impl KnownFlight {
         let d = DMatrix::zeros(outputs, inputs + 2);
         let disturbed = StateSpace::new(truth.a().clone(), b, truth.c().clone(), d).unwrap();
         let plant = FirstOrderHold::new(&disturbed, STEP_S).unwrap();
-        let time_s: Vec<f64> = (0..1500).map(|k| STEP_S * f64::from(k)).collect();
+        let time_s: Vec<f64> = (0..25 * seconds).map(|k| STEP_S * f64::from(k)).collect();
         let mut noise = vec![0.0; outputs];
         let mut records = Vec::new();
         for number in 0..2 * inputs {
@@ -75,7 +81,8 @@ impl KnownFlight {
                 slow[channel] = 0.9 * slow[channel] + 0.05 * random.normal();
                 // A logarithmic sweep from 0.08 to 2.4 Hz.
                 let rate = 30f64.ln();
-                let turns = 0.08 * 60.0 / rate * ((rate * time_s[k] / 60.0).exp() - 1.0);
+                let length_s = f64::from(seconds);
+                let turns = 0.08 * length_s / rate * ((rate * time_s[k] / length_s).exp() - 1.0);
                 if channel == swept {
                     slow[channel] + (std::f64::consts::TAU * turns).sin()
                 } else {
@@ -294,4 +301,47 @@ fn errors_are_near_the_bound_and_intervals_hold() {
 fn errors_are_near_the_bound_and_intervals_hold_over_many_seeds() {
     assert_near_the_bound(&figures(2, 2, 5010..5030));
     assert_near_the_bound(&figures(4, 6, 5040..5050));
+}
+
+/// Returns the records that contradict the others by the caution about them.
+fn contradicting(records: &[FlightRecord], options: &Options) -> Vec<usize> {
+    let found = identify(records, options, &Sequential, &Unobserved).unwrap();
+    for caution in &found.cautions {
+        if let IdentificationCaution::Contradiction { records, .. } = caution {
+            return records.iter().map(|record| record.record).collect();
+        }
+    }
+    Vec::new()
+}
+
+/// Delays the outputs of the last record by one sample, 40 ms.
+fn delay_last(records: &mut [FlightRecord]) {
+    let last = records.len() - 1;
+    let outputs = &mut records[last].outputs;
+    for k in (1..outputs.nrows()).rev() {
+        let before = outputs.row(k - 1).into_owned();
+        outputs.row_mut(k).copy_from(&before);
+    }
+}
+
+#[test]
+#[ignore = "five flights of twenty minutes and twenty of four minutes"]
+fn long_flights_do_not_contradict_and_a_late_record_is_found() {
+    for seed in 6000..6005 {
+        let flight = KnownFlight::fly_for(300, 2, 2, seed);
+        let wrong = contradicting(&flight.records, &flight.options());
+        assert!(wrong.is_empty(), "seed {seed}: {wrong:?}");
+    }
+    let mut found = 0;
+    for seed in 6100..6120 {
+        let mut flight = KnownFlight::fly(2, 2, seed);
+        let good = contradicting(&flight.records, &flight.options());
+        assert!(good.is_empty(), "seed {seed}: {good:?}");
+        delay_last(&mut flight.records);
+        if contradicting(&flight.records, &flight.options()).contains(&3) {
+            found += 1;
+        }
+    }
+    println!("late record found in {found} of 20");
+    assert_eq!(found, 20);
 }

@@ -47,7 +47,12 @@ pub(crate) struct ValidSamples {
     values: Vec<f64>,
     /// Delay of the stamps \[s\].
     shift_s: f64,
+    /// Tolerance of a time beyond the last sample \[s\].
     rounding_s: f64,
+    /// Tolerance of a time beyond the samples at the ends of a gap \[s\]: rounded grid times may
+    /// lie just beyond a stamp. It is 0 for a delayed channel, which is interpolated between its
+    /// stamps, and only where both are valid.
+    gap_rounding_s: f64,
 }
 
 impl ValidSamples {
@@ -64,14 +69,17 @@ impl ValidSamples {
             let held_s = keep_fresh_samples(channel, clock, &mut places);
             longest_step_s *= (held_s / clock.sample_time_s).max(1.0);
         }
+        let shift_s = settings.shift_s();
+        let rounding_s = ROUNDING * clock.sample_time_s;
         Self {
             signal: channel.signal.clone(),
             invalid: invalid_runs(&is_valid, frozen),
             longest_step_s,
             times: places.iter().map(|&k| clock.times[k]).collect(),
             values: places.iter().map(|&k| channel.values[k]).collect(),
-            shift_s: settings.shift_s(),
-            rounding_s: ROUNDING * clock.sample_time_s,
+            shift_s,
+            rounding_s,
+            gap_rounding_s: if shift_s == 0.0 { rounding_s } else { 0.0 },
         }
     }
 
@@ -111,11 +119,9 @@ impl SampleReader<'_> {
             return Some(value);
         }
         if after - time > self.samples.longest_step_s {
-            // Rounded grid times may lie just beyond a sample at an end of the gap.
-            let rounding_s = self.samples.rounding_s;
-            return if t - time <= rounding_s {
+            return if t - time <= self.samples.gap_rounding_s {
                 Some(value)
-            } else if after - t <= rounding_s {
+            } else if after - t <= self.samples.gap_rounding_s {
                 Some(values[self.next])
             } else {
                 None

@@ -420,7 +420,7 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         .collect();
     assert_refused(
         &dataset_refusal(&text.to_string()),
-        TOO_MANY,
+        "invalid-entry",
         &["conditions: ", "50000"],
     );
     let conditions = many(

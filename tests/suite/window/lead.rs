@@ -38,7 +38,9 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
     let before = state(&window).display.frequency.bode.omega_range().1;
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
-    assert!((last(&window, CurveRole::Corrected) - 120.0).abs() < 1e-6);
+    wait_until(&mut window, "curves up to ten times the band", |window| {
+        (last(window, CurveRole::Corrected) - 120.0).abs() < 1e-6
+    });
     let flight = last(&window, CurveRole::IdentifiedRepresentative);
     assert!(flight <= 20.4 * (1.0 + 1e-9) && flight > 20.0, "{flight}");
     assert!(

@@ -708,7 +708,8 @@ fn a_wrong_file_is_status_2_with_path_and_place() {
     );
     desk.messages(&["check", "missing.json"])
         .assert_code("missing-file", &["missing.json: "]);
-    desk.messages(&["check", "."]).assert_code("input-is-a-directory", &[]);
+    desk.messages(&["check", "."])
+        .assert_code("input-is-a-directory", &[]);
 }
 
 #[test]
@@ -1278,7 +1279,12 @@ fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
     let codes: Vec<&str> = told.errors.iter().map(|error| &*error.code).collect();
     assert_eq!(
         codes,
-        ["wrong-band", "matrix-shape", "table-shape", "faulty-dataset"]
+        [
+            "wrong-band",
+            "matrix-shape",
+            "table-shape",
+            "faulty-dataset"
+        ]
     );
 }
 

@@ -88,8 +88,8 @@ impl ExportFault {
             Self::Schedule(error) => error.code(),
             Self::NoCouplings { .. } => "no-couplings",
             Self::NoResult { .. } => "no-result",
-            Self::NoCondition { .. } => "no-condition",
-            Self::NoModel { .. } => "no-model",
+            Self::NoCondition { .. } => "unknown-condition",
+            Self::NoModel { .. } => "unknown-model",
             Self::NoMatrices { .. } => "no-matrices",
             Self::Model { .. } => "corrected-model",
         }

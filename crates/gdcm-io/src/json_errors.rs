@@ -10,6 +10,7 @@ use std::path::Path;
 use serde::de::IgnoredAny;
 use serde_json::error::Category;
 
+use gdcm_model::dataset::band::BandError;
 use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::{sanitized, shortened};
 use gdcm_model::units::number;
@@ -153,6 +154,9 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
     {
         return ContentFault::TooLong { most, line, column };
     }
+    if let Some(error) = band_error(reason) {
+        return ContentFault::Band(error);
+    }
     if let Some((found, expected)) = mismatch(reason) {
         return ContentFault::Type {
             expected: expected_words(expected),
@@ -181,6 +185,17 @@ fn list_lengths(reason: &str) -> Option<ListLengths> {
     Some(ListLengths {
         expected: expected.parse().ok()?,
         found: found.parse().ok()?,
+    })
+}
+
+/// Parses the message of [`BandError`], which serde returns as text.
+fn band_error(reason: &str) -> Option<BandError> {
+    let rest = reason.strip_prefix("the frequency band must be ")?;
+    let (_, ends) = rest.split_once(", found min ")?;
+    let (min, max) = ends.split_once(", max ")?;
+    Some(BandError {
+        min: min.parse().ok()?,
+        max: max.parse().ok()?,
     })
 }
 

@@ -248,6 +248,8 @@ fn a_table_whose_units_or_names_are_not_said_is_never_read_by_a_guess() {
             asked.push(unsaid.units);
         }
         assert_eq!(asked, units, "{name}");
-        assert_eq!(found.faults.len(), 1, "{name}: {:?}", found.faults);
+        // The question about the headings is the description of what is not a model.
+        assert_eq!(found.faults, [""; 0], "{name}");
+        assert_eq!(found.ignored.len(), 1, "{name}: {:?}", found.ignored);
     }
 }

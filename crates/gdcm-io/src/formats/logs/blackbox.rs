@@ -185,9 +185,10 @@ impl Flight {
             budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
             let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
-            // A frame is damaged if no frame letter follows it.
+            // A frame is damaged if no frame letter follows it; a zero follows the end of the log.
+            let is_end = matches!(frame, Some(Frame::End));
             let next = bytes.get(packed.at);
-            if next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
+            if !is_end && next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
                 frame = None;
             }
             match frame {
@@ -442,6 +443,10 @@ mod tests {
             fewest: FEWEST_FRAMES,
         };
         assert!(flights[0].notes.contains(&omitted));
+        for flight in &flights {
+            let is_damaged = |note: &ReadingNote| matches!(note, ReadingNote::DamagedFrames { .. });
+            assert!(!flight.notes.iter().any(is_damaged), "{:?}", flight.notes);
+        }
     }
 
     #[test]

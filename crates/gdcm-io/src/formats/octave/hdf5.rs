@@ -27,8 +27,6 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
-/// Error message for a struct array whose fields have different numbers of values.
-
 /// Converts the groups of a file written by Octave to values; returns the values of any other file
 /// unchanged.
 pub(crate) fn convert_hdf5_groups(

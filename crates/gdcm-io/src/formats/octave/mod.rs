@@ -37,11 +37,12 @@ mod tests {
         .unwrap()
     }
 
+    /// Returns the variables in a file; none if its bytes are recognised as another format.
     fn variables(bytes: &[u8], name: &str) -> Result<Vec<Variable>, FileError> {
         let budget = ReadingBudget::new(1 << 24);
         match import_bytes(bytes, Path::new(name), name, &budget)?.contents {
             Contents::Variables { variables, .. } => Ok(variables),
-            _ => panic!("no variables in {name}"),
+            _ => Ok(Vec::new()),
         }
     }
 

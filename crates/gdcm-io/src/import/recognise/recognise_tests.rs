@@ -13,6 +13,7 @@ use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
 };
 use crate::formats::{Contents, import_bytes};
+use crate::import::model_files::{FoundModels, models_of_bytes};
 use crate::variable_fault::unread::Unread;
 
 fn numbers(rows: usize, columns: usize, values: &[f64]) -> Value {
@@ -223,13 +224,31 @@ fn only_fault(found: &Found<FoundModel>) -> &FoundFault {
     fault
 }
 
+/// Recognises the models in a JSON text.
 fn json(text: &str) -> Found<FoundModel> {
     let budget = ReadingBudget::new(1 << 24);
     let imported = import_bytes(text.as_bytes(), Path::new("m.json"), "m.json", &budget).unwrap();
-    let Contents::Variables { variables, .. } = imported.contents else {
-        panic!("the text holds variables")
-    };
-    super::recognise(&variables, true, &budget).unwrap()
+    match imported.contents {
+        Contents::Variables {
+            variables,
+            pages_first,
+            ..
+        } => super::recognise(&variables, pages_first, &budget).unwrap(),
+        Contents::Models(items, unused) => Found {
+            items,
+            unused,
+            ..Found::default()
+        },
+        _ => panic!("neither variables nor models: {text}"),
+    }
+}
+
+/// Name of a file in a folder with the number of its condition.
+const FILE: &str = "c1_90kt/m.json";
+
+/// Reads the models in the file [`FILE`].
+fn json_file(text: &str) -> FoundModels {
+    models_of_bytes(text.as_bytes(), FILE, &ReadingBudget::new(1 << 24)).unwrap()
 }
 
 /// Recognises a model with two inputs and two outputs to which `members` are added.
@@ -346,7 +365,7 @@ fn an_ambiguous_delay_is_refused_with_a_question() {
                 name: named("TransportDelay"),
                 outputs: 2,
                 inputs: 2,
-                found: named("a 3 x 1 array of numbers"),
+                found: named("a 1 x 3 array of numbers"),
             },
         ),
         (
@@ -417,21 +436,23 @@ fn models_in_suffixed_matrices_have_their_own_delays() {
 
 #[test]
 fn unused_variables_are_listed_once_for_a_file() {
-    let found = beside(
-        r#""Q": [[1]], "author": "me", "trim": {"airspeed_kt": 90, "theta_deg": 3}, "airspeed_kt": 90"#,
+    let found = json_file(
+        r#"{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "Q": [[1]], "author": "me",
+            "trim": {"airspeed_kt": 90, "theta_deg": 3}, "airspeed_kt": 90}"#,
     );
-    assert_eq!(found.unused, ["Q", "author", "trim.theta_deg"]);
+    let unused = &found.unused[FILE];
+    assert_eq!(*unused, ["Q", "author", "trim.theta_deg"]);
     assert_eq!(
-        found.items[0].draft.source.as_ref().unwrap().unused,
-        found.unused
+        found.models[0].draft.source.as_ref().unwrap().unused,
+        *unused
     );
     let model = r#"{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "torque": 7}"#;
-    let several = json(&format!(
+    let several = json_file(&format!(
         r#"{{"models": [{model}, {model}], "more": [1, 2]}}"#
     ));
-    assert_eq!(several.unused, ["more", "models{:}.torque"]);
+    assert_eq!(several.unused[FILE], ["more", "models{:}.torque"]);
     let listed: Vec<usize> = several
-        .items
+        .models
         .iter()
         .map(|model| model.draft.source.as_ref().unwrap().unused.len())
         .collect();
@@ -550,14 +571,8 @@ fn a_stack_and_a_struct_array_say_the_airspeed_of_each_model() {
         "{:?}",
         stack.faults
     );
-    let imported = crate::import::model_files::models_of_bytes(
-        stack_text.as_bytes(),
-        "c1_90kt/m.json",
-        &ReadingBudget::new(1 << 24),
-    )
-    .unwrap();
     let assembly = gdcm_model::assembly::Assembly::new(
-        imported.models,
+        json_file(stack_text).models,
         gdcm_model::assembly::Rules::default(),
     );
     let conditions: Vec<Option<i64>> = assembly

@@ -98,8 +98,14 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
     let study = Study::new(Arc::clone(&dataset));
     let execution = Execution::new(&Sequential, &Unobserved, 0);
     let cautions = cautions_of_models(&study, &execution).unwrap();
-    assert!(cautions.iter().any(|(id, caution)| *id == FIRST
-        && matches!(caution, Caution::NotFinite { why, .. } if *why == sampled)));
+    assert!(
+        cautions.iter().any(|(id, caution)| *id == FIRST
+            && matches!(
+                caution,
+                Caution::SetAside { model, why, .. } if model.name == "slow" && *why == Some(sampled)
+            )),
+        "{cautions:?}"
+    );
 }
 
 #[test]

@@ -475,7 +475,7 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         ),
         (
             |file| file["settings"]["band_rad_s"] = json!([2, 1]),
-            "band",
+            "wrong-band",
             "settings, band_rad_s",
             "min 2, max 1",
         ),
@@ -487,7 +487,7 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         ),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),
-            "out-of-range",
+            "invalid-entry",
             "settings, schedule",
             "found 4",
         ),

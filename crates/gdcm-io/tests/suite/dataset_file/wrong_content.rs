@@ -326,7 +326,7 @@ fn a_band_is_positive_rising_and_in_radians_per_second() {
         let band = json!({"min": min, "max": max, "unit": "rad/s"});
         assert_refused(
             |file| file["frequency_band"] = band,
-            "band",
+            "wrong-band",
             "",
             &["0.0001 <= min < max <= 100000"],
         );

@@ -86,20 +86,10 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
         space(&found.refined).order() as f64,
         expected["order"].as_f64().unwrap()
     );
-    let known_orders = found
-        .criteria
-        .iter()
-        .filter(|(order, _)| expected["bic"][order.to_string()].is_number());
-    assert!(known_orders.clone().count() >= 3, "{:?}", found.criteria);
-    for (order, value) in known_orders {
-        let expected = expected["bic"][order.to_string()].as_f64().unwrap();
-        // The reference values still include the first line of each record, which no longer counts
-        // (M14.12).
-        assert!(
-            (value / expected - 1.0).abs() < 0.03,
-            "BIC of order {order}: {value}, not {expected}"
-        );
-    }
+    // The criteria themselves are not comparable: the reference weighs by the measured noise, here
+    // the weights are those of the residuals (M14.20).
+    let best = found.criteria.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    assert_eq!(best.map(|(order, _)| *order), Some(4));
     // The cost is per degree of freedom; 20 parameters reduce the degrees of freedom of 4 records
     // of 48 lines of 2 outputs (M14.13).
     let spare = found

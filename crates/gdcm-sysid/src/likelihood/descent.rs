@@ -19,7 +19,7 @@ use gdcm_model::progress::{Cancelled, Shares};
 use super::balancing::{Coordinates, Gramians, balancing_coordinates};
 use super::cost::{Likelihood, SegmentCost};
 use super::gram_matrix::solve_positive_definite;
-use super::normal_equations::{BIN_WIDTH, NormalEquations};
+use super::normal_equations::{BIN_WIDTH, EXACT, NormalEquations};
 use super::schur_model::SchurModel;
 
 /// Limit on the Newton decrement over `k phi` at a minimum.
@@ -120,12 +120,7 @@ impl Fit {
     /// Computes the Newton decrement over `k phi` with exact normal equations.
     #[cfg(test)]
     pub(crate) fn decrement(&self, likelihood: &Likelihood) -> Option<f64> {
-        let system = NormalEquations::new(
-            likelihood,
-            &self.model,
-            &self.parts,
-            super::normal_equations::EXACT,
-        )?;
+        let system = NormalEquations::new(likelihood, &self.model, &self.parts, EXACT)?;
         let square = ScaledSystem::new(system).decrement()?;
         Some(square / (self.model.parameters() as f64 * self.dispersion(likelihood)?))
     }
@@ -152,7 +147,8 @@ impl Fit {
             return false;
         };
         self.balance(likelihood);
-        let Some(system) = NormalEquations::new(likelihood, &self.model, &self.parts, BIN_WIDTH)
+        let Some(system) =
+            NormalEquations::new(likelihood, &self.model, &self.parts, bin_width(likelihood))
         else {
             return false;
         };
@@ -241,6 +237,16 @@ impl Fit {
         self.damping = (self.damping * damping_factor(ratio)).max(LEAST_DAMPING);
         true
     }
+}
+
+/// Returns the width of the bins: the spectra of missing samples turn too fast with frequency for
+/// wide bins, with which a descent stalls.
+fn bin_width(likelihood: &Likelihood) -> f64 {
+    let has_gaps = likelihood
+        .segments
+        .iter()
+        .any(|segment| !segment.hats.is_empty());
+    if has_gaps { EXACT } else { BIN_WIDTH }
 }
 
 /// Returns the factor on the damping after a step with this ratio of actual to predicted decrease.

@@ -1,20 +1,15 @@
-//! Records that are logged fast, long or many (M14.24): the samples that are used, and times.
-
-use std::sync::Mutex;
-use std::time::Instant;
+//! Records that are logged fast, long or many (M14.24): the samples that are used.
 
 use nalgebra::DMatrix;
 
 use gdcm_model::executor::Sequential;
-use gdcm_model::progress::{Progress, Shares, Unobserved};
-use gdcm_model::simulation::{FlightRecord, LowPass, Segment};
+use gdcm_model::progress::{Shares, Unobserved};
+use gdcm_model::simulation::FlightRecord;
 
-use super::identify::identify;
 use super::prepared_data::PreparedData;
 use super::real_flight_tests::Generator;
 use super::{Options, Preparation};
 use crate::spectra::spectrum::LineRange;
-use crate::subspace::data_matrix::Projections;
 
 /// Returns records without dynamics: sweeps and noise, each output a smoothed mixture of inputs.
 fn records(
@@ -79,71 +74,4 @@ fn a_record_logged_fast_has_all_its_lines_and_thinned_projections() {
     };
     let expected = lines.spectra(&data.unfiltered, &Sequential);
     assert_eq!(data.spectra, expected);
-}
-
-/// Prints when each step of the identification begins.
-struct Stages {
-    start: Instant,
-    before: Mutex<f64>,
-}
-
-impl Progress for Stages {
-    fn cancelled(&self) -> bool {
-        false
-    }
-
-    fn advanced(&self, _done: usize, _total: usize) {}
-
-    fn step(&self, name: &str) {
-        let now_s = self.start.elapsed().as_secs_f64();
-        let mut before_s = self.before.lock().unwrap();
-        println!("{now_s:8.3} s (+{:.3}): {name}", now_s - *before_s);
-        *before_s = now_s;
-    }
-}
-
-/// Times the preparation and the projections of one Laguerre pole, then the whole identification.
-fn print_times(records: &[FlightRecord], channels: [usize; 2]) {
-    let options = options(channels);
-    let stages = Stages {
-        start: Instant::now(),
-        before: Mutex::new(0.0),
-    };
-    let progress = Shares::new(&stages);
-    let data = PreparedData::new(records, &options, &Sequential, &progress).unwrap();
-    stages.step("prepared; projections of a pole");
-    let projections = Projections {
-        pole: 9.0,
-        past: 16,
-        spacing_s: 0.1,
-    };
-    for segment in &data.segments {
-        projections.rows(segment);
-    }
-    stages.step("the same with QR");
-    projections.factor(&data.segments, &Sequential);
-    let low_pass = 5.0 * data.highest;
-    let full: Vec<Segment> = data
-        .unfiltered
-        .iter()
-        .map(|segment| LowPass::applied(low_pass, segment))
-        .collect();
-    stages.step("the same with QR, from all samples");
-    projections.factor(&full, &Sequential);
-    stages.step("whole identification");
-    identify(records, &options, &Sequential, &stages).unwrap();
-}
-
-/// `cargo test --release -p gdcm-sysid --lib times_of -- --ignored --nocapture --test-threads 1`
-#[test]
-#[ignore = "prints times"]
-fn times_of_two_records_of_ten_minutes_at_250_hz() {
-    print_times(&records(2, [2, 2], 150_000, 0.004), [2, 2]);
-}
-
-/// See above.
-#[test]
-#[ignore = "prints times"]
-fn times_of_96_records_of_66_s() {
-    print_times(&records(96, [4, 6], 3300, 0.02), [4, 6]);
 }

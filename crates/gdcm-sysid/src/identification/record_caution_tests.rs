@@ -151,6 +151,7 @@ fn measure_spikes_over_many_seeds() {
             }
         }
         println!("noise {noise}: false alarms in {false_alarms} of 200 records");
+        assert_eq!(false_alarms, 0);
         for size in [0.5, 1.0, 2.0, 3.0, 5.0, 10.0] {
             for length in [1, 3] {
                 let mut found = 0;
@@ -169,6 +170,7 @@ fn measure_spikes_over_many_seeds() {
                     }
                 }
                 println!("  {size} sd, {length} samples: {found} of 150 spikes found");
+                assert!(size < 2.0 || found == 150, "{size} sd: {found}");
             }
         }
     }
@@ -191,18 +193,14 @@ fn measure_spikes_over_many_seeds() {
                 length: 1,
             };
             add_spikes(&mut records[1], &mut Generator::new(seed), series);
-            let outcome = std::panic::catch_unwind(|| {
-                identify(&records, &options(), &Sequential, &Unobserved)
-            });
-            match outcome {
-                Err(_) => println!("flights, {count} spikes of {size} sd: PANIC"),
-                Ok(Err(error)) => println!("flights, {count} spikes of {size} sd: {error}"),
-                Ok(Ok(found)) => println!(
-                    "flights, {count} spikes of {size} sd: error {:?} {:?}",
-                    super::feedback_tests::ModelError::new(&found.refined.dynamics),
-                    codes(&found)
-                ),
-            }
+            let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
+            let error = super::feedback_tests::ModelError::new(&found.refined.dynamics);
+            let codes = codes(&found);
+            println!("flights, {count} spikes of {size} sd: error {error:?} {codes:?}");
+            assert!(
+                error.db < 0.05 && codes.contains(&"spike"),
+                "{error:?} {codes:?}"
+            );
         }
     }
 }
@@ -425,6 +423,7 @@ fn measure_rate_limits_over_many_seeds() {
         }
     }
     println!("false alarms: {} of {count}: {alarms:?}", alarms.len());
+    assert!(alarms.is_empty(), "{alarms:?}");
     let kinds: [(&str, f64, f64, f64); 5] = [
         ("clean", 0.0, 0.0, 0.0),
         ("remnant 5 %", 0.05, 0.0, 0.0),
@@ -458,6 +457,11 @@ fn measure_rate_limits_over_many_seeds() {
             println!(
                 "{name}: limit at {fraction} of the steepest: {found} of 50, rate within {worst:.4}"
             );
+            // A limit that few samples reach is not named, a clean one always and exactly.
+            assert!(fraction < 0.8 || found == 0, "{name} {fraction}: {found}");
+            if name == "clean" && fraction < 0.8 {
+                assert!(found == 50 && worst < 0.01, "{fraction}: {found} {worst}");
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A model whose parameters are all entries of `A`, `B`, `C` and `D` (M14.19).
+//! A state-space model, evaluated at a frequency by the Schur form of its `A` (M14.19).
 
 use nalgebra::{Complex, DMatrix, DVector};
 

@@ -5,6 +5,7 @@ use super::condition::ConditionError;
 use super::dataset::DatasetError;
 use super::location::Location;
 use super::measured_response::MeasuredResponseError;
+use super::physics_parameter::ParameterError;
 use super::state_space::StateSpaceError;
 
 /// A fault in a dataset draft.
@@ -45,6 +46,8 @@ pub enum DraftFault {
     StateSpace(#[from] StateSpaceError),
     #[error(transparent)]
     MeasuredResponse(#[from] MeasuredResponseError),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     #[error(transparent)]
     Condition(#[from] ConditionError),
     #[error(transparent)]

@@ -89,7 +89,11 @@ impl UnknownCounts {
 
 impl ConditionEquations {
     /// Sums the blocks of a condition, without those in the part left out (step 1).
-    pub(super) fn new(blocks: &ConditionBlocks, counts: UnknownCounts, left_out: Option<Part>) -> Self {
+    pub(super) fn new(
+        blocks: &ConditionBlocks,
+        counts: UnknownCounts,
+        left_out: Option<Part>,
+    ) -> Self {
         let shared = counts.shared();
         let own = counts.channels();
         let mut equations = Self {

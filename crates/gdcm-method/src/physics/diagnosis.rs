@@ -6,10 +6,8 @@ use gdcm_model::progress::{Portion, Progress, Shares};
 use gdcm_model::statistics::median;
 
 use super::fit::{PassEquations, PhysicsFit, SolvedFit, solve};
-use super::identifiability::{
-    ACTS_LIKE_CHANNELS, Identifiability, ParameterPair, WeakDirection,
-};
-use super::intervals::{Intervals, ValueVariance, intervals};
+use super::identifiability::{ACTS_LIKE_CHANNELS, Identifiability, ParameterPair, WeakDirection};
+use super::intervals::{Intervals, ValueVariance};
 use super::problem::{PhysicsError, PhysicsProblem};
 use super::score::Scores;
 use super::verdict::{NamingFacts, Verdict, WhyNotNamed};
@@ -149,11 +147,7 @@ pub fn diagnose(
     let SolvedFit { fit, equations } = solve(problem, executor, &portion)?;
     portion.finish()?;
     let identifiability = Identifiability::new(&equations)?;
-    let intervals = intervals(
-        &equations,
-        &identifiability.inverse,
-        problem.options.level,
-    )?;
+    let intervals = Intervals::new(&equations, &identifiability.inverse, problem.options.level)?;
     shares.next(PASSES_SHARE, SCORING)?;
     let scores = Scores::new(&equations, &fit.fitted);
     shares.next(1.0, SCORING)?;
@@ -199,7 +193,11 @@ impl Assembly<'_> {
     fn parameters(&self) -> Vec<ParameterDiagnosis> {
         let mut parameters = Vec::with_capacity(self.fit.z.len());
         for (parameter, &z) in self.fit.z.iter().enumerate() {
-            let place = self.fit.fitted.iter().position(|&fitted| fitted == parameter);
+            let place = self
+                .fit
+                .fitted
+                .iter()
+                .position(|&fitted| fitted == parameter);
             parameters.push(match place {
                 Some(index) => self.fitted_parameter(parameter, index),
                 None => ParameterDiagnosis {

@@ -70,10 +70,7 @@ struct ResponseFamily {
 impl ModelFamily {
     /// Creates the family of a representative with the states of the increments' base; `None` for a
     /// representative with other states ([`ModelFamily::from_responses`]).
-    pub fn from_matrices(
-        representative: &Model,
-        increments: &ConditionIncrements,
-    ) -> Option<Self> {
+    pub fn from_matrices(representative: &Model, increments: &ConditionIncrements) -> Option<Self> {
         let model = representative.state_space()?;
         if !increments.has_states_of(representative) {
             return None;
@@ -107,7 +104,8 @@ impl ModelFamily {
     }
 
     /// Creates the family of a representative whose responses on the grid `omega` \[rad/s\] change
-    /// like those of the runs' bases; `None` if a parameter has no run, or two with the same step.
+    /// like those of the runs' bases; `None` if a parameter has no run, two with the same step, or
+    /// one that does not fit.
     pub fn from_responses(
         representative: &Model,
         runs: &[Vec<RunStep<'_>>],
@@ -118,6 +116,11 @@ impl ModelFamily {
         let mut quadratic = Vec::with_capacity(runs.len());
         for steps in runs {
             let first = steps.first()?;
+            for step in steps {
+                if !step.fits() || (step.run.outputs(), step.run.inputs()) != shape {
+                    return None;
+                }
+            }
             let mut slope = response_slope(first, omega);
             let mut curvature = vec![Complex::new(0.0, 0.0); slope.len()];
             if let Some(second) = steps.get(1) {
@@ -211,7 +214,10 @@ impl MatrixFamily {
 
     /// Multiplies the values by `e^(-j omega (tau_o + tau_i))`.
     fn delay(&self, values: &mut [Complex<f64>], omega: &[f64]) {
-        for (curve, &delay_s) in values.chunks_exact_mut(omega.len().max(1)).zip(&self.delays_s) {
+        for (curve, &delay_s) in values
+            .chunks_exact_mut(omega.len().max(1))
+            .zip(&self.delays_s)
+        {
             if delay_s > 0.0 {
                 for (value, omega) in curve.iter_mut().zip(omega) {
                     *value *= Complex::from_polar(1.0, -omega * delay_s);
@@ -223,11 +229,7 @@ impl MatrixFamily {
 
 /// Computes `Y A' X + Y B' + C' X + D'` for a change of the matrices, point by point:
 /// `[(point p + output) m + input]`.
-fn derivative(
-    change: &Matrices,
-    products: &ResolventProducts,
-    points: usize,
-) -> Vec<Complex<f64>> {
+fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) -> Vec<Complex<f64>> {
     let inputs = change.b.ncols();
     let outputs = change.c.nrows();
     // A' X + B', n x 2 m N; B' is real.

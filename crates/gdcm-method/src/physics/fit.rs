@@ -233,8 +233,7 @@ impl PassEquations {
             weighted_square += sums.squared_error;
             weight += sums.weight;
         }
-        // Not `<= 0`, so that a weight that is NaN is refused too.
-        if !(weight > 0.0) {
+        if weight.is_nan() || weight <= 0.0 {
             return Err(PhysicsError::NothingToFit {
                 conditions: blocks.len(),
             });
@@ -247,8 +246,7 @@ impl PassEquations {
         };
         let options = &problem.options;
         let scale = EquationScale {
-            weight: options.independent_frequencies
-                / (problem.omega.len() as f64 * misfit_square),
+            weight: options.independent_frequencies / (problem.omega.len() as f64 * misfit_square),
             gain_sd: options.gain_sd,
         };
         let mut system = SharedSystem::new(counts, options.delay_sd_s);

@@ -63,18 +63,18 @@ impl Identifiability {
     /// # Errors
     /// [`PhysicsError::SingularNormalMatrix`].
     pub(super) fn new(equations: &PassEquations) -> Result<Self, PhysicsError> {
-        let singular = || singular(equations.counts);
         let size = equations.counts.parameters;
         let information = equations
             .system
             .parameter_information()
-            .ok_or_else(singular)?;
+            .ok_or(singular(equations.counts))?;
         let posterior = &information + DMatrix::identity(size, size);
-        let inverse = Cholesky::new(posterior).ok_or_else(singular)?.inverse();
+        let inverse = Cholesky::new(posterior)
+            .ok_or(singular(equations.counts))?
+            .inverse();
         let mut known_channels = DMatrix::zeros(size, size);
         for condition in &equations.conditions {
-            known_channels +=
-                condition.parameter_information(equations.counts, equations.scale);
+            known_channels += condition.parameter_information(equations.counts, equations.scale);
         }
         let mut learned = Vec::with_capacity(size);
         let mut channels_can_take = Vec::with_capacity(size);
@@ -153,10 +153,12 @@ impl Directions {
     fn new(information: &DMatrix<f64>) -> Self {
         let eigen = information.clone().symmetric_eigen();
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-        // `F` is not negative but for rounding.
-        let value = |index: usize| eigen.eigenvalues[index].max(0.0);
-        order.sort_by(|&a, &b| value(b).total_cmp(&value(a)));
-        let singular_values: Vec<f64> = order.iter().map(|&index| value(index)).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        // `F` has no negative eigenvalue but for rounding.
+        let singular_values: Vec<f64> = order
+            .iter()
+            .map(|&index| eigen.eigenvalues[index].max(0.0))
+            .collect();
         let weak = match (order.last(), singular_values.last()) {
             (Some(&index), Some(&singular_value)) if singular_value < WEAK_DIRECTION => {
                 let mut direction: Vec<f64> =

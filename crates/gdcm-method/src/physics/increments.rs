@@ -29,6 +29,18 @@ pub struct RunStep<'a> {
     pub run: &'a StateSpace,
 }
 
+impl RunStep<'_> {
+    /// Returns whether the step can be divided by, and the run has the shape of its base.
+    pub(super) fn fits(&self) -> bool {
+        self.z.is_finite() && self.z != 0.0 && model_shape(self.run) == model_shape(self.base)
+    }
+}
+
+/// Returns the numbers of states, inputs and outputs.
+pub(super) fn model_shape(model: &StateSpace) -> [usize; 3] {
+    [model.order(), model.inputs(), model.outputs()]
+}
+
 /// Change of the matrices with one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ParameterIncrement {
@@ -40,9 +52,13 @@ pub(super) struct ParameterIncrement {
 
 impl ParameterIncrement {
     /// Computes `L` and `Q` from one or two runs; further runs are not used. Returns `None` without
-    /// a run, or if two runs have the same step.
+    /// a run, if two runs have the same step, and if a step is zero or not finite, or a run has not
+    /// the shape of its base.
     pub(super) fn from_runs(runs: &[RunStep<'_>]) -> Option<Self> {
         let first = runs.first()?;
+        if !runs.iter().all(RunStep::fits) {
+            return None;
+        }
         let mut linear = Matrices::slope(first.run, first.base, first.z);
         let Some(second) = runs.get(1) else {
             return Some(Self {
@@ -119,8 +135,9 @@ pub struct ConditionIncrements {
 /// Reasons why increments cannot be formed, or do not apply to a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IncrementError {
-    /// A parameter has no run, or two runs with the same step.
-    #[error("parameter {parameter}: expected one run, or two with different steps")]
+    /// A parameter has no run, runs with the same step, or a run that does not fit its base or the
+    /// other parameters.
+    #[error("parameter {parameter}: expected one run, or two with different steps other than 0")]
     Runs {
         /// Index of the parameter, counted from 1.
         parameter: usize,
@@ -165,8 +182,10 @@ impl ConditionIncrements {
         let mut parameters = Vec::with_capacity(runs.len());
         for (index, runs) in runs.iter().enumerate() {
             match ParameterIncrement::from_runs(runs) {
-                Some(increment) => parameters.push(increment),
-                None => {
+                Some(increment) if increment.linear.has_shape_of(model) => {
+                    parameters.push(increment);
+                }
+                _ => {
                     return Err(IncrementError::Runs {
                         parameter: index + 1,
                     });

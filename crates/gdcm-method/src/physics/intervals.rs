@@ -58,50 +58,52 @@ pub(super) struct Intervals {
     pub(super) without_condition: Vec<Vec<f64>>,
 }
 
-/// Computes the intervals from the equations at the solution; `inverse` is `P^-1`.
-///
-/// # Errors
-/// [`PhysicsError::SingularNormalMatrix`].
-pub(super) fn intervals(
-    equations: &PassEquations,
-    inverse: &DMatrix<f64>,
-    level: f64,
-) -> Result<Intervals, PhysicsError> {
-    let mut by_condition = Vec::new();
-    for reduced in &equations.reduced {
-        by_condition.push(solve(equations, Some(equations.system.without(reduced)))?);
-    }
-    let by_output = solve_without(equations, equations.counts.outputs, Part::Output)?;
-    let by_input = solve_without(equations, equations.counts.inputs, Part::Input)?;
-    let by_third = solve_without(equations, THIRDS, Part::Third)?;
-    let pull = inverse * inverse;
-    let mut variances = Vec::with_capacity(equations.counts.parameters);
-    for parameter in 0..equations.counts.parameters {
-        variances.push(ValueVariance {
-            condition: jackknife(&by_condition, parameter),
-            output: jackknife(&by_output, parameter),
-            input: jackknife(&by_input, parameter),
-            band: jackknife(&by_third, parameter),
-            prior: pull[(parameter, parameter)],
-        });
-    }
-    let conditions = equations.counting_conditions();
-    let mut half_widths = Vec::new();
-    if conditions >= LEAST_CONDITIONS {
-        let quantile = student_quantile(level, conditions as f64 - 1.0);
-        for variance in &variances {
-            half_widths.push(quantile * variance.total().sqrt());
+impl Intervals {
+    /// Computes the intervals from the equations at the solution; `inverse` is `P^-1`.
+    ///
+    /// # Errors
+    /// [`PhysicsError::SingularNormalMatrix`].
+    pub(super) fn new(
+        equations: &PassEquations,
+        inverse: &DMatrix<f64>,
+        level: f64,
+    ) -> Result<Self, PhysicsError> {
+        let mut by_condition = Vec::new();
+        for reduced in &equations.reduced {
+            by_condition.push(solve(equations, Some(equations.system.without(reduced)))?);
         }
+        let by_output = solve_without(equations, equations.counts.outputs, Part::Output)?;
+        let by_input = solve_without(equations, equations.counts.inputs, Part::Input)?;
+        let by_third = solve_without(equations, THIRDS, Part::Third)?;
+        let pull = inverse * inverse;
+        let mut variances = Vec::with_capacity(equations.counts.parameters);
+        for parameter in 0..equations.counts.parameters {
+            variances.push(ValueVariance {
+                condition: jackknife(&by_condition, parameter),
+                output: jackknife(&by_output, parameter),
+                input: jackknife(&by_input, parameter),
+                band: jackknife(&by_third, parameter),
+                prior: pull[(parameter, parameter)],
+            });
+        }
+        let conditions = equations.counting_conditions();
+        let mut half_widths = Vec::new();
+        if conditions >= LEAST_CONDITIONS {
+            let quantile = student_quantile(level, conditions as f64 - 1.0);
+            for variance in &variances {
+                half_widths.push(quantile * variance.total().sqrt());
+            }
+        }
+        let without_condition = by_condition
+            .iter()
+            .map(|x| x.as_slice()[..equations.counts.parameters].to_vec())
+            .collect();
+        Ok(Self {
+            variances,
+            half_widths,
+            without_condition,
+        })
     }
-    let without_condition = by_condition
-        .iter()
-        .map(|x| x.as_slice()[..equations.counts.parameters].to_vec())
-        .collect();
-    Ok(Intervals {
-        variances,
-        half_widths,
-        without_condition,
-    })
 }
 
 /// Solves the equations without each member of a kind that has data.

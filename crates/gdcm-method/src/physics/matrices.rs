@@ -27,6 +27,11 @@ impl Matrices {
         }
     }
 
+    /// Returns whether the matrices have the shape of a model's.
+    pub(super) fn has_shape_of(&self, model: &StateSpace) -> bool {
+        self.a.nrows() == model.order() && self.d.shape() == (model.outputs(), model.inputs())
+    }
+
     /// Returns `(changed - base) / z`.
     pub(super) fn slope(changed: &StateSpace, base: &StateSpace, z: f64) -> Self {
         Self {

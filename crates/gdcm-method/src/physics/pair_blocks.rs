@@ -141,7 +141,7 @@ impl<'a> WeightedCondition<'a> {
             condition,
             omega: &problem.omega,
             weights: PairTable::from_fn(problem.outputs(), problem.inputs(), |pair| {
-                FixedWeight::of_response(problem, condition, pair)
+                FixedWeight::for_response(problem, condition, pair)
             }),
         }
     }

@@ -10,7 +10,7 @@ use gdcm_model::dataset::physics_parameter::ParameterChange;
 use gdcm_model::dataset::{BundleKind, Condition, Model, StateSpace};
 
 use super::family::ModelFamily;
-use super::increments::{ConditionIncrements, IncrementError, RunStep};
+use super::increments::{ConditionIncrements, IncrementError, RunStep, model_shape};
 use super::offered_parameter::OfferedParameter;
 use super::run_refusal::{RefusedRun, RunRefusal};
 
@@ -152,8 +152,7 @@ impl<'a> MatchedRuns<'a> {
             return Ok(family);
         }
         let steps = self.steps(parameters)?;
-        ModelFamily::from_responses(representative, &steps, omega)
-            .ok_or(ConditionOmission::NoRuns)
+        ModelFamily::from_responses(representative, &steps, omega).ok_or(ConditionOmission::NoRuns)
     }
 
     /// Returns the steps of each parameter.
@@ -242,8 +241,8 @@ fn check_states(
     base: &Model,
     base_matrices: &StateSpace,
 ) -> Result<(), RunRefusal> {
-    let expected = shape(base_matrices);
-    let found = shape(run_matrices);
+    let expected = model_shape(base_matrices);
+    let found = model_shape(run_matrices);
     if expected != found {
         return Err(RunRefusal::Shape {
             base: base.name.clone(),
@@ -262,11 +261,6 @@ fn check_states(
         }
     }
     Ok(())
-}
-
-/// Returns the numbers of states, inputs and outputs.
-fn shape(model: &StateSpace) -> [usize; 3] {
-    [model.order(), model.inputs(), model.outputs()]
 }
 
 /// Returns the physics model with the perturbation of a run: the nominal model if it has it,
@@ -289,11 +283,13 @@ fn is_same_trim(base: &Model, run: &Model) -> bool {
         None => return false,
     };
     let run_offsets = run.perturbation().unwrap_or(&nothing);
-    let offset = |offsets: &BTreeMap<String, f64>, name: &String| {
-        offsets.get(name).copied().unwrap_or(0.0)
-    };
     base_offsets
         .keys()
         .chain(run_offsets.keys())
-        .all(|name| offset(base_offsets, name) == offset(run_offsets, name))
+        .all(|name| offset_of(base_offsets, name) == offset_of(run_offsets, name))
+}
+
+/// Returns a trim offset; 0 for a coordinate that is not given.
+fn offset_of(offsets: &BTreeMap<String, f64>, coordinate: &str) -> f64 {
+    offsets.get(coordinate).copied().unwrap_or(0.0)
 }

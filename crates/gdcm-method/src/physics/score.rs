@@ -9,6 +9,7 @@
 //! ```
 
 use super::fit::PassEquations;
+use super::shared_system::SharedSystem;
 
 /// Score of a set of parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,15 @@ pub struct Score {
     pub per_condition: Vec<f64>,
     /// Sum over the conditions over that with no parameter.
     pub ratio: f64,
+}
+
+impl Score {
+    fn new(per_condition: Vec<f64>, baseline: f64) -> Self {
+        Self {
+            ratio: per_condition.iter().sum::<f64>() / baseline,
+            per_condition,
+        }
+    }
 }
 
 /// A step of the stepwise list.
@@ -47,20 +57,16 @@ impl Scores {
         let scorer = Scorer::new(equations);
         let nothing = scorer.score(&[])?;
         let baseline: f64 = nothing.iter().sum();
-        if !(baseline > 0.0) {
+        if baseline.is_nan() || baseline <= 0.0 {
             return None;
         }
-        let score = |per_condition: Vec<f64>| Score {
-            ratio: per_condition.iter().sum::<f64>() / baseline,
-            per_condition,
-        };
         let mut alone = Vec::with_capacity(fitted.len());
         for index in 0..fitted.len() {
-            alone.push(score(scorer.score(&[index])?).ratio);
+            alone.push(Score::new(scorer.score(&[index])?, baseline).ratio);
         }
         let mut stepwise = vec![ScoreStep {
             added: None,
-            score: score(nothing),
+            score: Score::new(nothing, baseline),
         }];
         let mut chosen: Vec<usize> = Vec::with_capacity(fitted.len());
         while chosen.len() < fitted.len() {
@@ -70,9 +76,9 @@ impl Scores {
                     continue;
                 }
                 chosen.push(index);
-                let candidate = scorer.score(&chosen).map(score);
+                let candidate = scorer.score(&chosen);
                 chosen.pop();
-                let candidate = candidate?;
+                let candidate = Score::new(candidate?, baseline);
                 let is_better = match &best {
                     Some((_, best)) => candidate.ratio < best.ratio,
                     None => true,
@@ -120,7 +126,7 @@ impl Scores {
 /// The equations without each condition.
 struct Scorer<'a> {
     equations: &'a PassEquations,
-    others: Vec<super::shared_system::SharedSystem>,
+    others: Vec<SharedSystem>,
 }
 
 impl<'a> Scorer<'a> {

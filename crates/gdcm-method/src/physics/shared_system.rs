@@ -87,7 +87,10 @@ impl SharedSystem {
         let mut information = self.matrix.view((0, 0), (size, size)).into_owned();
         if self.delay_sd_s > 0.0 {
             let delays = self.counts.channels();
-            let mut own = self.matrix.view((size, size), (delays, delays)).into_owned();
+            let mut own = self
+                .matrix
+                .view((size, size), (delays, delays))
+                .into_owned();
             for delay in 0..delays {
                 own[(delay, delay)] += self.prior(size + delay);
             }

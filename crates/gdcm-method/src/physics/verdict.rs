@@ -37,8 +37,7 @@ impl Verdict {
             Some(spread) => misfit <= SPREAD_RATIO * spread,
             None => false,
         };
-        // Not `<`, so that a share that is NaN explains nothing.
-        if !(explained >= LEAST_EXPLAINED) {
+        if explained.is_nan() || explained < LEAST_EXPLAINED {
             Self::None
         } else if explained >= MOSTLY_EXPLAINED && is_near_spread {
             Self::Accounts
@@ -161,15 +160,44 @@ mod tests {
         assert_eq!(NAMED.why_not_named(), None);
         let code = |facts: NamingFacts| facts.why_not_named().map(WhyNotNamed::code);
         for (facts, expected) in [
-            (NamingFacts { conditions: 3, half_width: None, ..NAMED }, "few-conditions"),
-            (NamingFacts { explained: Some(0.09), ..NAMED }, "nothing-explained"),
-            (NamingFacts { z: 3.0, ..NAMED }, "at-bound"),
-            (NamingFacts { half_width: Some(1.0), ..NAMED }, "interval-contains-zero"),
             (
-                NamingFacts { half_width: Some(1.8), learned: 0.4, ..NAMED },
+                NamingFacts {
+                    conditions: 3,
+                    half_width: None,
+                    ..NAMED
+                },
+                "few-conditions",
+            ),
+            (
+                NamingFacts {
+                    explained: Some(0.09),
+                    ..NAMED
+                },
+                "nothing-explained",
+            ),
+            (NamingFacts { z: 3.0, ..NAMED }, "at-bound"),
+            (
+                NamingFacts {
+                    half_width: Some(1.0),
+                    ..NAMED
+                },
+                "interval-contains-zero",
+            ),
+            (
+                NamingFacts {
+                    half_width: Some(1.8),
+                    learned: 0.4,
+                    ..NAMED
+                },
                 "data-silent",
             ),
-            (NamingFacts { gain: Some(0.009), ..NAMED }, "little-gain"),
+            (
+                NamingFacts {
+                    gain: Some(0.009),
+                    ..NAMED
+                },
+                "little-gain",
+            ),
         ] {
             assert_eq!(code(facts), Some(expected));
         }

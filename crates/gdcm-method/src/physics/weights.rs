@@ -40,7 +40,7 @@ pub(super) struct FixedWeight {
 
 impl FixedWeight {
     /// Returns the fixed weights of a response at all frequencies.
-    pub(super) fn of_response(
+    pub(super) fn for_response(
         problem: &PhysicsProblem,
         condition: &PhysicsCondition,
         pair: Pair,
@@ -81,8 +81,8 @@ impl FixedWeight {
     /// Returns `q^2` for the error `error = ln(R / H^)`; 0 where it is not finite.
     pub(super) fn squared(self, error: Complex<f64>) -> f64 {
         let error_db = error.re * 20.0 / LN_10;
-        let robust = (1.0 + summand(error_db, error.im.to_degrees()) * (self.s / OUTLIER).powi(2))
-            .sqrt();
+        let robust =
+            (1.0 + summand(error_db, error.im.to_degrees()) * (self.s / OUTLIER).powi(2)).sqrt();
         // |H^ / R|^2, at most 1.
         let scale = (-2.0 * error.re).exp().min(1.0);
         let squared = self.s * self.s * self.coherence * scale / robust;

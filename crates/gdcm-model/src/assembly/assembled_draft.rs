@@ -30,7 +30,7 @@ pub(super) fn dataset_draft(rules: &Rules, parts: &[Part]) -> DatasetDraft {
         outputs: dataset_channels(&rules.outputs),
         on_axis: rules.on_axis.clone(),
         band: rules.band,
-        parameters: Vec::new(),
+        parameters: rules.parameters.clone(),
         conditions,
     }
 }

@@ -74,7 +74,9 @@ pub enum ConditionError {
         expected: &'static str,
         value: f64,
     },
-    #[error("the model \"{name}\" with a moved parameter: the name occurs twice; names must differ")]
+    #[error(
+        "the model \"{name}\" with a moved parameter: the name occurs twice; names must differ"
+    )]
     DuplicateMovedModel { name: String },
     #[error("the model \"{name}\" with a moved parameter: {error}")]
     MovedModel { name: String, error: ParameterError },

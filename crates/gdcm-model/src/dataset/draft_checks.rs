@@ -7,9 +7,7 @@ use super::condition::Condition;
 use super::dataset::{Dataset, DatasetHeader};
 use super::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
 use super::draft_fault::{DraftError, DraftFault, Warning};
-use super::limits::{
-    MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_PARAMETERS, MOST_RECORDS,
-};
+use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_PARAMETERS, MOST_RECORDS};
 use super::location::Location;
 use super::model::Model;
 use super::model_draft_checks::ModelBuilder;

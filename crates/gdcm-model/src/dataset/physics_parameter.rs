@@ -1,10 +1,12 @@
 //! Named parameters of the physics model, and models with such parameters moved (M18.1).
 
+use serde::{Deserialize, Serialize};
+
 use super::model::Model;
 use crate::number_format::number;
 
 /// A named parameter of the physics model, such as the roll inertia.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhysicsParameter {
     /// Name, unique in the dataset ("Ixx", "swashplate_phase").
     pub name: String,
@@ -12,13 +14,15 @@ pub struct PhysicsParameter {
     pub unit: String,
     /// Standard deviation of the changes that the engineer considers possible, in the unit; `None`
     /// if the dataset does not state it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plausible_sd: Option<f64>,
     /// Meaning of the parameter; empty if unknown.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
 
 /// The change of a named parameter from its nominal value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterChange {
     /// Name of the parameter.
     pub name: String,

@@ -4,9 +4,7 @@
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState, RecordKind};
 use gdcm_model::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
 use gdcm_model::dataset::location::Location;
-use gdcm_model::dataset::{
-    BundleKind, Channel, Condition, ConditionId, Dataset, PhysicsParameter,
-};
+use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, PhysicsParameter};
 
 use super::json_form::{
     BandText, ChannelText, ConditionText, DatasetText, FORMAT, ModelText, ParameterText, RecordText,

@@ -5,9 +5,10 @@ use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Portion, Progress, Shares};
 use gdcm_model::statistics::median;
 
-use super::fit::{PassEquations, PhysicsFit, SolvedFit, solve};
+use super::fit::{PhysicsFit, SolvedFit, solve};
 use super::identifiability::{ACTS_LIKE_CHANNELS, Identifiability, ParameterPair, WeakDirection};
 use super::intervals::{Intervals, ValueVariance};
+use super::pass_equations::PassEquations;
 use super::problem::{PhysicsError, PhysicsProblem};
 use super::score::Scores;
 use super::verdict::{NamingFacts, Verdict, WhyNotNamed};

@@ -9,7 +9,7 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
-use super::fit::{PassEquations, singular};
+use super::pass_equations::{PassEquations, singular};
 use super::problem::PhysicsError;
 
 /// Magnitude of the correlation above which two parameters cannot be told apart.

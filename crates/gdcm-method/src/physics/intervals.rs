@@ -16,8 +16,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::condition_equations::Part;
-use super::fit::{PassEquations, singular};
 use super::pair_blocks::THIRDS;
+use super::pass_equations::{PassEquations, singular};
 use super::problem::PhysicsError;
 use super::shared_system::SharedSystem;
 use crate::uncertainty::student_quantile;
@@ -72,6 +72,12 @@ impl Intervals {
         for reduced in &equations.reduced {
             by_condition.push(solve(equations, Some(equations.system.without(reduced)))?);
         }
+        let mut counting = Vec::new();
+        for (x, blocks) in by_condition.iter().zip(&equations.blocks) {
+            if blocks.sums().weight > 0.0 {
+                counting.push(x.clone());
+            }
+        }
         let by_output = solve_without(equations, equations.counts.outputs, Part::Output)?;
         let by_input = solve_without(equations, equations.counts.inputs, Part::Input)?;
         let by_third = solve_without(equations, THIRDS, Part::Third)?;
@@ -79,7 +85,7 @@ impl Intervals {
         let mut variances = Vec::with_capacity(equations.counts.parameters);
         for parameter in 0..equations.counts.parameters {
             variances.push(ValueVariance {
-                condition: jackknife(&by_condition, parameter),
+                condition: jackknife(&counting, parameter),
                 output: jackknife(&by_output, parameter),
                 input: jackknife(&by_input, parameter),
                 band: jackknife(&by_third, parameter),

@@ -31,9 +31,9 @@
 //! | 1 | `increments`, `matrices` |
 //! | 3 | `family`, `resolvent` |
 //! | 4 | `weights`, `point` |
-//! | 5 | `pair_blocks` |
+//! | 5 | `weighted_condition`, `pair_blocks` |
 //! | 6 | `condition_equations` |
-//! | 7 | `shared_system` |
+//! | 7 | `pass_equations`, `shared_system` |
 //! | 2, 8 | `fit` |
 //! | 9 | `intervals` |
 //! | 10 | `score` |
@@ -55,6 +55,7 @@ pub mod intervals;
 mod matrices;
 pub mod offered_parameter;
 mod pair_blocks;
+mod pass_equations;
 mod point;
 pub mod problem;
 mod resolvent;
@@ -63,6 +64,7 @@ pub mod run_refusal;
 pub mod score;
 mod shared_system;
 pub mod verdict;
+mod weighted_condition;
 mod weights;
 
 #[cfg(test)]

@@ -10,6 +10,9 @@ pub use super::error::PhysicsError;
 use super::family::ModelFamily;
 use crate::fidelity::CoherenceWeights;
 
+/// Greatest magnitude of a parameter's value, in plausible standard deviations.
+pub const GREATEST_VALUE: f64 = 3.0;
+
 /// A flight condition in the fit.
 #[derive(Clone, Debug)]
 pub struct PhysicsCondition {

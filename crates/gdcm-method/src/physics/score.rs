@@ -8,7 +8,7 @@
 //! 4  alone: each parameter;  stepwise: add the one that lowers the ratio most, until all are in
 //! ```
 
-use super::fit::PassEquations;
+use super::pass_equations::PassEquations;
 use super::shared_system::SharedSystem;
 
 /// Score of a set of parameters.

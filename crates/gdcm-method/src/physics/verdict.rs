@@ -4,8 +4,8 @@
 //! lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or more
 //! are in the fit.
 
-use super::fit::GREATEST_VALUE;
 use super::intervals::LEAST_CONDITIONS;
+use super::problem::GREATEST_VALUE;
 
 /// Least decrease of the ratio by a parameter's step.
 pub const LEAST_GAIN: f64 = 0.01;

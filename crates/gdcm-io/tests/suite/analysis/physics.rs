@@ -25,7 +25,7 @@ static KNOWN: LazyLock<Value> = LazyLock::new(|| {
     ))
 });
 
-static DATASET: LazyLock<Dataset> = LazyLock::new(|| {
+static DATASET: LazyLock<Arc<Dataset>> = LazyLock::new(|| {
     let path = crate::program_folder().join("tests/data/reference/physics-dataset.json.gz");
     let loaded = load_dataset(&path).unwrap();
     assert!(loaded.cautions.is_empty(), "{:?}", loaded.cautions);

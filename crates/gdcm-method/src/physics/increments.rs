@@ -18,6 +18,10 @@ use gdcm_model::dataset::{Model, StateSpace};
 
 use super::matrices::Matrices;
 
+/// Share of the curvature in a change of A above which a step of the run was too large for the value
+/// found (M18.7).
+pub const NOTABLE_CURVATURE: f64 = 0.5;
+
 /// A run of a parameter at the change `z`, in plausible standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub struct RunStep<'a> {
@@ -250,7 +254,8 @@ impl ConditionIncrements {
         Ok(moved.timed(matrices.timing().clone())?)
     }
 
-    /// Returns `|z| ||Q|| / ||L||` of the system matrices for each parameter (M18.7).
+    /// Returns `|z| ||Q|| / ||L||` of the system matrices for each parameter; above
+    /// [`NOTABLE_CURVATURE`], the effect bends (M18.7).
     pub fn curvatures(&self, z: &[f64]) -> Vec<f64> {
         self.parameters
             .iter()

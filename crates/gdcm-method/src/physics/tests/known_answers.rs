@@ -1,12 +1,15 @@
 //! Comparison with independent numpy results.
 
+use nalgebra::DMatrix;
 use serde_json::Value;
 
-use gdcm_model::dataset::{Dynamics, Pair};
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::{Dynamics, Pair, StateSpace};
 use gdcm_model::response::PreparedModel;
 
 use super::{REFERENCE, diagnosis, numbers, toy, toy_conditions, toy_omega};
 use crate::physics::PhysicsDiagnosis;
+use crate::physics::increments::NOTABLE_CURVATURE;
 use crate::uncertainty::student_quantile;
 
 fn assert_close(found: &[f64], expected: &Value, tolerance: f64, what: &str) {
@@ -138,6 +141,63 @@ fn the_model_at_chosen_values_has_the_response_of_the_family() {
             );
         }
     }
+}
+
+#[test]
+fn sample_time_and_delays_are_those_of_the_representative() {
+    let timing = Timing {
+        sample_time_s: Some(0.02),
+        input_delays_s: Some(vec![0.03, 0.0]),
+        output_delays_s: Some(vec![0.0, 0.01]),
+    };
+    let mut condition = toy_conditions()[1].clone();
+    condition.base = discretised(&condition.base, &timing);
+    for (_, run) in condition.runs.iter_mut().flatten() {
+        *run = discretised(run, &timing);
+    }
+    let z = [0.7, -1.3];
+    let omega = toy_omega();
+    let expected = condition.truth(&z, &omega);
+    let family = condition.condition(1, expected.clone()).family;
+    let found = family.evaluate(&z, &omega);
+    for (pair, curve) in expected.curves().iter() {
+        let start = (2 * pair.output + pair.input) * omega.len();
+        for (k, expected) in curve.iter().enumerate() {
+            let error = (found.response[start + k] - expected).norm();
+            assert!(error < 1e-12 * (1.0 + expected.norm()), "{pair:?}, {k}");
+        }
+    }
+    let model = condition.increments().apply(&condition.base(), &z).unwrap();
+    assert_eq!(model.timing(), condition.base.timing());
+}
+
+/// Returns a model discretised by Euler's rule, with these delays.
+fn discretised(model: &StateSpace, timing: &Timing) -> StateSpace {
+    let sample_time_s = timing.sample_time_s.unwrap();
+    StateSpace::new(
+        DMatrix::identity(3, 3) + model.a() * sample_time_s,
+        model.b() * sample_time_s,
+        model.c().clone(),
+        model.d().clone(),
+    )
+    .unwrap()
+    .timed(timing.clone())
+    .unwrap()
+}
+
+#[test]
+fn the_curvature_of_two_runs_is_reported() {
+    let increments = toy_conditions()[1].increments();
+    // Parameter b has a single run.
+    let [a, b] = increments.curvatures(&[2.0, 2.0])[..] else {
+        panic!("two parameters")
+    };
+    assert!(a > 0.0 && a < NOTABLE_CURVATURE, "{a}");
+    assert_eq!(b, 0.0);
+    let [half, _] = increments.curvatures(&[-1.0, 2.0])[..] else {
+        panic!("two parameters")
+    };
+    assert!((2.0 * half - a).abs() < 1e-15);
 }
 
 #[test]

@@ -239,7 +239,7 @@ mod tests {
         let models = vec![
             found_model("c1/nominal.mat", None, at_airspeed(70.0)),
             found_model("c1/Ixx+5%.mat", None, at_airspeed(70.0)),
-            found_model("c1/nominal_Ixx-5%.mat", None, at_airspeed(70.0)),
+            found_model("c1/nominal Ixx-5%.mat", None, at_airspeed(70.0)),
             found_model("c1/wake.mat", None, at_airspeed(70.0)),
         ];
         let mut rules = proposed_rules("", &models);

@@ -45,6 +45,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 "couplings",
                 &["fidelity", "correction", "schedule", "uncertainty"],
             ),
+            ("physics", &["fidelity", "correction", "uncertainty"]),
             ("requirements", &["fidelity", "uncertainty"]),
         ],
     ),

@@ -65,6 +65,14 @@
 //! H~ = (I - H K)^-1 H M~,   R' = L_o^-1 R L_i^-1 = H (M + K R'),   M~ = M diag(M)^-1.      (M16)
 //! ```
 //!
+//! Which number of the physics model is wrong, and by how much, follows from models linearised with
+//! one named parameter moved. Their differences make a family `H(z)`, fitted to all conditions with
+//! gains and delays of the channels left free:
+//!
+//! ```text
+//! ln R = ln H_oi(z) + a_oc + b_ic - j omega (tau_o + tau_i).                               (M18)
+//! ```
+//!
 //! # Notation
 //!
 //! | symbol | in code | meaning, unit |
@@ -94,6 +102,7 @@
 //! | [`schedule`] | regression over airspeed, its forms compared, assessment |
 //! | [`uncertainty`] | error bars, and the variance split over the conditions |
 //! | [`couplings`] | input mixing and output feedback, fitted to all conditions at once (M16) |
+//! | [`physics`] | named parameters of the physics model, fitted to all conditions (M18) |
 //! | [`requirements`] | bandwidth, time histories, modes, summary costs (M17) |
 //!
 //! The crate is independent of files, windows and threads: a caller with several cores supplies an
@@ -119,6 +128,7 @@
 pub mod correction;
 pub mod couplings;
 pub mod fidelity;
+pub mod physics;
 pub mod requirements;
 pub mod schedule;
 pub mod uncertainty;

@@ -29,7 +29,7 @@
 //! let hover = Condition::new(FlightState::at(ConditionId(1), 0.0), vec![nominal], vec![flight])?;
 //! let (inputs, outputs) = (vec![Channel::new("LON", "%")], vec![Channel::new("Q", "deg/s")]);
 //! let (on_axis, band) = (PairTable::filled(1, 1, true), Band::new(0.5, 12.0)?);
-//! let header = DatasetHeader { name: "one axis".into(), description: String::new(), inputs, outputs, on_axis, band };
+//! let header = DatasetHeader { name: "one axis".into(), description: String::new(), inputs, outputs, on_axis, band, parameters: Vec::new() };
 //! let study = Study::new(Dataset::new(header, vec![hover])?.into());
 //! let analysis = Engine::default().analyze(&study, &Unobserved)?;
 //! let correction = &analysis.condition(ConditionId(1)).ok_or("no result")?.correction;

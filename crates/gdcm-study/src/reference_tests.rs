@@ -126,6 +126,7 @@ pub(crate) fn dataset_of(packed: &[u8]) -> Dataset {
         .unwrap(),
         inputs,
         outputs,
+        parameters: Vec::new(),
     };
     Dataset::new(
         header,

@@ -363,6 +363,7 @@ mod tests {
             outputs: old.outputs().to_vec(),
             on_axis: old.on_axis().clone(),
             band: old.band(),
+            parameters: Vec::new(),
         };
         let conditions = old
             .conditions()

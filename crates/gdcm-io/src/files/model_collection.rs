@@ -211,6 +211,7 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
         source: None,
         states: Vec::new(),
         bands: None,
+        moved: None,
     }
 }
 

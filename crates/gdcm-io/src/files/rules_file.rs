@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::assembly::declarations::{ChannelDeclarations, ScopedDeclarations, Signs};
 use gdcm_model::assembly::{RowRule, Rules, UnitRule};
-use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use gdcm_model::dataset::PhysicsParameter;
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS, MOST_PARAMETERS};
 use gdcm_model::dataset::location::Location;
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::names::{NamePattern, standard_patterns};
@@ -82,6 +83,13 @@ pub(crate) struct RulesText {
     #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(crate) on_axis: Vec<(String, String)>,
     pub(crate) band_rad_s: [f64; 2],
+    /// Named parameters of the physics model.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_PARAMETERS, _, _>"
+    )]
+    pub(crate) parameters: Vec<PhysicsParameter>,
     #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
     pub(crate) conversions: Vec<UnitRule>,
     #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
@@ -142,6 +150,7 @@ impl RulesText {
             outputs: self.outputs,
             on_axis: self.on_axis,
             band: (self.band_rad_s[0], self.band_rad_s[1]),
+            parameters: self.parameters,
             patterns,
             units: self.conversions,
             signs: self.signs,
@@ -193,6 +202,7 @@ impl RulesText {
             outputs: rules.outputs.clone(),
             on_axis: rules.on_axis.clone(),
             band_rad_s: [rules.band.0, rules.band.1],
+            parameters: rules.parameters.clone(),
             conversions: rules.units.clone(),
             patterns: pattern_texts(&rules.patterns),
             signs: rules.signs.clone(),
@@ -270,6 +280,7 @@ fn word_error(entry: String, expected: &str, found: String) -> ContentError {
 #[cfg(test)]
 mod tests {
     use gdcm_model::assembly::FileScope;
+    use gdcm_model::dataset::physics_parameter::ParameterChange;
     use gdcm_model::names::RowRole;
 
     use super::*;
@@ -299,9 +310,20 @@ mod tests {
             sample_time_s: Some(0.02),
             units: Some([("Q".to_owned(), "rad/s".to_owned())].into()),
             factors: Some([("LON".to_owned(), 2.0)].into()),
+            parameter: Some(ParameterChange {
+                name: "Ixx".into(),
+                delta: 5.0,
+                unit: "%".into(),
+            }),
             ..RowRule::default()
         };
         rules.rows.insert("c03/nom.mat".into(), row);
+        rules.parameters.push(PhysicsParameter {
+            name: "Ixx".into(),
+            unit: "%".into(),
+            plausible_sd: Some(5.0),
+            description: "roll inertia".into(),
+        });
         rules.headings.insert(
             "frf.csv".into(),
             vec!["omega [Hz]".into(), "re".into(), "im".into()],

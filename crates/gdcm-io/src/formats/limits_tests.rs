@@ -56,6 +56,10 @@ fn file_rows() -> String {
             "coordinates of a perturbation",
             MOST_COORDINATES.to_string(),
         ),
+        (
+            "named parameters of the physics model",
+            limits::MOST_PARAMETERS.to_string(),
+        ),
         ("variants of a study", MOST_VARIANTS.to_string()),
         (
             "delay of a model's channel",

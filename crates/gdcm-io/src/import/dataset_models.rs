@@ -11,19 +11,27 @@ use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 
 use crate::files::model_collection::labels;
 
-/// Returns every model of a dataset with its provenance and flight condition. `name` is the path of
-/// the dataset file, relative to the folder that is read.
+/// Returns every model of a dataset with its provenance and flight condition, those with moved
+/// parameters included. `name` is the path of the dataset file, relative to the folder that is read.
 pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     let mut models = Vec::new();
     for condition in dataset.conditions() {
         let facts = facts_of(condition, name);
         let id = condition.flight_state().id;
         for kind in BundleKind::BOTH {
-            for model in condition.bundle(kind) {
-                let original = model.source.clone().unwrap_or_default();
+            let mut drafts: Vec<ModelDraft> = condition
+                .bundle(kind)
+                .iter()
+                .map(ModelDraft::from_model)
+                .collect();
+            if kind == BundleKind::Physics {
+                drafts.extend(condition.moved_models().iter().map(ModelDraft::from_moved));
+            }
+            for draft in drafts {
+                let original = draft.source.clone().unwrap_or_default();
                 let notes = original.note.clone().into_iter().collect();
                 let source = Provenance {
-                    variable: Some(format!("{id}/{kind}/{}", model.name)),
+                    variable: Some(format!("{id}/{kind}/{}", draft.name)),
                     note: None,
                     file: None,
                     sha256: None,
@@ -32,7 +40,7 @@ pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel
                 models.push(FoundModel {
                     draft: ModelDraft {
                         source: Some(source),
-                        ..ModelDraft::from_model(model)
+                        ..draft
                     },
                     inputs: labels(dataset.inputs()),
                     outputs: labels(dataset.outputs()),

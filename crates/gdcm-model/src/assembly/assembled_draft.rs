@@ -30,6 +30,7 @@ pub(super) fn dataset_draft(rules: &Rules, parts: &[Part]) -> DatasetDraft {
         outputs: dataset_channels(&rules.outputs),
         on_axis: rules.on_axis.clone(),
         band: rules.band,
+        parameters: rules.parameters.clone(),
         conditions,
     }
 }

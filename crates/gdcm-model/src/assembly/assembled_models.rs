@@ -9,10 +9,11 @@ use super::part::Part;
 use super::rules::Rules;
 use crate::dataset::dataset_draft::ModelDraft;
 use crate::dataset::model::{Origin, Provenance};
+use crate::dataset::physics_parameter::MovedParameters;
 use crate::names::RowRole;
 use crate::number_format::number;
 
-/// Builds a physics model. Coordinates that are perturbed only in other models of the bundle get a
+/// Builds a physics model, or a run with a moved parameter. Coordinates that are perturbed only in other models of the bundle get a
 /// zero offset.
 pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let mut offsets = BTreeMap::new();
@@ -25,13 +26,19 @@ pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> Mod
     } else {
         Some(offsets)
     };
+    let model = converted_model(part);
+    let moved = match &part.row.parameter {
+        Some(change) => Some(MovedParameters::Run(change.clone())),
+        None => model.moved.clone(),
+    };
     let origin = match part.row.role {
-        Some(RowRole::Nominal) => Origin::Nominal { perturbation },
+        Some(RowRole::Nominal) if moved.is_none() => Origin::Nominal { perturbation },
         _ => Origin::Perturbed { perturbation },
     };
     ModelDraft {
         origin,
-        ..converted_model(part)
+        moved,
+        ..model
     }
 }
 
@@ -41,6 +48,7 @@ pub(super) fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraf
     for part in parts {
         let model = ModelDraft {
             origin: identified_origin(part),
+            moved: None,
             ..converted_model(part)
         };
         let same = models

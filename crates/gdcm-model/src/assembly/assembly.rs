@@ -160,9 +160,12 @@ mod tests {
     use crate::assembly::found_model::Facts;
     use crate::assembly::position_caution::PositionCaution;
     use crate::assembly::proposed_rules::proposed_rules;
+    use crate::assembly::row_rule::RowRule;
     use crate::assembly::test_models::{at_airspeed, found_model, measured_model};
+    use crate::dataset::PhysicsParameter;
     use crate::dataset::channel::ChannelSide;
     use crate::dataset::dataset_draft::ModelDraft;
+    use crate::dataset::physics_parameter::ParameterChange;
     use crate::names::ChannelRule;
 
     #[test]
@@ -229,6 +232,50 @@ mod tests {
             Rules::default(),
         );
         assert_eq!(contradictions(&rounded), []);
+    }
+
+    #[test]
+    fn runs_of_named_parameters_are_assembled_beside_the_bundle() {
+        let models = vec![
+            found_model("c1/nominal.mat", None, at_airspeed(70.0)),
+            found_model("c1/Ixx+5%.mat", None, at_airspeed(70.0)),
+            found_model("c1/nominal Ixx-5%.mat", None, at_airspeed(70.0)),
+            found_model("c1/wake.mat", None, at_airspeed(70.0)),
+        ];
+        let mut rules = proposed_rules("", &models);
+        rules.parameters.push(PhysicsParameter {
+            name: "Ixx".into(),
+            unit: "%".into(),
+            plausible_sd: Some(4.0),
+            description: String::new(),
+        });
+        let wake = RowRule {
+            parameter: Some(ParameterChange {
+                name: "wake".into(),
+                delta: 0.25,
+                unit: "1".into(),
+            }),
+            ..RowRule::default()
+        };
+        rules.rows.insert("c1/wake.mat".into(), wake);
+        let assembly = Assembly::new(models, rules);
+        let draft = dataset_draft(&assembly.rules, &assembly.parts);
+        assert_eq!(draft.parameters[0].plausible_sd, Some(4.0));
+        let moved: Vec<Option<(String, f64)>> = draft.conditions[0]
+            .physics
+            .iter()
+            .map(|model| {
+                let [change] = model.moved.as_ref()?.changes() else {
+                    return None;
+                };
+                Some((change.name.clone(), change.delta))
+            })
+            .collect();
+        let ixx = |delta| Some(("Ixx".to_owned(), delta));
+        assert_eq!(
+            moved,
+            [None, ixx(5.0), ixx(-5.0), Some(("wake".to_owned(), 0.25))]
+        );
     }
 
     #[test]

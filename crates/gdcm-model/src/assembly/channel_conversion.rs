@@ -207,6 +207,7 @@ mod tests {
             source: None,
             states: Vec::new(),
             bands: None,
+            moved: None,
         };
         let uses = ChannelUses {
             inputs: &[used(1, 2.0), used(0, 1.0)],

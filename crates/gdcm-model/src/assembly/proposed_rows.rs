@@ -9,6 +9,7 @@ use super::name_contradictions::{name_contradictions, trim_offsets};
 use super::row::Row;
 use super::rules::Rules;
 use crate::dataset::model::Origin;
+use crate::dataset::physics_parameter::MovedParameters;
 use crate::names::RowRole;
 use crate::names::name_pattern::{read_name, unread_offsets};
 
@@ -59,6 +60,11 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
         mass_kg: facts.mass_kg.or(from_name.mass_kg),
         method: from_name.method,
         perturbation: offsets.clone(),
+        parameter: match &model.draft.moved {
+            Some(MovedParameters::Run(change)) => Some(change.clone()),
+            Some(MovedParameters::Rerun(_)) => None,
+            None => from_name.parameter,
+        },
         unread: Vec::new(),
         contradictions,
     };
@@ -79,6 +85,10 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     if row.role.is_none() {
         row.role = implied_role(model, &row);
     }
+    // A run is no member of the bundle, even at the nominal trim.
+    if row.parameter.is_some() && row.role == Some(RowRole::Nominal) {
+        row.role = Some(RowRole::Perturbed);
+    }
     if row.name.is_empty() {
         row.name = default_name(model, models, rules, &path);
     }
@@ -95,14 +105,15 @@ fn file_role(model: &FoundModel) -> Option<RowRole> {
     }
 }
 
-/// Returns the role implied by the model: measured data is identified, a trim offset makes a
-/// perturbed model; otherwise `None`.
+/// Returns the role implied by the model: measured data is identified, a trim offset or a moved
+/// parameter makes a perturbed model; otherwise `None`.
 fn implied_role(model: &FoundModel, row: &Row) -> Option<RowRole> {
     let is_identified = matches!(model.draft.origin, Origin::Identified { .. });
     if is_identified || model.response().is_some() {
         return Some(RowRole::Identified);
     }
-    if row.perturbation.values().any(|offset| *offset != 0.0) {
+    let is_moved = row.parameter.is_some() || model.draft.moved.is_some();
+    if is_moved || row.perturbation.values().any(|offset| *offset != 0.0) {
         return Some(RowRole::Perturbed);
     }
     None

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::dataset::physics_parameter::ParameterChange;
 use crate::names::RowRole;
 use crate::number_format::number;
 
@@ -22,6 +23,8 @@ pub struct Row {
     pub method: Option<String>,
     /// Trim offsets by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
+    /// Named parameter moved in a run of the physics model (M18.1).
+    pub parameter: Option<ParameterChange>,
     /// Parts of the model name that look like a trim offset but match no pattern.
     pub unread: Vec<String>,
     pub contradictions: Vec<NameContradiction>,

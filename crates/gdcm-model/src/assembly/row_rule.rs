@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::declarations::{ChannelDeclarations, Signs, rename_key};
 use super::row::Row;
+use crate::dataset::physics_parameter::ParameterChange;
 use crate::names::RowRole;
 use crate::whole_number::whole_or_none;
 
@@ -40,6 +41,9 @@ pub struct RowRule {
     /// Trim offsets by coordinate; they replace all proposed offsets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub perturbation: Option<BTreeMap<String, f64>>,
+    /// Named parameter moved in a run of the physics model (M18.1).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parameter: Option<ParameterChange>,
     /// Input names in the file's order; for a file without names, or with wrong names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inputs: Option<Vec<String>>,
@@ -93,6 +97,11 @@ impl RowRule {
         override_with(&mut row.weight, &self.weight);
         override_with(&mut row.mass_kg, &self.mass_kg);
         override_with(&mut row.method, &self.method);
+        override_with(&mut row.parameter, &self.parameter);
+        // A run is no member of the bundle, whatever was proposed.
+        if self.parameter.is_some() && self.role.is_none() {
+            row.role = Some(RowRole::Perturbed);
+        }
     }
 
     /// Returns the units, factors and signs set here.

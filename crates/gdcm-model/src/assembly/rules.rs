@@ -10,6 +10,7 @@ use super::declarations::{
 use super::file_scope::FileScope;
 use super::found_model::FoundModel;
 use super::row_rule::RowRule;
+use crate::dataset::PhysicsParameter;
 use crate::dataset::channel::ChannelSide;
 use crate::names::on_axis::is_standard_on_axis;
 use crate::names::{ChannelRule, NamePattern, RowRole, standard_patterns};
@@ -31,6 +32,8 @@ pub struct Rules {
     pub on_axis: Vec<(String, String)>,
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
+    /// Named parameters of the physics model, with the changes that are plausible (M18.1).
+    pub parameters: Vec<PhysicsParameter>,
     /// Patterns for the names of folders, files and variables; earlier patterns take precedence.
     pub patterns: Vec<NamePattern>,
     /// Factors between units without a fixed ratio.
@@ -61,6 +64,7 @@ impl Default for Rules {
             on_axis: Vec::new(),
             // Usual comparison band for rigid-body responses of helicopters.
             band: (0.5, 12.0),
+            parameters: Vec::new(),
             patterns: standard_patterns().to_vec(),
             units: Vec::new(),
             signs: Signs::new(),

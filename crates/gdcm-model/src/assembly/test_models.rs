@@ -37,6 +37,7 @@ pub fn measured_model(values: &[f64]) -> ModelDraft {
         source: None,
         states: Vec::new(),
         bands: None,
+        moved: None,
     }
 }
 
@@ -57,6 +58,7 @@ pub fn found_model(file: &str, variable: Option<&str>, facts: Facts) -> FoundMod
             source: Some(source),
             states: Vec::new(),
             bands: None,
+            moved: None,
         },
         inputs: vec![ChannelLabel::default()],
         outputs: vec![ChannelLabel::default()],

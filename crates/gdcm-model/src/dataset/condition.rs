@@ -1,12 +1,15 @@
 //! A flight condition with its two bundles of models and its flight records, checked at
 //! construction.
 
+use std::collections::BTreeSet;
+
 pub use super::channel_remedy::ChannelRemedy;
 pub use super::condition_record::{ConditionRecord, RecordKind};
 pub use super::flight_state::{FlightState, FlightStateError};
 
 use super::model::Model;
 use super::model_id::{BundleKind, ConditionId};
+use super::physics_parameter::{MovedModel, ParameterError};
 use crate::number_format::number;
 
 /// A flight condition: physics models, exactly one of them nominal; identified models; and flight
@@ -22,6 +25,8 @@ pub struct Condition {
     /// Index of the nominal model among the physics models.
     nominal: usize,
     records: Vec<ConditionRecord>,
+    /// Physics models with moved parameters, which are no members of the bundle.
+    moved: Vec<MovedModel>,
     /// For each bundle, the indices of its models, sorted by name for binary search: linear look-ups
     /// would be slow for thousands of models.
     by_name: [Vec<usize>; 2],
@@ -69,6 +74,12 @@ pub enum ConditionError {
         expected: &'static str,
         value: f64,
     },
+    #[error(
+        "the model \"{name}\" with a moved parameter: the name occurs twice; names must differ"
+    )]
+    DuplicateMovedModel { name: String },
+    #[error("the model \"{name}\" with a moved parameter: {error}")]
+    MovedModel { name: String, error: ParameterError },
 }
 
 impl ConditionError {
@@ -81,6 +92,8 @@ impl ConditionError {
             Self::Nominal { .. } => "no-nominal",
             Self::DuplicateRecord { .. } => "duplicate-record",
             Self::Record { .. } => "record-of-model",
+            Self::DuplicateMovedModel { .. } => "duplicate-moved-model",
+            Self::MovedModel { error, .. } => error.code(),
         }
     }
 }
@@ -113,6 +126,7 @@ impl Condition {
                     bundles,
                     nominal,
                     records: Vec::new(),
+                    moved: Vec::new(),
                     by_name,
                 })
             }
@@ -131,6 +145,38 @@ impl Condition {
         check_records(&records)?;
         self.records = records;
         Ok(self)
+    }
+
+    /// Returns the condition with its models with moved parameters replaced, in file order (M18.1).
+    ///
+    /// # Errors
+    /// [`ConditionError::DuplicateMovedModel`] for a name that is not unique among these models and
+    /// the physics bundle, [`ConditionError::MovedModel`] for an invalid change.
+    pub fn with_moved_models(mut self, moved: Vec<MovedModel>) -> Result<Self, ConditionError> {
+        let mut names: BTreeSet<&str> = BTreeSet::new();
+        for model in self.bundle(BundleKind::Physics) {
+            names.insert(&model.name);
+        }
+        for model in &moved {
+            let name = &model.model.name;
+            if !names.insert(name) {
+                return Err(ConditionError::DuplicateMovedModel { name: name.clone() });
+            }
+            model
+                .moved
+                .check()
+                .map_err(|error| ConditionError::MovedModel {
+                    name: name.clone(),
+                    error,
+                })?;
+        }
+        self.moved = moved;
+        Ok(self)
+    }
+
+    /// Returns the physics models with moved parameters, in file order; they are in no bundle.
+    pub fn moved_models(&self) -> &[MovedModel] {
+        &self.moved
     }
 
     /// Returns the condition with its identified models replaced and with additional flight
@@ -162,7 +208,9 @@ impl Condition {
                 None => kept.push(record),
             }
         }
-        Self::new(self.flight_state.clone(), self.bundles[0].clone(), models)?.with_records(kept)
+        Self::new(self.flight_state.clone(), self.bundles[0].clone(), models)?
+            .with_records(kept)?
+            .with_moved_models(self.moved.clone())
     }
 
     /// Returns the flight records in file order; empty where the dataset lists none.

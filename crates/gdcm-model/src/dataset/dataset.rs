@@ -9,6 +9,7 @@ use super::dynamics::Dynamics;
 use super::model::Model;
 use super::model_id::{BundleKind, ConditionId, ModelId};
 use super::pair_table::{Pair, PairTable};
+use super::physics_parameter::{ParameterError, PhysicsParameter, check_parameters};
 
 /// Channels, on-axis responses, default band, and the flight conditions with their models (M1).
 ///
@@ -60,6 +61,8 @@ pub enum DatasetError {
         /// Outputs and inputs of the model.
         found: (usize, usize),
     },
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
 }
 
 impl DatasetError {
@@ -71,6 +74,7 @@ impl DatasetError {
             Self::DuplicateId { .. } => "duplicate-condition",
             Self::OnAxisShape { .. } => "on-axis-shape",
             Self::ModelShape { .. } => "model-shape",
+            Self::Parameter(error) => error.code(),
         }
     }
 }
@@ -87,6 +91,8 @@ pub struct DatasetHeader {
     pub on_axis: PairTable<bool>,
     /// Default band in which models are compared.
     pub band: Band,
+    /// Named parameters of the physics model (M18.1).
+    pub parameters: Vec<PhysicsParameter>,
 }
 
 impl Dataset {
@@ -94,7 +100,7 @@ impl Dataset {
     ///
     /// # Errors
     /// [`DatasetError`] for an empty list, a duplicate channel name or condition identifier, or a
-    /// wrong number of channels in a model or in `on_axis`.
+    /// wrong number of channels in a model or in `on_axis`, or an invalid parameter.
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;
         check_channels("outputs", &header.outputs)?;
@@ -103,6 +109,7 @@ impl Dataset {
         if found != expected {
             return Err(DatasetError::OnAxisShape { expected, found });
         }
+        check_parameters(&header.parameters)?;
         check_conditions(&conditions, expected)?;
         Ok(Self {
             header,
@@ -143,6 +150,12 @@ impl Dataset {
     /// Returns the default band in which models are compared.
     pub fn band(&self) -> Band {
         self.header.band
+    }
+
+    /// Returns the named parameters of the physics model, as declared in the dataset (M18.1). Runs may
+    /// move parameters that are not declared.
+    pub fn parameters(&self) -> &[PhysicsParameter] {
+        &self.header.parameters
     }
 
     /// Returns the minimum and the maximum airspeed \[kt\] of the conditions.
@@ -308,9 +321,11 @@ fn check_conditions(
                 second: second + 1,
             });
         }
+        let moved = condition.moved_models().iter().map(|moved| &moved.model);
         for model in BundleKind::BOTH
             .into_iter()
             .flat_map(|kind| condition.bundle(kind))
+            .chain(moved)
         {
             let found = model.dynamics.shape();
             if found != expected {

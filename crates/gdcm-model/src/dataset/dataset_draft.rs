@@ -9,6 +9,7 @@ use super::dynamics::Dynamics;
 use super::measured_response::{Estimate, MeasuredResponse};
 use super::model::{Model, Origin, Provenance};
 use super::pair_table::PairTable;
+use super::physics_parameter::{MovedModel, MovedParameters, PhysicsParameter};
 use super::state_space::Timing;
 
 /// A dataset before its checks.
@@ -23,6 +24,8 @@ pub struct DatasetDraft {
     pub on_axis: Vec<(String, String)>,
     /// Lower and upper end of the default band \[rad/s\].
     pub band: (f64, f64),
+    /// Named parameters of the physics model.
+    pub parameters: Vec<PhysicsParameter>,
     pub conditions: Vec<ConditionDraft>,
 }
 
@@ -30,6 +33,7 @@ pub struct DatasetDraft {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionDraft {
     pub flight_state: FlightState,
+    /// The physics bundle, and the models with moved parameters.
     pub physics: Vec<ModelDraft>,
     pub identified: Vec<ModelDraft>,
     pub records: Vec<ConditionRecord>,
@@ -49,6 +53,8 @@ pub struct ModelDraft {
     pub states: Vec<String>,
     /// Standard deviation of the response, if the file gives it.
     pub bands: Option<BandsDraft>,
+    /// Named parameters moved in a physics model; `None` for a member of a bundle.
+    pub moved: Option<MovedParameters>,
 }
 
 /// A measured frequency response before its checks.
@@ -102,6 +108,7 @@ impl ModelDraft {
                 sd_db: ResponseArray::from_table(bands.sd_db()),
                 sd_deg: ResponseArray::from_table(bands.sd_deg()),
             }),
+            moved: None,
         };
         match &model.dynamics {
             Dynamics::StateSpace(system) => {
@@ -114,6 +121,14 @@ impl ModelDraft {
             }
         }
         draft
+    }
+
+    /// Converts a model with moved parameters to a draft, so that it can be written.
+    pub fn from_moved(moved: &MovedModel) -> Self {
+        Self {
+            moved: Some(moved.moved.clone()),
+            ..Self::from_model(&moved.model)
+        }
     }
 }
 

@@ -7,12 +7,13 @@ use super::condition::Condition;
 use super::dataset::{Dataset, DatasetHeader};
 use super::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
 use super::draft_fault::{DraftError, DraftFault, Warning};
-use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_PARAMETERS, MOST_RECORDS};
 use super::location::Location;
 use super::model::Model;
 use super::model_draft_checks::ModelBuilder;
 use super::model_id::BundleKind;
 use super::pair_table::{Pair, PairTable};
+use super::physics_parameter::{MovedModel, check_parameters};
 
 /// Maximum number of collected faults; a file of the wrong kind has a fault in every model.
 const MOST_FAULTS: usize = 1000;
@@ -39,6 +40,7 @@ impl DatasetDraft {
         let lists = [
             ("inputs", self.inputs.len(), MOST_CHANNELS),
             ("outputs", self.outputs.len(), MOST_CHANNELS),
+            ("parameters", self.parameters.len(), MOST_PARAMETERS),
             ("conditions", self.conditions.len(), MOST_CONDITIONS),
         ];
         for (list, found, most) in lists {
@@ -47,6 +49,9 @@ impl DatasetDraft {
         let band = Band::new(self.band.0, self.band.1)
             .map_err(|error| DraftError::new(Location::default(), error));
         let band = checker.keep_fault(band);
+        let parameters = check_parameters(&self.parameters)
+            .map_err(|error| DraftError::new(Location::entry("parameters"), error));
+        checker.keep_fault(parameters);
         let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis);
         let on_axis = checker.keep_fault(on_axis);
         let mut conditions = Vec::with_capacity(self.conditions.len());
@@ -68,6 +73,7 @@ impl DatasetDraft {
             outputs: self.outputs,
             on_axis,
             band,
+            parameters: self.parameters,
         };
         match Dataset::new(header, conditions) {
             Ok(dataset) => Ok((dataset, checker.models.warnings)),
@@ -181,29 +187,52 @@ impl Checker {
         if self.faults.len() > before {
             return None;
         }
-        let condition = Condition::new(draft.flight_state, physics, identified)
+        let condition = Condition::new(draft.flight_state, physics.members, identified.members)
             .and_then(|condition| condition.with_records(draft.records))
+            .and_then(|condition| condition.with_moved_models(physics.moved))
             .map_err(|error| DraftError::new(place, error));
         self.keep_fault(condition)
     }
 
-    /// Checks a bundle, and returns its valid models.
+    /// Checks the models of a kind, and returns the valid ones.
     fn bundle(
         &mut self,
         condition: &Location,
         kind: BundleKind,
         drafts: Vec<ModelDraft>,
-    ) -> Vec<Model> {
+    ) -> BuiltModels {
         let list = condition.at(format!("{kind} models"));
         if !self.check_count(list, drafts.len(), MOST_MODELS) {
-            return Vec::new();
+            return BuiltModels::default();
         }
-        let mut models = Vec::with_capacity(drafts.len());
-        for (index, draft) in drafts.into_iter().enumerate() {
+        let mut built = BuiltModels::default();
+        for (index, mut draft) in drafts.into_iter().enumerate() {
             let place = condition.model(kind, index + 1, &draft.name);
+            let moved = draft.moved.take();
+            if let Some(moved) = &moved {
+                let checked = moved
+                    .check()
+                    .map_err(|error| DraftError::new(place.clone(), error));
+                self.keep_fault(checked);
+            }
             let model = self.models.build(place, kind, draft);
-            models.extend(self.keep_fault(model));
+            let Some(model) = self.keep_fault(model) else {
+                continue;
+            };
+            match moved {
+                Some(moved) => built.moved.push(MovedModel { model, moved }),
+                None => built.members.push(model),
+            }
         }
-        models
+        built
     }
+}
+
+/// The valid models of a list in the draft.
+#[derive(Default)]
+struct BuiltModels {
+    /// Members of the bundle.
+    members: Vec<Model>,
+    /// Models with moved parameters.
+    moved: Vec<MovedModel>,
 }

@@ -5,6 +5,7 @@ use super::condition::ConditionError;
 use super::dataset::DatasetError;
 use super::location::Location;
 use super::measured_response::MeasuredResponseError;
+use super::physics_parameter::ParameterError;
 use super::state_space::StateSpaceError;
 
 /// A fault in a dataset draft.
@@ -46,6 +47,8 @@ pub enum DraftFault {
     #[error(transparent)]
     MeasuredResponse(#[from] MeasuredResponseError),
     #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    #[error(transparent)]
     Condition(#[from] ConditionError),
     #[error(transparent)]
     Dataset(#[from] DatasetError),
@@ -64,6 +67,7 @@ impl DraftFault {
             Self::NoDynamics => "neither-matrices-nor-response",
             Self::TimedResponse => "timed-response",
             Self::MeasuredPhysics => "measured-physics",
+            Self::Parameter(error) => error.code(),
             Self::Band(error) => error.code(),
             Self::StateSpace(error) => error.code(),
             Self::MeasuredResponse(error) => error.code(),

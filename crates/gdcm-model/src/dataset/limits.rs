@@ -25,6 +25,8 @@ pub const MOST_STATES: usize = 1000;
 pub const MOST_FREQUENCIES: usize = 100_000;
 /// Maximum number of coordinates in a perturbation.
 pub const MOST_COORDINATES: usize = 50;
+/// Maximum number of named parameters of the physics model, and of those moved in one model.
+pub const MOST_PARAMETERS: usize = 200;
 /// Minimum and maximum number of independent averages in a measured response.
 pub const AVERAGES: [f64; 2] = [1e-6, 1e6];
 /// Minimum and maximum window length in a measured response \[s\].

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::row_role::RowRole;
+use crate::dataset::physics_parameter::ParameterChange;
 
 /// Values read from the names of folders, file and variable; `None` or empty if the names give
 /// none.
@@ -22,4 +23,6 @@ pub struct NameFacts {
     pub method: Option<String>,
     /// Trim offsets by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
+    /// Named parameter moved in a run of the physics model ("Ixx+5%").
+    pub parameter: Option<ParameterChange>,
 }

@@ -3,10 +3,11 @@
 
 use std::ops::Range;
 
-use regex::{Regex, RegexBuilder};
+use regex::{Captures, Regex, RegexBuilder};
 
 use super::name_facts::NameFacts;
 use super::row_role::RowRole;
+use crate::dataset::physics_parameter::ParameterChange;
 use crate::message_text::{quoted, sanitized, shortened};
 
 /// Maximum length of a pattern \[bytes\].
@@ -15,7 +16,7 @@ const LONGEST_PATTERN: usize = 1000;
 const MOST_MEMORY: usize = 1 << 20;
 
 /// Permitted group names, apart from trim offsets.
-const GROUPS: [&str; 11] = [
+const GROUPS: [&str; 14] = [
     "condition",
     "airspeed_kt",
     "altitude",
@@ -27,7 +28,16 @@ const GROUPS: [&str; 11] = [
     "nominal",
     "perturbed",
     "identified",
+    PARAMETER,
+    DELTA,
+    DELTA_UNIT,
 ];
+/// Group name for a moved parameter.
+const PARAMETER: &str = "parameter";
+/// Group name for the signed change of a moved parameter.
+const DELTA: &str = "delta";
+/// Group name for the unit of that change.
+const DELTA_UNIT: &str = "delta_unit";
 /// Prefix of group names for trim offsets.
 const OFFSET: &str = "by_";
 
@@ -39,6 +49,7 @@ const OFFSET: &str = "by_";
 /// | `weight`, `mass_kg`, `method`, `name` | the value of the field with the same name |
 /// | `by_roll_deg`, `by_...` | trim offset in `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
 /// | `nominal`, `perturbed`, `identified` | any text; sets the role of this name |
+/// | `parameter`, `delta`, `delta_unit` | name, change and unit of a parameter moved in a run (`Ixx`, `+5`, `%`); without a unit, "1" |
 #[derive(Clone, Debug)]
 pub struct NamePattern {
     regex: Regex,
@@ -118,6 +129,9 @@ impl NamePattern {
                 if let Some(text) = found.name(group) {
                     put_if_empty(group, text.as_str(), facts);
                 }
+            }
+            if facts.parameter.is_none() {
+                facts.parameter = parameter_change(&found);
             }
         }
     }
@@ -201,6 +215,25 @@ fn put_if_empty(group: &str, text: &str, facts: &mut NameFacts) {
             }
         }
     }
+}
+
+/// Returns the change of a parameter in a match: a name and a signed number other than zero.
+fn parameter_change(found: &Captures<'_>) -> Option<ParameterChange> {
+    let name = found.name(PARAMETER)?.as_str();
+    let delta = parse_offset(found.name(DELTA)?.as_str())?;
+    if delta == 0.0 {
+        return None;
+    }
+    let unit = match found.name(DELTA_UNIT).map(|unit| unit.as_str()) {
+        Some("pct" | "percent") => "%",
+        Some(unit) => unit,
+        None => "1",
+    };
+    Some(ParameterChange {
+        name: name.to_owned(),
+        delta,
+        unit: unit.to_owned(),
+    })
 }
 
 /// Parses a finite number with a decimal point or comma.

@@ -27,6 +27,8 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
         offset_pattern("roc|climb|rateofclimb|hdot", "rate_of_climb_fpm"),
         offset_pattern("pitch|theta", "pitch_deg"),
         offset_pattern("beta|slip|sideslip", "sideslip_deg"),
+        // In percent only: in other units, a parameter looks like a trim offset.
+        r"(?:^|[/_ #,])(?<parameter>[a-z][a-z0-9]*(?:_[a-z0-9]+)*)[_ ]?(?<delta>[+-]\d+(?:\.\d+)?)[_ ]?(?<delta_unit>%|pct|percent)".to_owned(),
         r"(?:^|[/_ #.-])(?<nominal>nominal|nom|trim|baseline)(?:[/_ .#(-]|$)".to_owned(),
         r"(?:^|[/_ #.-])(?<identified>identified|ident|id|sysid|sid|(?:ct-?)?pbsid|n4sid|cifer|flight|flt|measured|frf)\d*(?:[/_ .#(-]|$)"
             .to_owned(),
@@ -58,7 +60,7 @@ mod tests {
 
     #[test]
     fn names_give_condition_airspeed_altitude_and_perturbation() {
-        assert_eq!(standard_patterns().len(), 17);
+        assert_eq!(standard_patterns().len(), 18);
         let facts = read("c03_045kt_high/roll+5");
         assert_eq!(
             (
@@ -127,6 +129,40 @@ mod tests {
             (Some(3), Some(RowRole::Identified)),
             "fields of a struct"
         );
+    }
+
+    #[test]
+    fn names_give_the_parameter_moved_in_a_run() {
+        for (name, parameter, delta) in [
+            ("c03/Ixx+5%", "Ixx", 5.0),
+            ("c03_045kt/inflow_tau-10%", "inflow_tau", -10.0),
+            ("c03/tail lift +2.5 %", "lift", 2.5),
+            ("c03/V-5kt_Ixx_-5pct", "Ixx", -5.0),
+        ] {
+            let facts = read(name);
+            let change = facts.parameter.unwrap();
+            assert_eq!(
+                (change.name.as_str(), change.delta, change.unit.as_str()),
+                (parameter, delta, "%"),
+                "{name}"
+            );
+            assert_eq!(facts.condition, Some(3), "{name}");
+        }
+        assert_eq!(read("c3/V-5kt_Ixx+5%").perturbation["airspeed_kt"], -5.0);
+        for name in ["c3/roll+5", "c3/V-5kt", "c3/rev-3", "c3/Ixx+0%"] {
+            assert_eq!(read(name).parameter, None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_pattern_can_read_a_parameter_in_another_unit() {
+        let pattern = r"(?<parameter>phase)(?<delta>[+-]\d+)(?<delta_unit>deg)";
+        let facts = read_name("c3/phase+2deg", &[NamePattern::new(pattern).unwrap()]);
+        let change = facts.parameter.unwrap();
+        assert_eq!((change.delta, change.unit.as_str()), (2.0, "deg"));
+        let pattern = NamePattern::new(r"(?<parameter>wake)(?<delta>m\d+)").unwrap();
+        let change = read_name("wakem3", &[pattern]).parameter.unwrap();
+        assert_eq!((change.delta, change.unit.as_str()), (-3.0, "1"));
     }
 
     #[test]

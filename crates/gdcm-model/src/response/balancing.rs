@@ -5,12 +5,21 @@ use nalgebra::DMatrix;
 /// Balances A: for each state k, the norms of row k and column k then differ by less than a factor
 /// of two. The diagonal similarity `S` consists of powers of two, so that nothing is rounded:
 /// `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
+pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
+    let scales = balance_square(a);
+    for (state, &scale) in scales.iter().enumerate() {
+        b.row_mut(state).scale_mut(1.0 / scale);
+        c.column_mut(state).scale_mut(scale);
+    }
+}
+
+/// Balances A, `a <- S^-1 a S`, and returns the diagonal of `S`, powers of two.
 ///
 /// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
 /// algorithm 3). The number of sweeps is limited (the model remains similar after each sweep), and
 /// so is the scale, to prevent overflow in B and C; both limits take effect only for entries far
 /// beyond those of any aircraft.
-pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
+pub fn balance_square(a: &mut DMatrix<f64>) -> Vec<f64> {
     /// Maximum number of sweeps; a helicopter model needs three to six.
     const MOST_SWEEPS: usize = 100;
     /// Maximum scale, about 1e30 in either direction.
@@ -33,10 +42,7 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
             break;
         }
     }
-    for (state, &scale) in scales.iter().enumerate() {
-        b.row_mut(state).scale_mut(1.0 / scale);
-        c.column_mut(state).scale_mut(scale);
-    }
+    scales
 }
 
 /// Returns the power of two that makes the norms of a column and its row most nearly equal; `None`

@@ -9,7 +9,7 @@
 //! | poles, damping, participation | `mode.rs` |
 //! | zeros | `zeros.rs` |
 
-mod balancing;
+pub mod balancing;
 mod complex_lanes;
 pub mod connection;
 mod eigenvectors;

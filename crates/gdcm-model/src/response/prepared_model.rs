@@ -165,7 +165,7 @@ fn delay(curve: &mut [Complex<f64>], omega: &[f64], delay_s: f64) {
 
 /// Returns `s = j omega`, or `s = e^(j omega T) - 1` in discrete time, which is NaN at and above
 /// `omega = pi / T`.
-fn evaluation_point(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
+pub fn evaluation_point(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
     let Some(sample_time_s) = sample_time_s else {
         return Complex::new(0.0, omega);
     };

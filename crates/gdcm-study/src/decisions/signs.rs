@@ -103,10 +103,19 @@ pub(crate) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Datase
 fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
     let physics = turned_models(condition, BundleKind::Physics, signs)?;
     let identified = turned_models(condition, BundleKind::Identified, signs)?;
+    let mut moved = condition.moved_models().to_vec();
+    let physics_signs = BundleSigns {
+        signs,
+        kind: BundleKind::Physics,
+    };
+    for moved in &mut moved {
+        moved.model.dynamics = physics_signs.turned(&moved.model.dynamics)?;
+    }
     let state = condition.flight_state().clone();
     let turned = Condition::new(state, physics, identified).map_err(|error| error.to_string())?;
     turned
         .with_records(condition.records().to_vec())
+        .and_then(|turned| turned.with_moved_models(moved))
         .map_err(|error| error.to_string())
 }
 

@@ -260,6 +260,7 @@ fn small_study(
         outputs: channels("Y", outputs, "deg/s"),
         on_axis: PairTable::from_fn(outputs, inputs, |pair| pair.output == pair.input),
         band: Band::new(0.5, 10.0).unwrap(),
+        parameters: Vec::new(),
     };
     let mut study = Study::new(Arc::new(
         Dataset::new(header, (1..=conditions).map(condition).collect()).unwrap(),

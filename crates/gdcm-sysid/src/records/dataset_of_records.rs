@@ -48,6 +48,7 @@ pub fn dataset_of_records(
         inputs,
         outputs,
         band,
+        parameters: Vec::new(),
     };
     let conditions = vec![condition.with_records(records)?];
     Ok(Dataset::new(header, conditions)?)

@@ -4,10 +4,10 @@
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState, RecordKind};
 use gdcm_model::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
 use gdcm_model::dataset::location::Location;
-use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset};
+use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, PhysicsParameter};
 
 use super::json_form::{
-    BandText, ChannelText, ConditionText, DatasetText, FORMAT, ModelText, RecordText,
+    BandText, ChannelText, ConditionText, DatasetText, FORMAT, ModelText, ParameterText, RecordText,
 };
 use crate::content_fault::{ContentError, ContentFault};
 use crate::json_reading::Limited;
@@ -41,6 +41,9 @@ impl DatasetText {
         }
         let inputs = self.inputs.into_iter().map(ChannelText::into_channel);
         let outputs = self.outputs.into_iter().map(ChannelText::into_channel);
+        let parameters = Limited::entries(self.parameters)
+            .into_iter()
+            .map(ParameterText::into_parameter);
         let draft = DatasetDraft {
             name: self.name,
             description: self.description.unwrap_or_default(),
@@ -48,6 +51,7 @@ impl DatasetText {
             outputs: outputs.collect(),
             on_axis: Limited::entries(self.on_axis),
             band: (band.min, band.max),
+            parameters: parameters.collect(),
             conditions,
         };
         Ok(CautionedDraft { draft, cautions })
@@ -64,6 +68,10 @@ impl DatasetText {
         }
         let inputs = dataset.inputs().iter().map(ChannelText::from_channel);
         let outputs = dataset.outputs().iter().map(ChannelText::from_channel);
+        let parameters = dataset
+            .parameters()
+            .iter()
+            .map(ParameterText::from_parameter);
         let conditions = dataset
             .conditions()
             .iter()
@@ -81,6 +89,7 @@ impl DatasetText {
                 max: dataset.band().max(),
                 unit: "rad/s".to_owned(),
             },
+            parameters: Limited::some(parameters.collect()),
             conditions: conditions.collect(),
         }
     }
@@ -108,6 +117,26 @@ impl ChannelText {
             name: channel.name.clone(),
             unit: channel.unit.clone(),
             description: unless_empty(&channel.description),
+        }
+    }
+}
+
+impl ParameterText {
+    fn into_parameter(self) -> PhysicsParameter {
+        PhysicsParameter {
+            name: self.name,
+            unit: self.unit,
+            plausible_sd: self.plausible_sd,
+            description: self.description.unwrap_or_default(),
+        }
+    }
+
+    fn from_parameter(parameter: &PhysicsParameter) -> Self {
+        Self {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            plausible_sd: parameter.plausible_sd,
+            description: unless_empty(&parameter.description),
         }
     }
 }
@@ -150,7 +179,11 @@ impl ConditionText {
 
     fn from_condition(condition: &Condition) -> Self {
         let state = condition.flight_state().clone();
-        let physics = condition.bundle(BundleKind::Physics).iter();
+        let physics = condition
+            .bundle(BundleKind::Physics)
+            .iter()
+            .map(ModelText::of_model);
+        let moved = condition.moved_models().iter().map(ModelText::of_moved);
         let identified = condition.bundle(BundleKind::Identified).iter();
         let records = condition.records().iter().map(RecordText::from_record);
         Self {
@@ -161,7 +194,7 @@ impl ConditionText {
             altitude_ft: state.altitude_ft,
             weight: state.weight,
             mass_kg: state.mass_kg,
-            physics_models: physics.map(ModelText::of_model).collect(),
+            physics_models: physics.chain(moved).collect(),
             identified_models: identified.map(ModelText::of_model).collect(),
             records: Limited::some(records.collect()),
         }
@@ -188,7 +221,14 @@ fn model_drafts(
             BundleKind::Physics => model.physics_origin(&place)?,
             BundleKind::Identified => model.identified_origin(),
         };
-        drafts.push(model.into_draft(origin));
+        let moved = match kind {
+            BundleKind::Physics => model.moved_parameters(&place)?,
+            BundleKind::Identified => None,
+        };
+        drafts.push(ModelDraft {
+            moved,
+            ..model.into_draft(origin)
+        });
     }
     Ok(drafts)
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
-    MOST_MODELS_IN_ALL, MOST_PAIRS, MOST_PIECES, MOST_RECORDS, MOST_STATES,
+    MOST_MODELS_IN_ALL, MOST_PAIRS, MOST_PARAMETERS, MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
 use gdcm_model::whole_number::{whole, whole_or_none};
 
@@ -35,6 +35,8 @@ pub(super) struct DatasetText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) on_axis: Option<Limited<(String, String), MOST_PAIRS>>,
     pub(super) frequency_band: BandText,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) parameters: Option<Limited<ParameterText, MOST_PARAMETERS>>,
     #[serde(deserialize_with = "conditions")]
     pub(super) conditions: Vec<ConditionText>,
 }
@@ -77,6 +79,25 @@ pub(super) struct ChannelText {
 pub(super) struct BandText {
     pub(super) min: f64,
     pub(super) max: f64,
+    pub(super) unit: String,
+}
+
+/// A named parameter of the physics model.
+#[derive(Deserialize, Serialize)]
+pub(super) struct ParameterText {
+    pub(super) name: String,
+    pub(super) unit: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) plausible_sd: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) description: Option<String>,
+}
+
+/// The change of a named parameter in a physics model.
+#[derive(Clone, Deserialize, Serialize)]
+pub(crate) struct ParameterChangeText {
+    pub(super) name: String,
+    pub(super) delta: f64,
     pub(super) unit: String,
 }
 
@@ -141,6 +162,12 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) perturbation: Option<BTreeMap<String, f64>>,
+    /// The parameter moved in a run; only for physics models.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) parameter: Option<ParameterChangeText>,
+    /// The parameters moved in a rerun; only for physics models.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) parameters: Option<Limited<ParameterChangeText, MOST_PARAMETERS>>,
     /// Only for identified models.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,

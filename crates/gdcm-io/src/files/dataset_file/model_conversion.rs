@@ -4,13 +4,17 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
+use gdcm_model::dataset::draft_fault::DraftFault;
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::dataset::physics_parameter::{MovedParameters, ParameterChange, ParameterError};
 use gdcm_model::dataset::state_space::Timing;
-use gdcm_model::dataset::{BundleKind, Model};
+use gdcm_model::dataset::{BundleKind, Model, MovedModel};
 
-use super::json_form::{BandsText, ModelText, ResponseText, SideText, SourceText};
+use super::json_form::{
+    BandsText, ModelText, ParameterChangeText, ResponseText, SideText, SourceText,
+};
 use crate::content_fault::{ContentError, ContentFault};
 use crate::json_reading::{Limited, Nested};
 
@@ -22,6 +26,8 @@ impl ModelText {
         for (key, is_misplaced) in [
             ("role", !is_physics && self.role.is_some()),
             ("perturbation", !is_physics && self.perturbation.is_some()),
+            ("parameter", !is_physics && self.parameter.is_some()),
+            ("parameters", !is_physics && self.parameters.is_some()),
             ("method", is_physics && self.method.is_some()),
             ("order", is_physics && self.order.is_some()),
             ("bands", is_physics && self.bands.is_some()),
@@ -43,11 +49,39 @@ impl ModelText {
         misplaced
     }
 
-    /// Returns the origin of a physics model.
+    /// Returns the parameters moved in a physics model; `None` for a member of the bundle.
     ///
     /// # Errors
-    /// Fails if the role is missing, or is neither nominal nor perturbed.
+    /// Fails if the model is both a run and a rerun.
+    pub(super) fn moved_parameters(
+        &self,
+        place: &Location,
+    ) -> Result<Option<MovedParameters>, ContentError> {
+        match (&self.parameter, &self.parameters) {
+            (None, None) => Ok(None),
+            (Some(run), None) => Ok(Some(MovedParameters::Run(run.change()))),
+            (None, Some(Limited(changes))) => Ok(Some(MovedParameters::Rerun(
+                changes.iter().map(ParameterChangeText::change).collect(),
+            ))),
+            (Some(_), Some(_)) => {
+                let fault = DraftFault::from(ParameterError::RunAndRerun);
+                Err(ContentError::new(place.clone(), fault))
+            }
+        }
+    }
+
+    /// Returns the origin of a physics model. A model with moved parameters counts as perturbed,
+    /// whatever its role, because it is no member of the bundle.
+    ///
+    /// # Errors
+    /// Fails if the role of a member is missing, or if a role is neither nominal nor perturbed.
     pub(super) fn physics_origin(&self, place: &Location) -> Result<Origin, ContentError> {
+        let is_moved = self.parameter.is_some() || self.parameters.is_some();
+        if is_moved && matches!(self.role.as_deref(), None | Some("nominal")) {
+            return Ok(Origin::Perturbed {
+                perturbation: self.perturbation.clone(),
+            });
+        }
         let Some(role) = &self.role else {
             let fault = ContentFault::MissingKey { key: "role".into() };
             return Err(ContentError::new(place.clone(), fault));
@@ -106,12 +140,18 @@ impl ModelText {
             states: Limited::entries(self.states),
             source: self.source.map(SourceText::into_provenance),
             bands,
+            moved: None,
         }
     }
 
     /// Converts a model of a dataset to its form in the file.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::from_draft(ModelDraft::from_model(model))
+    }
+
+    /// Converts a model with moved parameters to its form in the file.
+    pub(super) fn of_moved(moved: &MovedModel) -> Self {
+        Self::from_draft(ModelDraft::from_moved(moved))
     }
 
     /// Converts a model draft to its form in the file.
@@ -141,8 +181,22 @@ impl ModelText {
                 ..Self::default()
             },
         };
+        let mut parameter = None;
+        let mut parameters = None;
+        match draft.moved {
+            Some(MovedParameters::Run(change)) => {
+                parameter = Some(ParameterChangeText::from_change(change));
+            }
+            Some(MovedParameters::Rerun(changes)) => {
+                let texts = changes.into_iter().map(ParameterChangeText::from_change);
+                parameters = Some(Limited(texts.collect()));
+            }
+            None => {}
+        }
         Self {
             name: draft.name,
+            parameter,
+            parameters,
             states: Limited::some(draft.states),
             a,
             b,
@@ -155,6 +209,24 @@ impl ModelText {
             bands: draft.bands.map(BandsText::from_draft),
             source: draft.source.map(SourceText::from_provenance),
             ..origin
+        }
+    }
+}
+
+impl ParameterChangeText {
+    fn change(&self) -> ParameterChange {
+        ParameterChange {
+            name: self.name.clone(),
+            delta: self.delta,
+            unit: self.unit.clone(),
+        }
+    }
+
+    fn from_change(change: ParameterChange) -> Self {
+        Self {
+            name: change.name,
+            delta: change.delta,
+            unit: change.unit,
         }
     }
 }

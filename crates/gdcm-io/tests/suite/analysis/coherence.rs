@@ -101,6 +101,7 @@ fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, bands: Option<[f64; 2]
         outputs: channels("y", outputs),
         on_axis: PairTable::filled(outputs, inputs, false),
         band: Band::new(0.5, 12.0).unwrap(),
+        parameters: Vec::new(),
     };
     let condition = Condition::new(flight_state, vec![physics], vec![identified]).unwrap();
     Arc::new(Dataset::new(header, vec![condition]).unwrap())

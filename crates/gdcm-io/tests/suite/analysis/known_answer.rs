@@ -76,6 +76,7 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
         outputs: channels("y", outputs),
         on_axis: PairTable::filled(outputs, inputs, false),
         band: Band::new(0.5, 12.0).unwrap(),
+        parameters: Vec::new(),
     };
     Dataset::new(
         header,

@@ -389,6 +389,7 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
             on.contains(&vec![pair.output as f64, pair.input as f64])
         }),
         band: Band::new(0.5, 12.0).unwrap(),
+        parameters: Vec::new(),
     };
     Dataset::new(
         header,

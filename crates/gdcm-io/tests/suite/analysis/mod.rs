@@ -25,6 +25,7 @@ mod known_answer;
 mod lead;
 mod mean_gain;
 mod modes;
+mod physics;
 mod real_aircraft;
 mod remarks;
 mod response_paths;

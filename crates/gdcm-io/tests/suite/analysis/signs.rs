@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::measured_response::MeasuredResponse;
-use gdcm_model::dataset::{Condition, Dataset, Model};
+use gdcm_model::dataset::physics_parameter::{MovedParameters, ParameterChange};
+use gdcm_model::dataset::{Condition, Dataset, Model, MovedModel};
 use gdcm_study::Execution;
 use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
 use gdcm_study::decisions::named_decisions::Decisions;
@@ -257,4 +258,35 @@ fn signs_go_with_the_decisions_by_the_names_of_channels() {
         panic!("{not_applied:?}")
     };
     assert_eq!((why, why.code()), (&NotApplied::NoChannel, "no-channel"));
+}
+
+#[test]
+fn a_sign_of_the_physics_models_is_reversed_in_their_runs_too() {
+    let example = study_of_example().dataset;
+    let condition = &example.conditions()[0];
+    let run = MovedModel {
+        model: Model {
+            name: "Ixx +5 %".to_owned(),
+            ..condition.bundle(BundleKind::Physics)[1].clone()
+        },
+        moved: MovedParameters::Run(ParameterChange {
+            name: "Ixx".to_owned(),
+            delta: 5.0,
+            unit: "%".to_owned(),
+        }),
+    };
+    let condition = condition.as_ref().clone();
+    let condition = condition.with_moved_models(vec![run.clone()]).unwrap();
+    let dataset = example.with_condition(condition).unwrap();
+    for (of, factor) in [(SignRole::Physics, -1.0), (SignRole::Identified, 1.0)] {
+        let mut study = Study::new(Arc::new(dataset.clone()));
+        turn(&mut study, NZ, Some(of));
+        let [turned] = study.dataset.conditions()[0].moved_models() else {
+            panic!("the run")
+        };
+        assert_eq!(turned.moved, run.moved);
+        let [turned, before] =
+            [turned, &run].map(|moved| moved.model.state_space().unwrap().c().row(5).into_owned());
+        assert_eq!(turned, before * factor);
+    }
 }

@@ -12,6 +12,7 @@ use gdcm_io::{
 };
 use gdcm_model::dataset::limits::LARGEST_TEXT;
 
+mod parameters;
 mod properties;
 mod records;
 mod studies;

@@ -232,6 +232,7 @@ fn datasets() -> impl Strategy<Value = Dataset> {
                         on_axis[output * m + input]
                     }),
                     band: Band::new(1e-3, 1e3).unwrap(),
+                    parameters: Vec::new(),
                 };
                 Dataset::new(header, vec![first, second]).unwrap()
             })

@@ -215,6 +215,7 @@ fn identified_models_take_the_place_of_the_bundle_and_records_of_those_of_their_
         source: None,
         states: Vec::new(),
         bands: None,
+        moved: None,
     };
     let model = |name: &str| dataset.identified_model(draft(name, 2)).unwrap().0;
     let records = vec![

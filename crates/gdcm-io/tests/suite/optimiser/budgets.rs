@@ -214,6 +214,7 @@ fn static_gains(conditions: usize) -> Dataset {
         outputs: channels("y", 12),
         on_axis: PairTable::filled(12, 8, false),
         band: Band::new(0.5, 12.0).unwrap(),
+        parameters: Vec::new(),
     };
     Dataset::new(header, (0..conditions).map(condition).collect()).unwrap()
 }

@@ -1,0 +1,263 @@
+//! The whole diagnosis: values with intervals, names and verdict, as typed facts (M18.2 to M18.4).
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Portion, Progress, Shares};
+use gdcm_model::statistics::median;
+
+use super::fit::{PhysicsFit, SolvedFit, solve};
+use super::identifiability::{ACTS_LIKE_CHANNELS, Identifiability, ParameterPair, WeakDirection};
+use super::intervals::{Intervals, ValueVariance};
+use super::pass_equations::PassEquations;
+use super::problem::{PhysicsError, PhysicsProblem};
+use super::score::Scores;
+use super::verdict::{NamingFacts, Verdict, WhyNotNamed};
+
+/// Ratio of a condition's misfit to the median of the conditions above which a caution is raised.
+pub const NOTABLE_MISFIT: f64 = 1.5;
+/// Share of the progress that the passes have; scores and intervals follow.
+const PASSES_SHARE: f64 = 0.95;
+/// Step name in progress reports.
+const SCORING: &str = "intervals of physics parameters";
+
+/// A parameter of the diagnosis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterDiagnosis {
+    /// Value, in plausible standard deviations.
+    pub z: f64,
+    /// Half-width of the interval, in plausible standard deviations; `None` for a held value, and
+    /// with fewer than four conditions.
+    pub half_width: Option<f64>,
+    /// `None` for a held value.
+    pub variance: Option<ValueVariance>,
+    /// Ratio of the score with this parameter alone; `None` for a held value, and with fewer than
+    /// two conditions.
+    pub ratio_alone: Option<f64>,
+    /// Step of the stepwise list that adds it, counted from 1.
+    pub step: Option<usize>,
+    /// Decrease of the ratio by that step.
+    pub gain: Option<f64>,
+    /// Share of the prior variance that the data remove; `None` for a held value.
+    pub learned: Option<f64>,
+    /// Share of its effect that gains and delays of the channels can take.
+    pub channels_can_take: Option<f64>,
+    /// Its strongest correlation with another parameter.
+    pub strongest_pair: Option<ParameterPair>,
+    /// Why it is not named; `None` for a named one.
+    pub why_not_named: Option<WhyNotNamed>,
+}
+
+impl ParameterDiagnosis {
+    /// Returns whether the parameter is named.
+    pub fn is_named(&self) -> bool {
+        self.why_not_named.is_none()
+    }
+
+    /// Returns whether the parameter acts like a gain or a delay of the channels, so that its value
+    /// rests on the prior of the delays.
+    pub fn acts_like_channels(&self) -> bool {
+        self.channels_can_take
+            .is_some_and(|share| share > ACTS_LIKE_CHANNELS)
+    }
+}
+
+/// A condition of the diagnosis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionDiagnosis {
+    pub id: ConditionId,
+    /// Root of `sum q^2 |ln(R / H^)|^2 / (2 sum q^2)`, ln units; `None` without any weight.
+    pub misfit: Option<f64>,
+    /// Values of all parameters without this condition, in plausible standard deviations.
+    pub z_without: Vec<f64>,
+}
+
+/// The diagnosis: which parameters would have to move, and by how much.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhysicsDiagnosis {
+    pub fit: PhysicsFit,
+    /// In the order of the problem's parameters.
+    pub parameters: Vec<ParameterDiagnosis>,
+    /// In the order of the problem's conditions.
+    pub conditions: Vec<ConditionDiagnosis>,
+    /// `None` with fewer than two conditions.
+    pub scores: Option<Scores>,
+    /// `None` with fewer than four conditions.
+    pub verdict: Option<Verdict>,
+    /// Root mean square deviation of the other identified models from their representatives, ln
+    /// units; `None` without other models.
+    pub spread: Option<f64>,
+    /// Parameters that cannot be told apart.
+    pub pairs: Vec<ParameterPair>,
+    pub identifiability: Identifiability,
+}
+
+impl PhysicsDiagnosis {
+    /// Returns the share of the misfit of conditions left out that the parameters explain.
+    pub fn explained(&self) -> Option<f64> {
+        Some(self.scores.as_ref()?.explained())
+    }
+
+    /// Returns the indices of the named parameters.
+    pub fn named(&self) -> Vec<usize> {
+        let mut named = Vec::new();
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            if parameter.is_named() {
+                named.push(index);
+            }
+        }
+        named
+    }
+
+    /// Returns the combination of parameters about which the data say less than the prior.
+    pub fn weak_direction(&self) -> Option<&WeakDirection> {
+        self.identifiability.weak_direction.as_ref()
+    }
+
+    /// Returns the conditions whose misfit is more than 1.5 times the median of the conditions.
+    pub fn poorly_fitted(&self) -> Vec<ConditionId> {
+        let mut misfits: Vec<f64> = self
+            .conditions
+            .iter()
+            .filter_map(|condition| condition.misfit)
+            .collect();
+        if misfits.is_empty() {
+            return Vec::new();
+        }
+        let limit = NOTABLE_MISFIT * median(&mut misfits);
+        let mut poor = Vec::new();
+        for condition in &self.conditions {
+            if condition.misfit.is_some_and(|misfit| misfit > limit) {
+                poor.push(condition.id);
+            }
+        }
+        poor
+    }
+}
+
+/// Fits the parameters, and derives intervals, scores, names and the verdict.
+///
+/// # Errors
+/// The errors of [`fit_parameters`](super::fit_parameters).
+pub fn diagnose(
+    problem: &PhysicsProblem,
+    executor: &dyn Executor,
+    progress: &dyn Progress,
+) -> Result<PhysicsDiagnosis, PhysicsError> {
+    let shares = Shares::new(progress);
+    let portion = Portion::new(&shares, PASSES_SHARE, SCORING);
+    let SolvedFit { fit, equations } = solve(problem, executor, &portion)?;
+    portion.finish()?;
+    let identifiability = Identifiability::new(&equations)?;
+    let intervals = Intervals::new(&equations, &identifiability.inverse, problem.options.level)?;
+    shares.next(PASSES_SHARE, SCORING)?;
+    let scores = Scores::new(&equations, &fit.fitted);
+    shares.next(1.0, SCORING)?;
+    let explained = scores.as_ref().map(Scores::explained);
+    let spread = equations.spread();
+    let verdict = match explained {
+        Some(explained) if !intervals.half_widths.is_empty() => {
+            Some(Verdict::new(explained, fit.misfit, spread))
+        }
+        _ => None,
+    };
+    let assembly = Assembly {
+        problem,
+        fit: &fit,
+        equations: &equations,
+        identifiability: &identifiability,
+        intervals: &intervals,
+        scores: scores.as_ref(),
+    };
+    Ok(PhysicsDiagnosis {
+        parameters: assembly.parameters(),
+        conditions: assembly.conditions(),
+        pairs: identifiability.pairs(&fit.fitted),
+        fit,
+        scores,
+        verdict,
+        spread,
+        identifiability,
+    })
+}
+
+/// The parts from which the diagnosis of parameters and conditions is put together.
+struct Assembly<'a> {
+    problem: &'a PhysicsProblem,
+    fit: &'a PhysicsFit,
+    equations: &'a PassEquations,
+    identifiability: &'a Identifiability,
+    intervals: &'a Intervals,
+    scores: Option<&'a Scores>,
+}
+
+impl Assembly<'_> {
+    fn parameters(&self) -> Vec<ParameterDiagnosis> {
+        let mut parameters = Vec::with_capacity(self.fit.z.len());
+        for (parameter, &z) in self.fit.z.iter().enumerate() {
+            let place = self
+                .fit
+                .fitted
+                .iter()
+                .position(|&fitted| fitted == parameter);
+            parameters.push(match place {
+                Some(index) => self.fitted_parameter(parameter, index),
+                None => ParameterDiagnosis {
+                    z,
+                    half_width: None,
+                    variance: None,
+                    ratio_alone: None,
+                    step: None,
+                    gain: None,
+                    learned: None,
+                    channels_can_take: None,
+                    strongest_pair: None,
+                    why_not_named: Some(WhyNotNamed::Held),
+                },
+            });
+        }
+        parameters
+    }
+
+    /// Returns the diagnosis of a parameter; `index` is its index among the fitted ones.
+    fn fitted_parameter(&self, parameter: usize, index: usize) -> ParameterDiagnosis {
+        let identifiability = self.identifiability;
+        let learned = identifiability.learned[index];
+        let facts = NamingFacts {
+            conditions: self.equations.counting_conditions(),
+            explained: self.scores.map(Scores::explained),
+            z: self.fit.z[parameter],
+            half_width: self.intervals.half_widths.get(index).copied(),
+            learned,
+            gain: self.scores.and_then(|scores| scores.gain_of(parameter)),
+        };
+        ParameterDiagnosis {
+            z: facts.z,
+            half_width: facts.half_width,
+            variance: Some(self.intervals.variances[index]),
+            ratio_alone: self.scores.map(|scores| scores.alone[index]),
+            step: self.scores.and_then(|scores| scores.step_of(parameter)),
+            gain: facts.gain,
+            learned: Some(learned),
+            channels_can_take: identifiability.channels_can_take[index],
+            strongest_pair: identifiability.strongest_pair(index, &self.fit.fitted),
+            why_not_named: facts.why_not_named(),
+        }
+    }
+
+    fn conditions(&self) -> Vec<ConditionDiagnosis> {
+        let mut conditions = Vec::with_capacity(self.problem.conditions.len());
+        for (index, condition) in self.problem.conditions.iter().enumerate() {
+            let mut z_without = self.problem.initial_values();
+            let without = &self.intervals.without_condition[index];
+            for (&parameter, &z) in self.fit.fitted.iter().zip(without) {
+                z_without[parameter] = z;
+            }
+            conditions.push(ConditionDiagnosis {
+                id: condition.id,
+                misfit: self.equations.blocks[index].sums().misfit(),
+                z_without,
+            });
+        }
+        conditions
+    }
+}

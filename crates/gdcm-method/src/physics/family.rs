@@ -1,0 +1,317 @@
+//! The responses of a condition's physics model for any values of the parameters, and their
+//! derivatives (steps 2 and 3 of `physics`, M18.2).
+//!
+//! ```text
+//! H = C (j omega I - A)^-1 B + D   at  A(z), B(z), C(z), D(z)
+//! dH/dz_k = Y A'_k X + Y B'_k + C'_k X + D'_k,   A'_k = L_k + 2 z_k Q_k,
+//! X = (j omega I - A)^-1 B,   Y = C (j omega I - A)^-1
+//! ```
+//!
+//! In discrete time, `j omega` is `e^(j omega T)`. Channel delays multiply H and its derivatives. A
+//! representative with other states than the runs' base has no increments of its matrices; the
+//! responses then change like those of the base, `H = H_rep + sum_k (z_k L_k + z_k^2 Q_k)` with `L_k`
+//! and `Q_k` of the responses.
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::dataset::{Dynamics, Model, StateSpace};
+use gdcm_model::response::PreparedModel;
+use gdcm_model::response::balancing::balance_square;
+use gdcm_model::response::prepared_model::evaluation_point;
+
+use super::increments::{ConditionIncrements, ParameterIncrement, RunStep};
+use super::matrices::Matrices;
+use super::resolvent::ResolventProducts;
+
+/// Response and derivatives on a grid of N frequencies, each `[(output m + input) N + frequency]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FamilyResponse {
+    /// `H(z)`.
+    pub response: Vec<Complex<f64>>,
+    /// `dH/dz_k`, for each parameter.
+    pub derivatives: Vec<Vec<Complex<f64>>>,
+}
+
+/// The models of a condition for any values of the parameters.
+#[derive(Clone, Debug)]
+pub struct ModelFamily {
+    kind: FamilyKind,
+    outputs: usize,
+    inputs: usize,
+}
+
+#[derive(Clone, Debug)]
+enum FamilyKind {
+    Matrices(Box<MatrixFamily>),
+    Responses(ResponseFamily),
+}
+
+/// A family of matrices, in balanced coordinates.
+#[derive(Clone, Debug)]
+struct MatrixFamily {
+    /// The representative; `A - I` in place of A in discrete time.
+    base: Matrices,
+    increments: Vec<ParameterIncrement>,
+    sample_time_s: Option<f64>,
+    /// Delays of each response \[s\], `[output m + input]`.
+    delays_s: Vec<f64>,
+}
+
+/// A family of responses on a fixed grid; each list as in [`FamilyResponse`].
+#[derive(Clone, Debug)]
+struct ResponseFamily {
+    base: Vec<Complex<f64>>,
+    /// `L_k`.
+    linear: Vec<Vec<Complex<f64>>>,
+    /// `Q_k`; zero for a single run.
+    quadratic: Vec<Vec<Complex<f64>>>,
+}
+
+impl ModelFamily {
+    /// Creates the family of a representative with the states of the increments' base; `None` for a
+    /// representative with other states ([`ModelFamily::from_responses`]).
+    pub fn from_matrices(representative: &Model, increments: &ConditionIncrements) -> Option<Self> {
+        let model = representative.state_space()?;
+        if !increments.has_states_of(representative) {
+            return None;
+        }
+        let mut base = Matrices::from_model(model);
+        let sample_time_s = model.timing().sample_time_s;
+        if sample_time_s.is_some() {
+            base.a -= DMatrix::identity(model.order(), model.order());
+        }
+        let scales = balance_square(&mut base.a.clone());
+        let mut delays_s = Vec::with_capacity(model.outputs() * model.inputs());
+        for output in 0..model.outputs() {
+            for input in 0..model.inputs() {
+                delays_s.push(model.timing().delay_s(output, input));
+            }
+        }
+        Some(Self {
+            kind: FamilyKind::Matrices(Box::new(MatrixFamily {
+                base: base.balanced(&scales),
+                increments: increments
+                    .parameters
+                    .iter()
+                    .map(|increment| increment.balanced(&scales))
+                    .collect(),
+                sample_time_s,
+                delays_s,
+            })),
+            outputs: model.outputs(),
+            inputs: model.inputs(),
+        })
+    }
+
+    /// Creates the family of a representative whose responses on the grid `omega` \[rad/s\] change
+    /// like those of the runs' bases; `None` if a parameter has no run, two with the same step, or
+    /// one that does not fit.
+    pub fn from_responses(
+        representative: &Model,
+        runs: &[Vec<RunStep<'_>>],
+        omega: &[f64],
+    ) -> Option<Self> {
+        let shape = representative.dynamics.shape();
+        let mut linear = Vec::with_capacity(runs.len());
+        let mut quadratic = Vec::with_capacity(runs.len());
+        for steps in runs {
+            let first = steps.first()?;
+            for step in steps {
+                if !step.fits() || (step.run.outputs(), step.run.inputs()) != shape {
+                    return None;
+                }
+            }
+            let mut slope = response_slope(first, omega);
+            let mut curvature = vec![Complex::new(0.0, 0.0); slope.len()];
+            if let Some(second) = steps.get(1) {
+                if first.z == second.z {
+                    return None;
+                }
+                let second_slope = response_slope(second, omega);
+                for (k, curvature) in curvature.iter_mut().enumerate() {
+                    *curvature = (slope[k] - second_slope[k]) / (first.z - second.z);
+                    slope[k] -= *curvature * first.z;
+                }
+            }
+            linear.push(slope);
+            quadratic.push(curvature);
+        }
+        Some(Self {
+            kind: FamilyKind::Responses(ResponseFamily {
+                base: values(&representative.dynamics, omega),
+                linear,
+                quadratic,
+            }),
+            outputs: shape.0,
+            inputs: shape.1,
+        })
+    }
+
+    /// Returns the output count, `p`.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Returns the input count, `m`.
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// Returns the number of parameters.
+    pub fn parameters(&self) -> usize {
+        match &self.kind {
+            FamilyKind::Matrices(family) => family.increments.len(),
+            FamilyKind::Responses(family) => family.linear.len(),
+        }
+    }
+
+    /// Returns the number of frequencies of a family of responses; `None` for matrices, which have
+    /// a response at any frequency.
+    pub fn points(&self) -> Option<usize> {
+        match &self.kind {
+            FamilyKind::Matrices(_) => None,
+            FamilyKind::Responses(family) => {
+                Some(family.base.len() / (self.outputs * self.inputs).max(1))
+            }
+        }
+    }
+
+    /// Computes `H(z)` and its derivatives at `omega` \[rad/s\], the grid of the family if it is one
+    /// of responses; `z` has a value for each parameter. Missing values are not finite.
+    pub fn evaluate(&self, z: &[f64], omega: &[f64]) -> FamilyResponse {
+        match &self.kind {
+            FamilyKind::Matrices(family) => family.evaluate(z, omega),
+            FamilyKind::Responses(family) => family.evaluate(z),
+        }
+    }
+}
+
+impl MatrixFamily {
+    fn evaluate(&self, z: &[f64], omega: &[f64]) -> FamilyResponse {
+        let mut system = self.base.clone();
+        for (increment, &z) in self.increments.iter().zip(z) {
+            increment.add_to(&mut system, z);
+        }
+        let s: Vec<Complex<f64>> = omega
+            .iter()
+            .map(|&omega| evaluation_point(omega, self.sample_time_s))
+            .collect();
+        let products = ResolventProducts::new(&system, &s);
+        let mut response = ordered(&products.response, self.delays_s.len(), omega.len());
+        self.delay(&mut response, omega);
+        let mut derivatives = Vec::with_capacity(self.increments.len());
+        for (increment, &z) in self.increments.iter().zip(z) {
+            let derivative = derivative(&increment.derivative(z), &products, omega.len());
+            let mut derivative = ordered(&derivative, self.delays_s.len(), omega.len());
+            self.delay(&mut derivative, omega);
+            derivatives.push(derivative);
+        }
+        FamilyResponse {
+            response,
+            derivatives,
+        }
+    }
+
+    /// Multiplies the values by `e^(-j omega (tau_o + tau_i))`.
+    fn delay(&self, values: &mut [Complex<f64>], omega: &[f64]) {
+        for (curve, &delay_s) in values
+            .chunks_exact_mut(omega.len().max(1))
+            .zip(&self.delays_s)
+        {
+            if delay_s > 0.0 {
+                for (value, omega) in curve.iter_mut().zip(omega) {
+                    *value *= Complex::from_polar(1.0, -omega * delay_s);
+                }
+            }
+        }
+    }
+}
+
+/// Computes `Y A' X + Y B' + C' X + D'` for a change of the matrices, point by point:
+/// `[(point p + output) m + input]`.
+fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) -> Vec<Complex<f64>> {
+    let inputs = change.b.ncols();
+    let outputs = change.c.nrows();
+    // A' X + B', n x 2 m N; B' is real.
+    let mut driven = &change.a * &products.input_states;
+    for point in 0..points {
+        let mut real_columns = driven.columns_mut(2 * inputs * point, inputs);
+        real_columns += &change.b;
+    }
+    // C' X, p x 2 m N.
+    let measured = &change.c * &products.input_states;
+    let mut values = Vec::with_capacity(points * outputs * inputs);
+    for point in 0..points {
+        let left = products
+            .output_states
+            .rows(2 * outputs * point, 2 * outputs);
+        // Real and imaginary parts of Y times those of A' X + B', 2 p x 2 m.
+        let product = left * driven.columns(2 * inputs * point, 2 * inputs);
+        for output in 0..outputs {
+            for input in 0..inputs {
+                let column = 2 * inputs * point + input;
+                let re = product[(output, input)] - product[(outputs + output, inputs + input)];
+                let im = product[(output, inputs + input)] + product[(outputs + output, input)];
+                values.push(Complex::new(
+                    re + measured[(output, column)] + change.d[(output, input)],
+                    im + measured[(output, column + inputs)],
+                ));
+            }
+        }
+    }
+    values
+}
+
+/// Orders values given point by point response by response.
+fn ordered(values: &[Complex<f64>], responses: usize, points: usize) -> Vec<Complex<f64>> {
+    let mut ordered = Vec::with_capacity(values.len());
+    for response in 0..responses {
+        for point in 0..points {
+            ordered.push(values[point * responses + response]);
+        }
+    }
+    ordered
+}
+
+impl ResponseFamily {
+    fn evaluate(&self, z: &[f64]) -> FamilyResponse {
+        let mut response = self.base.clone();
+        let mut derivatives = Vec::with_capacity(z.len());
+        for ((linear, quadratic), &z) in self.linear.iter().zip(&self.quadratic).zip(z) {
+            let mut derivative = linear.clone();
+            for (k, derivative) in derivative.iter_mut().enumerate() {
+                response[k] += linear[k] * z + quadratic[k] * (z * z);
+                *derivative += quadratic[k] * (2.0 * z);
+            }
+            derivatives.push(derivative);
+        }
+        FamilyResponse {
+            response,
+            derivatives,
+        }
+    }
+}
+
+/// Returns `(H_run - H_base) / z` on the grid.
+fn response_slope(step: &RunStep<'_>, omega: &[f64]) -> Vec<Complex<f64>> {
+    let run = state_space_values(step.run, omega);
+    let base = state_space_values(step.base, omega);
+    run.iter()
+        .zip(&base)
+        .map(|(run, base)| (run - base) / step.z)
+        .collect()
+}
+
+fn state_space_values(model: &StateSpace, omega: &[f64]) -> Vec<Complex<f64>> {
+    values(&Dynamics::StateSpace(model.clone()), omega)
+}
+
+/// Returns the responses of a model in the order of [`FamilyResponse`].
+fn values(dynamics: &Dynamics, omega: &[f64]) -> Vec<Complex<f64>> {
+    let response = PreparedModel::new(dynamics).at(omega);
+    response
+        .curves()
+        .iter()
+        .flat_map(|(_, curve)| curve.iter().copied())
+        .collect()
+}

@@ -1,0 +1,194 @@
+//! Fits the parameters to all conditions at once (steps 2 to 8 of `physics`, M18.2).
+
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::progress::{Progress, Shares};
+
+use super::pass_equations::PassEquations;
+use super::point::FitPoint;
+use super::problem::{PhysicsError, PhysicsProblem};
+use super::weighted_condition::{PassPoint, WeightedCondition};
+use crate::correction::Channels;
+
+/// Greatest change of a value in one pass.
+const GREATEST_STEP: f64 = 1.0;
+/// Change of every value below which the passes end.
+const SETTLED: f64 = 1e-3;
+/// Fewest passes.
+const FEWEST_PASSES: usize = 3;
+/// Step name in progress reports.
+const FITTING: &str = "physics parameters";
+
+/// A pass of the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitPass {
+    /// Values of all parameters after the pass, in plausible standard deviations.
+    pub z: Vec<f64>,
+    /// `s^2` before the pass.
+    pub misfit_square: f64,
+    /// `sum q^2 |ln(R / H^)|^2` before the pass.
+    pub weighted_square: f64,
+}
+
+/// The fitted values, and the course of the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhysicsFit {
+    /// Values of all parameters, held ones included, in plausible standard deviations.
+    pub z: Vec<f64>,
+    /// Indices of the fitted parameters, ascending.
+    pub fitted: Vec<usize>,
+    /// `tau`: delays of the channels, of either sign \[s\].
+    pub delays_s: Channels<f64>,
+    /// `a`, `b`: ln gains of the channels, for each condition.
+    pub ln_gains: Vec<Channels<f64>>,
+    pub passes: Vec<FitPass>,
+    /// Index of the parameter that still moved most in the last pass; `None` if all had settled.
+    pub still_moving: Option<usize>,
+    /// Misfit `s` at the solution, ln units, at least 0.01.
+    pub misfit: f64,
+}
+
+/// A fit with the normal equations at its solution, from which intervals and scores follow.
+#[derive(Debug)]
+pub(super) struct SolvedFit {
+    pub(super) fit: PhysicsFit,
+    pub(super) equations: PassEquations,
+}
+
+/// Fits the parameters (M18.2).
+///
+/// The result is the same in any order of execution. `progress` is notified after every condition in
+/// every pass.
+///
+/// # Errors
+/// [`PhysicsError`] if a table has another shape, no response has a weight, the responses do not
+/// determine the unknowns, or `progress` is cancelled.
+pub fn fit_parameters(
+    problem: &PhysicsProblem,
+    executor: &dyn Executor,
+    progress: &dyn Progress,
+) -> Result<PhysicsFit, PhysicsError> {
+    Ok(solve(problem, executor, progress)?.fit)
+}
+
+/// Fits the parameters, and returns the normal equations at the solution with them.
+pub(super) fn solve(
+    problem: &PhysicsProblem,
+    executor: &dyn Executor,
+    progress: &dyn Progress,
+) -> Result<SolvedFit, PhysicsError> {
+    problem.check()?;
+    let fitting = Fitting::new(problem, executor, progress);
+    let count = problem.conditions.len();
+    let mut point = FitPoint::new(
+        problem.initial_values(),
+        problem.inputs(),
+        problem.outputs(),
+        count,
+    );
+    let mut passes: Vec<FitPass> = Vec::new();
+    let mut still_moving = None;
+    for pass in 1..=problem.options.passes.max(1) {
+        let equations = fitting.equations(&point)?;
+        let step = point.step_to(&equations.solution(&point, &fitting.fitted)?);
+        passes.push(FitPass {
+            z: point.z.clone(),
+            misfit_square: equations.misfit_square,
+            weighted_square: equations.weighted_square,
+        });
+        still_moving = step;
+        if still_moving.is_none() && pass >= FEWEST_PASSES {
+            break;
+        }
+    }
+    let equations = fitting.equations(&point)?;
+    fitting.shares.next(1.0, FITTING)?;
+    Ok(SolvedFit {
+        fit: PhysicsFit {
+            z: point.z,
+            fitted: fitting.fitted,
+            delays_s: point.delays_s,
+            ln_gains: point.ln_gains,
+            passes,
+            still_moving,
+            misfit: equations.misfit_square.sqrt(),
+        },
+        equations,
+    })
+}
+
+impl FitPoint {
+    /// Moves to the solution of a pass, its values cut to the greatest permitted; shortens the whole
+    /// step if a value would move by more than one plausible standard deviation. Returns the
+    /// parameter that moves most, `None` if all move by 1e-3 or less.
+    fn step_to(&mut self, solution: &FitPoint) -> Option<usize> {
+        let mut largest = 0.0;
+        let mut moving = None;
+        for (parameter, (z, other)) in self.z.iter().zip(&solution.z).enumerate() {
+            let step = (other - z).abs();
+            if step > largest {
+                largest = step;
+                moving = Some(parameter);
+            }
+        }
+        let share = if largest > GREATEST_STEP {
+            GREATEST_STEP / largest
+        } else {
+            1.0
+        };
+        self.move_towards(solution, share);
+        if largest * share > SETTLED {
+            moving
+        } else {
+            None
+        }
+    }
+}
+
+/// Data common to all passes of a fit.
+struct Fitting<'a> {
+    problem: &'a PhysicsProblem,
+    conditions: Vec<WeightedCondition<'a>>,
+    fitted: Vec<usize>,
+    executor: &'a dyn Executor,
+    shares: Shares<'a>,
+    /// Share of the progress that a condition has in a pass.
+    share: f64,
+}
+
+impl<'a> Fitting<'a> {
+    fn new(
+        problem: &'a PhysicsProblem,
+        executor: &'a dyn Executor,
+        progress: &'a dyn Progress,
+    ) -> Self {
+        let evaluations = (problem.options.passes.max(1) + 1) * problem.conditions.len().max(1);
+        Self {
+            conditions: problem
+                .conditions
+                .iter()
+                .map(|condition| WeightedCondition::new(problem, condition))
+                .collect(),
+            fitted: problem.fitted_parameters(),
+            problem,
+            executor,
+            shares: Shares::new(progress),
+            share: 1.0 / evaluations as f64,
+        }
+    }
+
+    /// Forms the normal equations at a point.
+    fn equations(&self, point: &FitPoint) -> Result<PassEquations, PhysicsError> {
+        let indices = 0..self.conditions.len();
+        let blocks = each(self.executor, indices, |index| {
+            let blocks = self.conditions[index].blocks(&PassPoint {
+                z: &point.z,
+                fitted: &self.fitted,
+                channels: point.channels(index),
+            });
+            self.shares.advance(self.share, FITTING)?;
+            Ok::<_, PhysicsError>(blocks)
+        });
+        let blocks = blocks.into_iter().collect::<Result<Vec<_>, _>>()?;
+        PassEquations::new(self.problem, self.fitted.len(), blocks)
+    }
+}

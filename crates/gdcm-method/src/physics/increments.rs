@@ -1,0 +1,266 @@
+//! How the matrices of a condition's physics model change with each parameter (step 1 of `physics`,
+//! M18.2), and the model for chosen values (M18.5).
+//!
+//! ```text
+//! one run at z_1:           L = (A_1 - A_0) / z_1,   Q = 0
+//! two runs at z_1, z_2:     Q = [(A_1 - A_0) / z_1 - (A_2 - A_0) / z_2] / (z_1 - z_2),
+//!                           L = (A_1 - A_0) / z_1 - z_1 Q
+//! A(z) = A + sum_k (z_k L_k + z_k^2 Q_k);   B, C and D likewise
+//! ```
+//!
+//! `z_k` is the change of parameter k over its plausible standard deviation, `A_0` the matrix of the
+//! runs' base.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::state_space::StateSpaceError;
+use gdcm_model::dataset::{Model, StateSpace};
+
+use super::matrices::Matrices;
+
+/// Share of the curvature in a change of A above which a step of the run was too large for the value
+/// found (M18.7).
+pub const NOTABLE_CURVATURE: f64 = 0.5;
+
+/// A run of a parameter at the change `z`, in plausible standard deviations.
+#[derive(Clone, Copy, Debug)]
+pub struct RunStep<'a> {
+    /// Change of the parameter over its plausible standard deviation; not zero.
+    pub z: f64,
+    /// The model at which the parameter is nominal.
+    pub base: &'a StateSpace,
+    /// The model with the parameter moved; of the shape of `base`.
+    pub run: &'a StateSpace,
+}
+
+impl RunStep<'_> {
+    /// Returns whether the step can be divided by, and the run has the shape of its base.
+    pub(super) fn fits(&self) -> bool {
+        self.z.is_finite() && self.z != 0.0 && model_shape(self.run) == model_shape(self.base)
+    }
+}
+
+/// Returns the numbers of states, inputs and outputs.
+pub(super) fn model_shape(model: &StateSpace) -> [usize; 3] {
+    [model.order(), model.inputs(), model.outputs()]
+}
+
+/// Change of the matrices with one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ParameterIncrement {
+    /// `L`, per plausible standard deviation.
+    pub(super) linear: Matrices,
+    /// `Q`, per square of it; `None` for a single run.
+    pub(super) quadratic: Option<Matrices>,
+}
+
+impl ParameterIncrement {
+    /// Computes `L` and `Q` from one or two runs; further runs are not used. Returns `None` without
+    /// a run, if two runs have the same step, and if a step is zero or not finite, or a run has not
+    /// the shape of its base.
+    pub(super) fn from_runs(runs: &[RunStep<'_>]) -> Option<Self> {
+        let first = runs.first()?;
+        if !runs.iter().all(RunStep::fits) {
+            return None;
+        }
+        let mut linear = Matrices::slope(first.run, first.base, first.z);
+        let Some(second) = runs.get(1) else {
+            return Some(Self {
+                linear,
+                quadratic: None,
+            });
+        };
+        if first.z == second.z {
+            return None;
+        }
+        let mut quadratic = linear.clone();
+        quadratic.add(&Matrices::slope(second.run, second.base, second.z), -1.0);
+        quadratic.scale(1.0 / (first.z - second.z));
+        linear.add(&quadratic, -first.z);
+        Some(Self {
+            linear,
+            quadratic: Some(quadratic),
+        })
+    }
+
+    /// Adds the change at `z` to the matrices of a model.
+    pub(super) fn add_to(&self, model: &mut Matrices, z: f64) {
+        if z == 0.0 {
+            return;
+        }
+        model.add(&self.linear, z);
+        if let Some(quadratic) = &self.quadratic {
+            model.add(quadratic, z * z);
+        }
+    }
+
+    /// Returns the derivative `L + 2 z Q`.
+    pub(super) fn derivative(&self, z: f64) -> Matrices {
+        let mut derivative = self.linear.clone();
+        if let Some(quadratic) = &self.quadratic {
+            derivative.add(quadratic, 2.0 * z);
+        }
+        derivative
+    }
+
+    /// Returns `|z| ||Q|| / ||L||` of the system matrices, the share of the curvature in the change;
+    /// 0 for a single run, and where A does not change.
+    pub(super) fn curvature(&self, z: f64) -> f64 {
+        let linear = self.linear.a.norm();
+        match &self.quadratic {
+            Some(quadratic) if linear > 0.0 => z.abs() * quadratic.a.norm() / linear,
+            _ => 0.0,
+        }
+    }
+
+    /// Returns the increment in the coordinates balanced by `scales`.
+    pub(super) fn balanced(&self, scales: &[f64]) -> Self {
+        Self {
+            linear: self.linear.balanced(scales),
+            quadratic: self
+                .quadratic
+                .as_ref()
+                .map(|matrices| matrices.balanced(scales)),
+        }
+    }
+}
+
+/// Change of a condition's physics models with all parameters, in the order of the parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionIncrements {
+    /// State names of the base; empty if unknown.
+    states: Arc<[String]>,
+    order: usize,
+    inputs: usize,
+    outputs: usize,
+    pub(super) parameters: Vec<ParameterIncrement>,
+}
+
+/// Reasons why increments cannot be formed, or do not apply to a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IncrementError {
+    /// A parameter has no run, runs with the same step, or a run that does not fit its base or the
+    /// other parameters.
+    #[error("parameter {parameter}: expected one run, or two with different steps other than 0")]
+    Runs {
+        /// Index of the parameter, counted from 1.
+        parameter: usize,
+    },
+    /// The states of a model are not those of the base.
+    #[error("expected the states of the runs' base, found other states")]
+    States,
+    /// A model is a measured response.
+    #[error("expected matrices, found a measured response")]
+    Measured,
+    /// The number of values differs from the number of parameters.
+    #[error("expected {expected} values, found {found}")]
+    Count { expected: usize, found: usize },
+    /// The matrices with the changes are not finite.
+    #[error(transparent)]
+    StateSpace(#[from] StateSpaceError),
+}
+
+impl IncrementError {
+    /// Returns the stable code used in files.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Runs { .. } => "increment-runs",
+            Self::States => "increment-states-differ",
+            Self::Measured => "increment-needs-matrices",
+            Self::Count { .. } => "increment-value-count",
+            Self::StateSpace(_) => "increment-not-finite",
+        }
+    }
+}
+
+impl ConditionIncrements {
+    /// Computes the increments of a condition from the runs of each parameter; `base` gives the
+    /// names of the states.
+    ///
+    /// # Errors
+    /// [`IncrementError::Runs`].
+    pub fn new(base: &Model, runs: &[Vec<RunStep<'_>>]) -> Result<Self, IncrementError> {
+        let Some(model) = base.state_space() else {
+            return Err(IncrementError::Measured);
+        };
+        let mut parameters = Vec::with_capacity(runs.len());
+        for (index, runs) in runs.iter().enumerate() {
+            match ParameterIncrement::from_runs(runs) {
+                Some(increment) if increment.linear.has_shape_of(model) => {
+                    parameters.push(increment);
+                }
+                _ => {
+                    return Err(IncrementError::Runs {
+                        parameter: index + 1,
+                    });
+                }
+            }
+        }
+        Ok(Self {
+            states: Arc::clone(&base.states),
+            order: model.order(),
+            inputs: model.inputs(),
+            outputs: model.outputs(),
+            parameters,
+        })
+    }
+
+    /// Returns the number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// Returns whether a model has the states of the base: the same number, with the same names in
+    /// the same order where both give names.
+    pub fn has_states_of(&self, model: &Model) -> bool {
+        match model.state_space() {
+            Some(matrices) => {
+                matrices.order() == self.order
+                    && matrices.inputs() == self.inputs
+                    && matrices.outputs() == self.outputs
+                    && (self.states.is_empty()
+                        || model.states.is_empty()
+                        || self.states == model.states)
+            }
+            None => false,
+        }
+    }
+
+    /// Returns the matrices of a model of the condition with the parameters at `z` (plausible
+    /// standard deviations): `A(z) = A + sum_k (z_k L_k + z_k^2 Q_k)`, and so on. Sample time and
+    /// delays stay.
+    ///
+    /// # Errors
+    /// [`IncrementError`] for a measured model, for other states than those of the base, for
+    /// another number of values, and for values at which the matrices are not finite.
+    pub fn apply(&self, model: &Model, z: &[f64]) -> Result<StateSpace, IncrementError> {
+        let Some(matrices) = model.state_space() else {
+            return Err(IncrementError::Measured);
+        };
+        if !self.has_states_of(model) {
+            return Err(IncrementError::States);
+        }
+        if z.len() != self.parameters.len() {
+            return Err(IncrementError::Count {
+                expected: self.parameters.len(),
+                found: z.len(),
+            });
+        }
+        let mut moved = Matrices::from_model(matrices);
+        for (increment, &z) in self.parameters.iter().zip(z) {
+            increment.add_to(&mut moved, z);
+        }
+        let moved = StateSpace::new(moved.a, moved.b, moved.c, moved.d)?;
+        Ok(moved.timed(matrices.timing().clone())?)
+    }
+
+    /// Returns `|z| ||Q|| / ||L||` of the system matrices for each parameter; above
+    /// [`NOTABLE_CURVATURE`], the effect bends (M18.7).
+    pub fn curvatures(&self, z: &[f64]) -> Vec<f64> {
+        self.parameters
+            .iter()
+            .zip(z)
+            .map(|(increment, &z)| increment.curvature(z))
+            .collect()
+    }
+}

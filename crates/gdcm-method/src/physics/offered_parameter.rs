@@ -1,0 +1,61 @@
+//! The parameters that a dataset's runs move, with the changes that the engineer considers plausible
+//! (M18.1).
+
+use gdcm_model::dataset::physics_parameter::ParameterChange;
+use gdcm_model::dataset::{Dataset, PhysicsParameter};
+
+/// A parameter with runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OfferedParameter {
+    pub name: String,
+    /// Unit of its changes.
+    pub unit: String,
+    /// Standard deviation of the changes considered possible, in the unit; the unit of `z`.
+    pub plausible_sd: f64,
+    /// Meaning of the parameter; empty if unknown.
+    pub description: String,
+}
+
+impl OfferedParameter {
+    /// Lists the parameters with at least one run: the declared ones in the order of the dataset,
+    /// then the others in the order of their first run.
+    ///
+    /// Where the dataset does not state the plausible standard deviation, it is the largest
+    /// magnitude of the steps of the parameter's runs in its unit.
+    pub fn list(dataset: &Dataset) -> Vec<Self> {
+        let runs: Vec<&ParameterChange> = dataset
+            .conditions()
+            .iter()
+            .flat_map(|condition| condition.moved_models())
+            .filter_map(|moved| moved.run())
+            .collect();
+        let mut declared: Vec<PhysicsParameter> = dataset.parameters().to_vec();
+        for run in &runs {
+            if declared.iter().all(|parameter| parameter.name != run.name) {
+                declared.push(PhysicsParameter {
+                    name: run.name.clone(),
+                    unit: run.unit.clone(),
+                    plausible_sd: None,
+                    description: String::new(),
+                });
+            }
+        }
+        let mut offered = Vec::new();
+        for parameter in declared {
+            let largest_step = runs
+                .iter()
+                .filter(|run| run.name == parameter.name && run.unit == parameter.unit)
+                .map(|run| run.delta.abs())
+                .fold(0.0, f64::max);
+            if largest_step > 0.0 {
+                offered.push(Self {
+                    name: parameter.name,
+                    unit: parameter.unit,
+                    plausible_sd: parameter.plausible_sd.unwrap_or(largest_step),
+                    description: parameter.description,
+                });
+            }
+        }
+        offered
+    }
+}

@@ -1,0 +1,123 @@
+//! The products of a pass, for each response and third of the grid (step 5 of `physics`, M18.2).
+//!
+//! The residual of a response at a frequency is linear in the values `z` of the parameters, the sum
+//! `tau_o + tau_i` of two delays and the sum `a_oc + b_ic` of two ln gains:
+//!
+//! ```text
+//! y - sum_k d_k z_k + j omega (tau_o + tau_i) - (a_oc + b_ic),   d_k = (dH/dz_k) / H
+//! y = ln(R / H^) + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
+//! ```
+//!
+//! with the values of the present pass in `y`. With `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is
+//! `sum q^2 Re(conj(v) v')` over the frequencies of a third: all later sums, with or without a
+//! condition, output, input or third, are sums of blocks.
+
+use nalgebra::Complex;
+
+use gdcm_model::dataset::PairTable;
+
+/// Number of parts of the grid that are left out one by one.
+pub(super) const THIRDS: usize = 3;
+
+/// The products of one response in one third of the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Block {
+    /// Number of fitted parameters, K.
+    parameters: usize,
+    /// `sum q^2 Re(conj(v) v')`, (K + 3) x (K + 3), row by row.
+    products: Vec<f64>,
+    /// `sum q^2 |ln(R / H^)|^2`.
+    pub(super) squared_error: f64,
+    /// `sum q^2`.
+    pub(super) weight: f64,
+}
+
+impl Block {
+    pub(super) fn zeros(parameters: usize) -> Self {
+        let size = parameters + 3;
+        Self {
+            parameters,
+            products: vec![0.0; size * size],
+            squared_error: 0.0,
+            weight: 0.0,
+        }
+    }
+
+    /// Returns the product of two entries of `v`.
+    pub(super) fn product(&self, row: usize, column: usize) -> f64 {
+        self.products[row * (self.parameters + 3) + column]
+    }
+
+    /// Returns the index of `-j omega` in `v`.
+    pub(super) fn delay(&self) -> usize {
+        self.parameters
+    }
+
+    /// Returns the index of 1 in `v`.
+    pub(super) fn gain(&self) -> usize {
+        self.parameters + 1
+    }
+
+    /// Returns the index of `y` in `v`.
+    pub(super) fn target(&self) -> usize {
+        self.parameters + 2
+    }
+
+    /// Adds a frequency with the weight `q^2`.
+    pub(super) fn add(&mut self, v: &[Complex<f64>], squared_weight: f64, error: Complex<f64>) {
+        let size = self.parameters + 3;
+        for (row, left) in v.iter().enumerate() {
+            let re = left.re * squared_weight;
+            let im = left.im * squared_weight;
+            let products = &mut self.products[row * size..][..size];
+            for (product, right) in products.iter_mut().zip(v) {
+                *product += re * right.re + im * right.im;
+            }
+        }
+        self.squared_error += squared_weight * error.norm_sqr();
+        self.weight += squared_weight;
+    }
+}
+
+/// The blocks of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ConditionBlocks {
+    /// For each response, one block for each third of the grid.
+    pub(super) responses: PairTable<[Block; THIRDS]>,
+    /// `sum q^2 |ln(R_b / R)|^2 / (2 sum q^2)` for each other identified model b with a response.
+    pub(super) other_squares: Vec<f64>,
+}
+
+/// Sums over the blocks of a condition, or over some of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct BlockSums {
+    /// `sum q^2 |ln(R / H^)|^2`.
+    pub(super) squared_error: f64,
+    /// `sum q^2`.
+    pub(super) weight: f64,
+}
+
+impl BlockSums {
+    /// Returns the misfit, ln units; `None` without any weight.
+    pub(super) fn misfit(&self) -> Option<f64> {
+        if self.weight > 0.0 {
+            Some((self.squared_error / (2.0 * self.weight)).sqrt())
+        } else {
+            None
+        }
+    }
+}
+
+impl ConditionBlocks {
+    /// Returns the sums over all blocks.
+    pub(super) fn sums(&self) -> BlockSums {
+        let mut sums = BlockSums::default();
+        for (_, thirds) in self.responses.iter() {
+            for block in thirds {
+                sums.squared_error += block.squared_error;
+                sums.weight += block.weight;
+            }
+        }
+        sums
+    }
+}

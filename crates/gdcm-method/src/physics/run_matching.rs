@@ -1,0 +1,295 @@
+//! The runs of a condition and their bases (step 1 of `physics`, M18.1).
+//!
+//! The base of a run is the physics model of the condition with equal perturbation values, the
+//! nominal model if there are several. Run and base must have the same states in the same order, the
+//! same channels, sample time and delays.
+
+use std::collections::BTreeMap;
+
+use gdcm_model::dataset::physics_parameter::ParameterChange;
+use gdcm_model::dataset::{BundleKind, Condition, Model, StateSpace};
+
+use super::family::ModelFamily;
+use super::increments::{ConditionIncrements, IncrementError, RunStep, model_shape};
+use super::offered_parameter::OfferedParameter;
+use super::run_refusal::{RefusedRun, RunRefusal};
+
+/// Most runs of a parameter in a condition.
+const MOST_RUNS: usize = 2;
+
+/// A run with its base.
+#[derive(Clone, Copy, Debug)]
+pub struct MatchedRun<'a> {
+    /// The model with the parameter moved.
+    pub model: &'a Model,
+    /// The physics model at the same trim.
+    pub base: &'a Model,
+    pub change: &'a ParameterChange,
+    run_matrices: &'a StateSpace,
+    base_matrices: &'a StateSpace,
+}
+
+/// The runs of a condition that can be used, and those that cannot.
+#[derive(Clone, Debug, Default)]
+pub struct MatchedRuns<'a> {
+    /// In file order, at most two for a parameter.
+    pub runs: Vec<MatchedRun<'a>>,
+    pub refused: Vec<RefusedRun>,
+}
+
+/// Why a condition takes no part in the fit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConditionOmission {
+    /// No run of the condition can be used.
+    #[error("no run can be used")]
+    NoRuns,
+    /// A parameter that is on has no run that can be used.
+    #[error("no run of the parameter \"{parameter}\" can be used")]
+    MissingRun { parameter: String },
+    /// The runs do not give increments.
+    #[error(transparent)]
+    Increments(#[from] IncrementError),
+}
+
+impl ConditionOmission {
+    /// Returns the stable code used in files.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoRuns => "condition-without-runs",
+            Self::MissingRun { .. } => "condition-lacks-run",
+            Self::Increments(error) => error.code(),
+        }
+    }
+}
+
+impl<'a> MatchedRuns<'a> {
+    /// Matches the runs of a condition with their bases. `is_used` tells whether a physics model is
+    /// neither rejected nor set aside (M5b); runs of parameters that are not in `parameters` are
+    /// passed over.
+    pub fn new(
+        condition: &'a Condition,
+        parameters: &[OfferedParameter],
+        is_used: &dyn Fn(&Model) -> bool,
+    ) -> Self {
+        let mut matched = Self::default();
+        for moved in condition.moved_models() {
+            let Some(change) = moved.run() else {
+                continue;
+            };
+            let Some(parameter) = parameters
+                .iter()
+                .find(|parameter| parameter.name == change.name)
+            else {
+                continue;
+            };
+            let run = checked_run(condition, &moved.model, change, parameter, is_used)
+                .and_then(|run| matched.check_earlier_runs(run));
+            match run {
+                Ok(run) => matched.runs.push(run),
+                Err(reason) => matched.refused.push(RefusedRun {
+                    model: moved.model.name.clone(),
+                    parameter: change.name.clone(),
+                    reason,
+                }),
+            }
+        }
+        matched
+    }
+
+    /// Checks a run against those of the same parameter that are used already.
+    fn check_earlier_runs(&self, run: MatchedRun<'a>) -> Result<MatchedRun<'a>, RunRefusal> {
+        let mut count = 0;
+        for earlier in &self.runs {
+            if earlier.change.name != run.change.name {
+                continue;
+            }
+            count += 1;
+            let other = earlier.model.name.clone();
+            if earlier.change.delta == run.change.delta {
+                let delta = run.change.delta;
+                return Err(RunRefusal::StepRepeated { other, delta });
+            }
+            if earlier.run_matrices == run.run_matrices {
+                return Err(RunRefusal::MatricesRepeated { other });
+            }
+        }
+        if count >= MOST_RUNS {
+            return Err(RunRefusal::TooMany);
+        }
+        Ok(run)
+    }
+
+    /// Computes the increments of the condition, in the order of `parameters`.
+    ///
+    /// # Errors
+    /// [`ConditionOmission`] if a parameter has no run.
+    pub fn increments(
+        &self,
+        parameters: &[OfferedParameter],
+    ) -> Result<ConditionIncrements, ConditionOmission> {
+        let Some(first) = self.runs.first() else {
+            return Err(ConditionOmission::NoRuns);
+        };
+        Ok(ConditionIncrements::new(
+            first.base,
+            &self.steps(parameters)?,
+        )?)
+    }
+
+    /// Computes the family of the condition's representative, with matrices if it has the states of
+    /// the base, otherwise with responses on the grid `omega` \[rad/s\].
+    ///
+    /// # Errors
+    /// [`ConditionOmission`] if a parameter has no run.
+    pub fn family(
+        &self,
+        representative: &Model,
+        parameters: &[OfferedParameter],
+        omega: &[f64],
+    ) -> Result<ModelFamily, ConditionOmission> {
+        let increments = self.increments(parameters)?;
+        if let Some(family) = ModelFamily::from_matrices(representative, &increments) {
+            return Ok(family);
+        }
+        let steps = self.steps(parameters)?;
+        ModelFamily::from_responses(representative, &steps, omega).ok_or(ConditionOmission::NoRuns)
+    }
+
+    /// Returns the steps of each parameter.
+    fn steps(
+        &self,
+        parameters: &[OfferedParameter],
+    ) -> Result<Vec<Vec<RunStep<'a>>>, ConditionOmission> {
+        let mut steps = Vec::with_capacity(parameters.len());
+        for parameter in parameters {
+            let mut runs = Vec::new();
+            for run in &self.runs {
+                if run.change.name == parameter.name {
+                    runs.push(RunStep {
+                        z: run.change.delta / parameter.plausible_sd,
+                        base: run.base_matrices,
+                        run: run.run_matrices,
+                    });
+                }
+            }
+            if runs.is_empty() {
+                return Err(ConditionOmission::MissingRun {
+                    parameter: parameter.name.clone(),
+                });
+            }
+            steps.push(runs);
+        }
+        Ok(steps)
+    }
+}
+
+/// Finds the base of a run, and checks that both fit together.
+fn checked_run<'a>(
+    condition: &'a Condition,
+    model: &'a Model,
+    change: &'a ParameterChange,
+    parameter: &OfferedParameter,
+    is_used: &dyn Fn(&Model) -> bool,
+) -> Result<MatchedRun<'a>, RunRefusal> {
+    if !change.delta.is_finite() || change.delta == 0.0 {
+        let delta = change.delta;
+        return Err(RunRefusal::Step { delta });
+    }
+    if change.unit != parameter.unit {
+        return Err(RunRefusal::Unit {
+            expected: parameter.unit.clone(),
+            found: change.unit.clone(),
+        });
+    }
+    let Some(base) = base_of(condition, model) else {
+        return Err(RunRefusal::NoBase);
+    };
+    if !is_used(base) {
+        return Err(RunRefusal::BaseNotUsed {
+            base: base.name.clone(),
+        });
+    }
+    let (Some(run_matrices), Some(base_matrices)) = (model.state_space(), base.state_space())
+    else {
+        return Err(RunRefusal::NoMatrices);
+    };
+    check_states(model, run_matrices, base, base_matrices)?;
+    if run_matrices.timing() != base_matrices.timing() {
+        return Err(RunRefusal::Timing {
+            base: base.name.clone(),
+        });
+    }
+    if run_matrices == base_matrices {
+        return Err(RunRefusal::NoChange {
+            base: base.name.clone(),
+        });
+    }
+    Ok(MatchedRun {
+        model,
+        base,
+        change,
+        run_matrices,
+        base_matrices,
+    })
+}
+
+/// Checks that a run has the channels and states of its base, in the same order. Names are compared
+/// where both models give them.
+fn check_states(
+    run: &Model,
+    run_matrices: &StateSpace,
+    base: &Model,
+    base_matrices: &StateSpace,
+) -> Result<(), RunRefusal> {
+    let expected = model_shape(base_matrices);
+    let found = model_shape(run_matrices);
+    if expected != found {
+        return Err(RunRefusal::Shape {
+            base: base.name.clone(),
+            expected,
+            found,
+        });
+    }
+    for (index, (expected, found)) in base.states.iter().zip(run.states.iter()).enumerate() {
+        if expected != found {
+            return Err(RunRefusal::States {
+                base: base.name.clone(),
+                position: index + 1,
+                expected: expected.clone(),
+                found: found.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Returns the physics model with the perturbation of a run: the nominal model if it has it,
+/// otherwise the first.
+fn base_of<'a>(condition: &'a Condition, run: &Model) -> Option<&'a Model> {
+    let bundle = condition.bundle(BundleKind::Physics);
+    let nominal = &bundle[condition.nominal()];
+    std::iter::once(nominal)
+        .chain(bundle)
+        .find(|model| is_same_trim(model, run))
+}
+
+/// Returns whether two models have equal perturbation values; a coordinate that one of them does
+/// not give is zero. A perturbed model without coordinates is at an unknown trim.
+fn is_same_trim(base: &Model, run: &Model) -> bool {
+    let nothing = BTreeMap::new();
+    let base_offsets = match base.perturbation() {
+        Some(offsets) => offsets,
+        None if base.is_nominal() => &nothing,
+        None => return false,
+    };
+    let run_offsets = run.perturbation().unwrap_or(&nothing);
+    base_offsets
+        .keys()
+        .chain(run_offsets.keys())
+        .all(|name| offset_of(base_offsets, name) == offset_of(run_offsets, name))
+}
+
+/// Returns a trim offset; 0 for a coordinate that is not given.
+fn offset_of(offsets: &BTreeMap<String, f64>, coordinate: &str) -> f64 {
+    offsets.get(coordinate).copied().unwrap_or(0.0)
+}

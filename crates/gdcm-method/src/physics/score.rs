@@ -1,0 +1,157 @@
+//! How well conditions left out are predicted with each parameter, alone and stepwise (step 10 of
+//! `physics`, M18.4).
+//!
+//! ```text
+//! 1  for each condition: z, tau <- the other conditions' equations;  a, b <- its own gains
+//! 2  score <- sum over conditions of sum q^2 |y - J x|^2
+//! 3  ratio <- score over the score with no parameter
+//! 4  alone: each parameter;  stepwise: add the one that lowers the ratio most, until all are in
+//! ```
+
+use super::pass_equations::PassEquations;
+use super::shared_system::SharedSystem;
+
+/// Score of a set of parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Score {
+    /// `sum q^2 |y - J x|^2` of each condition, predicted from the others.
+    pub per_condition: Vec<f64>,
+    /// Sum over the conditions over that with no parameter.
+    pub ratio: f64,
+}
+
+impl Score {
+    fn new(per_condition: Vec<f64>, baseline: f64) -> Self {
+        Self {
+            ratio: per_condition.iter().sum::<f64>() / baseline,
+            per_condition,
+        }
+    }
+}
+
+/// A step of the stepwise list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScoreStep {
+    /// The added parameter; `None` for the score with no parameter.
+    pub added: Option<usize>,
+    pub score: Score,
+}
+
+/// Scores of the fitted parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scores {
+    /// Ratio of each parameter alone, in the order of the fitted parameters.
+    pub alone: Vec<f64>,
+    /// The list, from the score with no parameter to that with all. `added` is an index among the
+    /// problem's parameters.
+    pub stepwise: Vec<ScoreStep>,
+}
+
+impl Scores {
+    /// Computes the scores; `fitted` are the indices of the fitted parameters. Returns `None` for
+    /// fewer than two conditions, and where a condition cannot be predicted.
+    pub(super) fn new(equations: &PassEquations, fitted: &[usize]) -> Option<Self> {
+        if equations.counting_conditions() < 2 {
+            return None;
+        }
+        let scorer = Scorer::new(equations);
+        let nothing = scorer.score(&[])?;
+        let baseline: f64 = nothing.iter().sum();
+        if baseline.is_nan() || baseline <= 0.0 {
+            return None;
+        }
+        let mut alone = Vec::with_capacity(fitted.len());
+        for index in 0..fitted.len() {
+            alone.push(Score::new(scorer.score(&[index])?, baseline).ratio);
+        }
+        let mut stepwise = vec![ScoreStep {
+            added: None,
+            score: Score::new(nothing, baseline),
+        }];
+        let mut chosen: Vec<usize> = Vec::with_capacity(fitted.len());
+        while chosen.len() < fitted.len() {
+            let mut best: Option<(usize, Score)> = None;
+            for index in 0..fitted.len() {
+                if chosen.contains(&index) {
+                    continue;
+                }
+                chosen.push(index);
+                let candidate = scorer.score(&chosen);
+                chosen.pop();
+                let candidate = Score::new(candidate?, baseline);
+                let is_better = match &best {
+                    Some((_, best)) => candidate.ratio < best.ratio,
+                    None => true,
+                };
+                if is_better {
+                    best = Some((index, candidate));
+                }
+            }
+            let (index, score) = best?;
+            chosen.push(index);
+            stepwise.push(ScoreStep {
+                added: Some(fitted[index]),
+                score,
+            });
+        }
+        Some(Self { alone, stepwise })
+    }
+
+    /// Returns `1 -` the least ratio of the stepwise list: the share of the misfit of conditions
+    /// left out that the parameters explain.
+    pub fn explained(&self) -> f64 {
+        let least = self
+            .stepwise
+            .iter()
+            .map(|step| step.score.ratio)
+            .fold(f64::INFINITY, f64::min);
+        1.0 - least
+    }
+
+    /// Returns the step at which a parameter is added, counted from 1; `None` if it is not fitted.
+    pub fn step_of(&self, parameter: usize) -> Option<usize> {
+        self.stepwise
+            .iter()
+            .position(|step| step.added == Some(parameter))
+    }
+
+    /// Returns by how much the step that adds a parameter lowers the ratio.
+    pub fn gain_of(&self, parameter: usize) -> Option<f64> {
+        let step = self.step_of(parameter)?;
+        let before = self.stepwise.get(step.checked_sub(1)?)?;
+        Some(before.score.ratio - self.stepwise[step].score.ratio)
+    }
+}
+
+/// The equations without each condition.
+struct Scorer<'a> {
+    equations: &'a PassEquations,
+    others: Vec<SharedSystem>,
+}
+
+impl<'a> Scorer<'a> {
+    fn new(equations: &'a PassEquations) -> Self {
+        Self {
+            equations,
+            others: equations
+                .reduced
+                .iter()
+                .map(|reduced| equations.system.without(reduced))
+                .collect(),
+        }
+    }
+
+    /// Returns the score of each condition with these parameters, indices among the fitted ones
+    /// (steps 1 and 2).
+    fn score(&self, parameters: &[usize]) -> Option<Vec<f64>> {
+        let equations = self.equations;
+        let mut scores = Vec::with_capacity(self.others.len());
+        for (index, others) in self.others.iter().enumerate() {
+            let x = others.solve_for(parameters)?;
+            let condition = &equations.conditions[index];
+            let gains = condition.ln_gains(&equations.reduced[index], equations.scale, &x);
+            scores.push(condition.squared_error(&x, &gains));
+        }
+        Some(scores)
+    }
+}

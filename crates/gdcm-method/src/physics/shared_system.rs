@@ -1,0 +1,112 @@
+//! The normal equations for the parameters and delays, summed over conditions (step 7 of `physics`).
+//!
+//! ```text
+//! (sum_c S'_c + prior) x = sum_c g'_c,   prior: 1 for a parameter, 1 / sd_delay^2 for a delay
+//! ```
+//!
+//! Unknowns that are off, among the parameters or the delays, are held at zero.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::condition_equations::{ReducedEquations, UnknownCounts, symmetrise};
+
+/// The summed equations, without prior.
+#[derive(Clone, Debug)]
+pub(super) struct SharedSystem {
+    counts: UnknownCounts,
+    /// Prior standard deviation of a delay \[s\]; 0 for no delays.
+    delay_sd_s: f64,
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl SharedSystem {
+    /// Creates empty equations.
+    pub(super) fn new(counts: UnknownCounts, delay_sd_s: f64) -> Self {
+        Self {
+            counts,
+            delay_sd_s,
+            matrix: DMatrix::zeros(counts.shared(), counts.shared()),
+            right: DVector::zeros(counts.shared()),
+        }
+    }
+
+    pub(super) fn add(&mut self, condition: &ReducedEquations) {
+        self.matrix += &condition.matrix;
+        self.right += &condition.right;
+    }
+
+    /// Returns the equations without a condition that was added.
+    pub(super) fn without(&self, condition: &ReducedEquations) -> Self {
+        let mut others = self.clone();
+        others.matrix -= &condition.matrix;
+        others.right -= &condition.right;
+        others
+    }
+
+    /// Solves for all shared unknowns; `None` if the matrix has no Cholesky factors.
+    pub(super) fn solve(&self) -> Option<DVector<f64>> {
+        let parameters: Vec<usize> = (0..self.counts.parameters).collect();
+        self.solve_for(&parameters)
+    }
+
+    /// Solves with only these parameters free, the others at zero; `None` if the matrix has no
+    /// Cholesky factors.
+    pub(super) fn solve_for(&self, parameters: &[usize]) -> Option<DVector<f64>> {
+        let mut free = parameters.to_vec();
+        if self.delay_sd_s > 0.0 {
+            free.extend(self.counts.parameters..self.counts.shared());
+        }
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |row, column| {
+            let prior = if row == column {
+                self.prior(free[row])
+            } else {
+                0.0
+            };
+            self.matrix[(free[row], free[column])] + prior
+        });
+        let right = DVector::from_fn(free.len(), |row, _| self.right[free[row]]);
+        let mut solution = DVector::zeros(self.counts.shared());
+        if !free.is_empty() {
+            let values = Cholesky::new(matrix)?.solve(&right);
+            for (value, &unknown) in values.iter().zip(&free) {
+                solution[unknown] = *value;
+            }
+        }
+        if solution.iter().all(|value| value.is_finite()) {
+            Some(solution)
+        } else {
+            None
+        }
+    }
+
+    /// Returns `F`: the normal matrix of the parameters after elimination of the delays; `None` if
+    /// the delays are not determined.
+    pub(super) fn parameter_information(&self) -> Option<DMatrix<f64>> {
+        let size = self.counts.parameters;
+        let mut information = self.matrix.view((0, 0), (size, size)).into_owned();
+        if self.delay_sd_s > 0.0 {
+            let delays = self.counts.channels();
+            let mut own = self
+                .matrix
+                .view((size, size), (delays, delays))
+                .into_owned();
+            for delay in 0..delays {
+                own[(delay, delay)] += self.prior(size + delay);
+            }
+            let border = self.matrix.view((size, 0), (delays, size)).into_owned();
+            information -= border.tr_mul(&Cholesky::new(own)?.solve(&border));
+        }
+        symmetrise(&mut information);
+        Some(information)
+    }
+
+    /// Returns the prior precision of a shared unknown.
+    fn prior(&self, unknown: usize) -> f64 {
+        if unknown < self.counts.parameters {
+            1.0
+        } else {
+            self.delay_sd_s.powi(-2)
+        }
+    }
+}

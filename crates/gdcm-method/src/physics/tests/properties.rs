@@ -1,0 +1,228 @@
+//! Properties of the fit: units, order, and recovery of the truth from exact data.
+
+use std::sync::Arc;
+
+use nalgebra::{Complex, DMatrix};
+use proptest::prelude::*;
+
+use gdcm_model::dataset::{Pair, PairTable, StateSpace};
+use gdcm_model::response::FrequencyResponse;
+
+use super::{ToyCondition, diagnosis, toy, toy_conditions, toy_omega};
+use crate::physics::problem::PhysicsOptions;
+use crate::physics::{ParameterValue, PhysicsDiagnosis, PhysicsProblem};
+
+/// Asserts that two results agree: values, half-widths' parts, scores, misfit.
+fn assert_same(found: &PhysicsDiagnosis, expected: &PhysicsDiagnosis, parameters: &[usize]) {
+    assert!((found.fit.misfit - expected.fit.misfit).abs() < 1e-10);
+    let explained = found.explained().unwrap() - expected.explained().unwrap();
+    assert!(explained.abs() < 1e-9);
+    for (index, &parameter) in parameters.iter().enumerate() {
+        let found = &found.parameters[index];
+        let expected = &expected.parameters[parameter];
+        assert!(
+            (found.z - expected.z).abs() < 1e-9,
+            "{} instead of {}",
+            found.z,
+            expected.z
+        );
+        let [found_variance, expected_variance] =
+            [found, expected].map(|parameter| parameter.variance.unwrap().total());
+        assert!((found_variance - expected_variance).abs() < 1e-9);
+        let [found_alone, expected_alone] =
+            [found, expected].map(|parameter| parameter.ratio_alone.unwrap());
+        assert!((found_alone - expected_alone).abs() < 1e-9);
+        assert_eq!(found.step, expected.step);
+    }
+}
+
+/// The responses of a problem in other units; the factors are new units per old unit.
+fn scaled(response: &FrequencyResponse, outputs: [f64; 2], inputs: [f64; 2]) -> FrequencyResponse {
+    FrequencyResponse::new(response.curves().map(|pair, curve| {
+        let factor = outputs[pair.output] / inputs[pair.input];
+        curve.iter().map(|value| value * factor).collect::<Vec<_>>()
+    }))
+}
+
+fn scaled_model(model: &StateSpace, outputs: [f64; 2], inputs: [f64; 2]) -> StateSpace {
+    let mut b = model.b().clone();
+    let mut c = model.c().clone();
+    let mut d = model.d().clone();
+    for (index, factor) in inputs.into_iter().enumerate() {
+        b.column_mut(index).unscale_mut(factor);
+        d.column_mut(index).unscale_mut(factor);
+    }
+    for (index, factor) in outputs.into_iter().enumerate() {
+        c.row_mut(index).scale_mut(factor);
+        d.row_mut(index).scale_mut(factor);
+    }
+    StateSpace::new(model.a().clone(), b, c, d).unwrap()
+}
+
+/// The disturbed toy with its models and responses in other units of the channels.
+fn in_other_units(outputs: [f64; 2], inputs: [f64; 2]) -> PhysicsProblem {
+    let mut problem = toy("R_disturbed");
+    for (condition, toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
+        let mut toy = toy;
+        toy.base = scaled_model(&toy.base, outputs, inputs);
+        for (_, run) in toy.runs.iter_mut().flatten() {
+            *run = scaled_model(run, outputs, inputs);
+        }
+        let flight = scaled(&condition.flight, outputs, inputs);
+        *condition = toy.condition(condition.id.0, flight);
+    }
+    problem
+}
+
+/// The disturbed toy in other coordinates of the states.
+fn in_other_states(factors: [f64; 3]) -> PhysicsProblem {
+    let scales = DMatrix::from_diagonal(&nalgebra::DVector::from_row_slice(&factors));
+    let inverse = scales.clone().try_inverse().unwrap();
+    let moved = |model: &StateSpace| {
+        StateSpace::new(
+            &inverse * model.a() * &scales,
+            &inverse * model.b(),
+            model.c() * &scales,
+            model.d().clone(),
+        )
+        .unwrap()
+    };
+    let mut problem = toy("R_disturbed");
+    for (condition, mut toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
+        toy.base = moved(&toy.base);
+        for (_, run) in toy.runs.iter_mut().flatten() {
+            *run = moved(run);
+        }
+        *condition = toy.condition(condition.id.0, (*condition.flight).clone());
+    }
+    problem
+}
+
+#[test]
+fn the_order_of_conditions_does_not_matter() {
+    let expected = diagnosis(&toy("R_disturbed"));
+    let mut problem = toy("R_disturbed");
+    problem.conditions.rotate_left(1);
+    problem.conditions.swap(0, 1);
+    assert_same(&diagnosis(&problem), &expected, &[0, 1]);
+}
+
+#[test]
+fn the_order_of_parameters_does_not_matter() {
+    let expected = diagnosis(&toy("R_disturbed"));
+    let mut problem = toy("R_disturbed");
+    for (condition, mut toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
+        toy.runs.reverse();
+        *condition = toy.condition(condition.id.0, (*condition.flight).clone());
+    }
+    assert_same(&diagnosis(&problem), &expected, &[1, 0]);
+}
+
+#[test]
+fn the_order_of_two_runs_does_not_matter() {
+    let expected = diagnosis(&toy("R_disturbed"));
+    let mut problem = toy("R_disturbed");
+    for (condition, mut toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
+        toy.runs[0].reverse();
+        *condition = toy.condition(condition.id.0, (*condition.flight).clone());
+    }
+    assert_same(&diagnosis(&problem), &expected, &[0, 1]);
+}
+
+/// Flight of the toy with its parameters at `z`, ln gains and delays on its channels.
+fn exact_flight(
+    condition: &ToyCondition,
+    z: &[f64],
+    ln_gains: [f64; 4],
+    delays_s: [f64; 4],
+) -> FrequencyResponse {
+    let omega = toy_omega();
+    let truth = condition.truth(z, &omega);
+    FrequencyResponse::new(truth.curves().map(|pair, curve| {
+        let Pair { output, input } = pair;
+        let gain = (ln_gains[output] + ln_gains[2 + input]).exp();
+        let delay_s = delays_s[output] + delays_s[2 + input];
+        curve
+            .iter()
+            .zip(omega.iter())
+            .map(|(value, omega)| value * Complex::from_polar(gain, -omega * delay_s))
+            .collect::<Vec<_>>()
+    }))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn units_of_channels_do_not_change_the_result(
+        outputs in prop::array::uniform2(1e-3..1e3_f64),
+        inputs in prop::array::uniform2(1e-3..1e3_f64),
+    ) {
+        let expected = diagnosis(&toy("R_disturbed"));
+        assert_same(&diagnosis(&in_other_units(outputs, inputs)), &expected, &[0, 1]);
+    }
+
+    #[test]
+    fn units_of_states_do_not_change_the_result(factors in prop::array::uniform3(1e-4..1e4_f64)) {
+        let expected = diagnosis(&toy("R_disturbed"));
+        assert_same(&diagnosis(&in_other_states(factors)), &expected, &[0, 1]);
+    }
+
+    #[test]
+    fn exact_data_return_the_truth(
+        z in prop::array::uniform2(-1.5..1.5_f64),
+        delays_s in prop::array::uniform4(-0.02..0.02_f64),
+        ln_gains in prop::array::uniform3(prop::array::uniform4(-0.08..0.08_f64)),
+    ) {
+        let conditions = toy_conditions();
+        let problem = PhysicsProblem {
+            omega: toy_omega(),
+            on_axis: PairTable::from_fn(2, 2, |pair| pair.output == pair.input),
+            parameters: vec![ParameterValue::Fitted; 2],
+            conditions: conditions
+                .iter()
+                .zip(ln_gains)
+                .enumerate()
+                .map(|(index, (condition, ln_gains))| {
+                    let flight = exact_flight(condition, &z, ln_gains, delays_s);
+                    condition.condition(index as i64 + 1, flight)
+                })
+                .collect(),
+            options: PhysicsOptions::default(),
+        };
+        let found = diagnosis(&problem);
+        for (found, truth) in found.fit.z.iter().zip(z) {
+            prop_assert!((found - truth).abs() < 2e-3, "{found} instead of {truth}");
+        }
+    }
+}
+
+#[test]
+fn a_held_value_is_kept_and_the_rest_is_fitted() {
+    let mut problem = toy("R");
+    problem.parameters[0] = ParameterValue::Held(0.8);
+    let found = diagnosis(&problem);
+    assert_eq!(found.fit.z[0], 0.8);
+    assert_eq!(found.fit.fitted, [1]);
+    assert!((found.fit.z[1] + 0.6).abs() < 2e-3);
+    let held = &found.parameters[0];
+    assert_eq!(held.why_not_named.unwrap().code(), "held");
+    assert_eq!((held.half_width, held.variance), (None, None));
+    assert_eq!(found.conditions[0].z_without[0], 0.8);
+}
+
+#[test]
+fn a_family_of_responses_fits_like_one_of_matrices_for_small_changes() {
+    let omega = toy_omega();
+    let mut problem = toy("R");
+    for (condition, toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
+        let flight = toy.truth(&[0.05, -0.04], &omega);
+        *condition = toy.condition(condition.id.0, flight);
+        let family =
+            crate::physics::ModelFamily::from_responses(&toy.base(), &toy.steps(), &omega).unwrap();
+        condition.family = Arc::new(family);
+    }
+    let found = diagnosis(&problem);
+    assert!((found.fit.z[0] - 0.05).abs() < 5e-3, "{}", found.fit.z[0]);
+    assert!((found.fit.z[1] + 0.04).abs() < 5e-3, "{}", found.fit.z[1]);
+}

@@ -1,0 +1,293 @@
+//! Runs and their bases, units of a parameter, and the parameters offered (M18.1).
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::physics_parameter::{MovedModel, MovedParameters, ParameterChange};
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::{
+    Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, PhysicsParameter, StateSpace,
+};
+
+use super::{diagnosis, diagonal, toy, toy_conditions, toy_omega};
+use crate::physics::{ConditionIncrements, MatchedRuns, OfferedParameter, PhysicsProblem};
+
+fn offsets(airspeed_kt: f64) -> Option<BTreeMap<String, f64>> {
+    Some(BTreeMap::from([("airspeed_kt".to_owned(), airspeed_kt)]))
+}
+
+/// A model of the toy at a trim, with named states.
+fn model(name: &str, airspeed_kt: f64, system: &StateSpace) -> Model {
+    let perturbation = offsets(airspeed_kt);
+    let origin = if name == "nominal" {
+        Origin::Nominal { perturbation }
+    } else {
+        Origin::Perturbed { perturbation }
+    };
+    let mut model = Model::new(name, origin, Dynamics::StateSpace(system.clone()));
+    model.states = ["u", "p", "q"].map(String::from).into();
+    model
+}
+
+fn run(name: &str, parameter: &str, delta: f64, system: &StateSpace) -> MovedModel {
+    MovedModel {
+        model: model(name, 0.0, system),
+        moved: MovedParameters::Run(ParameterChange {
+            name: parameter.to_owned(),
+            delta,
+            unit: "%".to_owned(),
+        }),
+    }
+}
+
+/// Plausible standard deviations of the toy's parameters in their unit.
+const PLAUSIBLE: [f64; 2] = [5.0, 40.0];
+
+fn offered(plausible: [f64; 2]) -> Vec<OfferedParameter> {
+    let names = ["a", "b"].iter().zip(plausible);
+    names
+        .map(|(name, plausible_sd)| OfferedParameter {
+            name: (*name).to_owned(),
+            unit: "%".to_owned(),
+            plausible_sd,
+            description: String::new(),
+        })
+        .collect()
+}
+
+/// The runs of the toy, with steps of `scale` times those of the reference.
+fn toy_runs(condition: usize, scale: f64) -> Vec<MovedModel> {
+    let toy = &toy_conditions()[condition];
+    let mut runs = Vec::new();
+    for (parameter, name) in ["a", "b"].iter().enumerate() {
+        for (index, (z, system)) in toy.runs[parameter].iter().enumerate() {
+            let delta = z * PLAUSIBLE[parameter] * scale;
+            runs.push(run(&format!("{name} {index}"), name, delta, system));
+        }
+    }
+    runs
+}
+
+/// A condition with the toy's nominal model, a model at another trim, and these runs.
+fn condition(index: usize, runs: Vec<MovedModel>) -> Condition {
+    let base = &toy_conditions()[index].base;
+    let state = FlightState::at(ConditionId(index as i64 + 1), 60.0);
+    let physics = vec![model("slower", -5.0, base), model("nominal", 0.0, base)];
+    Condition::new(state, physics, Vec::new())
+        .unwrap()
+        .with_moved_models(runs)
+        .unwrap()
+}
+
+/// Returns the codes of the refused runs.
+fn refusals(runs: Vec<MovedModel>, is_used: &dyn Fn(&Model) -> bool) -> Vec<&'static str> {
+    let condition = condition(1, runs);
+    let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), is_used);
+    matched
+        .refused
+        .iter()
+        .map(|refused| refused.reason.code())
+        .collect()
+}
+
+fn toy_problem(scale: f64) -> PhysicsProblem {
+    let plausible = PLAUSIBLE.map(|sd| sd * scale);
+    let mut problem = toy("R_disturbed");
+    for (index, toy) in problem.conditions.iter_mut().enumerate() {
+        let condition = condition(index, toy_runs(index, scale));
+        let runs = MatchedRuns::new(&condition, &offered(plausible), &|_| true);
+        assert!(runs.refused.is_empty());
+        let nominal = condition.bundle(gdcm_model::dataset::BundleKind::Physics)[1].clone();
+        let family = runs.family(&nominal, &offered(plausible), &toy_omega());
+        toy.family = std::sync::Arc::new(family.unwrap());
+    }
+    problem
+}
+
+#[test]
+fn the_unit_of_a_parameter_does_not_change_the_result() {
+    let expected = diagnosis(&toy("R_disturbed"));
+    for scale in [1.0, 0.01, 1000.0] {
+        let found = diagnosis(&toy_problem(scale));
+        for (found, expected) in found.parameters.iter().zip(&expected.parameters) {
+            assert!((found.z - expected.z).abs() < 1e-9);
+            let [found, expected] =
+                [found, expected].map(|parameter| parameter.variance.unwrap().total());
+            assert!((found - expected).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn runs_that_fit_are_used_with_the_nominal_model_as_their_base() {
+    let condition = condition(1, toy_runs(1, 1.0));
+    let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), &|_| true);
+    assert!(matched.refused.is_empty());
+    assert_eq!(matched.runs.len(), 3);
+    for run in &matched.runs {
+        assert_eq!(run.base.name, "nominal");
+    }
+}
+
+#[test]
+fn a_run_that_does_not_fit_its_base_is_refused() {
+    let system = toy_conditions()[1].runs[0][0].1.clone();
+    let moved = |change: &dyn Fn(&mut MovedModel)| {
+        let mut moved = run("run", "a", 5.0, &system);
+        change(&mut moved);
+        refusals(vec![moved], &|_| true)
+    };
+    assert_eq!(moved(&|_| {}), [""; 0]);
+    assert_eq!(
+        moved(&|run| run.model.origin = Origin::Perturbed {
+            perturbation: offsets(7.0)
+        }),
+        ["run-without-base"]
+    );
+    assert_eq!(
+        moved(&|run| run.model.states = ["p", "u", "q"].map(String::from).into()),
+        ["run-states-differ"]
+    );
+    let timing = Timing {
+        sample_time_s: Some(0.01),
+        ..Timing::default()
+    };
+    assert_eq!(
+        moved(&|run| {
+            let timed = system.clone().timed(timing.clone()).unwrap();
+            run.model.dynamics = Dynamics::StateSpace(timed);
+        }),
+        ["run-timing-differs"]
+    );
+    let smaller = StateSpace::new(
+        DMatrix::zeros(2, 2),
+        DMatrix::zeros(2, 2),
+        DMatrix::zeros(2, 2),
+        DMatrix::zeros(2, 2),
+    )
+    .unwrap();
+    assert_eq!(
+        moved(&|run| run.model.dynamics = Dynamics::StateSpace(smaller.clone())),
+        ["run-shape-differs"]
+    );
+    assert_eq!(
+        moved(&|run| {
+            let base = toy_conditions()[1].base.clone();
+            run.model.dynamics = Dynamics::StateSpace(base);
+        }),
+        ["run-changes-nothing"]
+    );
+    assert_eq!(
+        moved(&|run| {
+            run.moved = MovedParameters::Run(ParameterChange {
+                name: "a".to_owned(),
+                delta: 5.0,
+                unit: "deg".to_owned(),
+            });
+        }),
+        ["run-unit-differs"]
+    );
+    let is_used = |model: &Model| model.name != "nominal";
+    assert_eq!(
+        refusals(vec![run("run", "a", 5.0, &system)], &is_used),
+        ["run-base-not-used"]
+    );
+}
+
+#[test]
+fn repeated_and_superfluous_runs_are_refused() {
+    let toy = toy_conditions();
+    let [plus, minus] = [0, 1].map(|index| &toy[1].runs[0][index].1);
+    let other = &toy[1].runs[1][0].1;
+    let first = run("first", "a", 5.0, plus);
+    let refused = |later: &[MovedModel]| {
+        let runs = [std::slice::from_ref(&first), later].concat();
+        refusals(runs, &|_| true)
+    };
+    assert_eq!(
+        refused(&[run("again", "a", 5.0, minus)]),
+        ["run-step-repeated"]
+    );
+    assert_eq!(
+        refused(&[run("same", "a", -5.0, plus)]),
+        ["run-repeats-another"]
+    );
+    assert_eq!(
+        refused(&[
+            run("second", "a", -5.0, minus),
+            run("third", "a", 2.0, other)
+        ]),
+        ["run-too-many"]
+    );
+}
+
+#[test]
+fn a_condition_without_the_runs_of_a_parameter_is_left_out() {
+    let omission = |runs: Vec<MovedModel>| {
+        let condition = condition(1, runs);
+        let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), &|_| true);
+        matched.increments(&offered(PLAUSIBLE)).unwrap_err().code()
+    };
+    assert_eq!(omission(Vec::new()), "condition-without-runs");
+    let mut runs = toy_runs(1, 1.0);
+    runs.truncate(2);
+    assert_eq!(omission(runs), "condition-lacks-run");
+}
+
+#[test]
+fn a_representative_with_other_states_gets_the_changes_of_the_responses() {
+    let condition = condition(1, toy_runs(1, 1.0));
+    let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), &|_| true);
+    let mut other = model("nominal", 0.0, &toy_conditions()[1].base);
+    other.states = ["x1", "x2", "x3"].map(String::from).into();
+    let family = matched.family(&other, &offered(PLAUSIBLE), &toy_omega());
+    assert_eq!(family.unwrap().points(), Some(toy_omega().len()));
+    let increments = matched.increments(&offered(PLAUSIBLE)).unwrap();
+    assert_eq!(
+        increments.apply(&other, &[0.1, 0.1]).unwrap_err().code(),
+        "increment-states-differ"
+    );
+}
+
+#[test]
+fn parameters_are_offered_with_the_largest_step_where_nothing_is_declared_plausible() {
+    let header = |parameters| DatasetHeader {
+        name: String::new(),
+        description: String::new(),
+        inputs: vec![Channel::new("x", "%"), Channel::new("y", "%")],
+        outputs: vec![Channel::new("p", "deg/s"), Channel::new("q", "deg/s")],
+        on_axis: diagonal(),
+        band: Band::new(0.5, 12.0).unwrap(),
+        parameters,
+    };
+    let conditions = vec![condition(1, toy_runs(1, 1.0))];
+    let declared = |name: &str, plausible_sd| PhysicsParameter {
+        name: name.to_owned(),
+        unit: "%".to_owned(),
+        plausible_sd,
+        description: String::new(),
+    };
+    let parameters = vec![declared("b", Some(7.0)), declared("idle", Some(1.0))];
+    let dataset = Dataset::new(header(parameters), conditions).unwrap();
+    let offered = OfferedParameter::list(&dataset);
+    let summary: Vec<(&str, f64)> = offered
+        .iter()
+        .map(|parameter| (parameter.name.as_str(), parameter.plausible_sd))
+        .collect();
+    assert_eq!(summary, [("b", 7.0), ("a", 5.0)]);
+}
+
+#[test]
+fn increments_need_steps_that_can_be_divided_by() {
+    let toy = &toy_conditions()[1];
+    for z in [0.0, f64::NAN, f64::INFINITY] {
+        let mut toy = toy.clone();
+        toy.runs[1][0].0 = z;
+        let error = ConditionIncrements::new(&toy.base(), &toy.steps()).unwrap_err();
+        assert_eq!(error.code(), "increment-runs");
+    }
+}

@@ -1,0 +1,215 @@
+//! Which parameters are named, and what they explain together (step 12 of `physics`, M18.4).
+//!
+//! A parameter is named where all hold: its interval excludes 0; its step in the stepwise list
+//! lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or more
+//! are in the fit.
+
+use super::intervals::LEAST_CONDITIONS;
+use super::problem::GREATEST_VALUE;
+
+/// Least decrease of the ratio by a parameter's step.
+pub const LEAST_GAIN: f64 = 0.01;
+/// Share explained below which no parameter is named.
+pub const LEAST_EXPLAINED: f64 = 0.1;
+/// Share explained from which the parameters may account for the misfit.
+pub const MOSTLY_EXPLAINED: f64 = 0.5;
+/// Misfit over spread up to which the rest counts as the spread of the identified models.
+pub const SPREAD_RATIO: f64 = 1.75;
+/// Learned share below which the data say nothing about a parameter.
+pub const LEAST_LEARNED: f64 = 0.5;
+
+/// What the parameters explain together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// None of them explains what gains and delays leave.
+    None,
+    /// They explain a part; something else is also at work.
+    InPart,
+    /// They account for what gains and delays leave, up to the spread of the identified models.
+    Accounts,
+}
+
+impl Verdict {
+    /// Decides from the share explained, the misfit and the spread of the identified models; `None`
+    /// for a spread that is unknown, with one identified model in each condition.
+    pub fn new(explained: f64, misfit: f64, spread: Option<f64>) -> Self {
+        let is_near_spread = match spread {
+            Some(spread) => misfit <= SPREAD_RATIO * spread,
+            None => false,
+        };
+        if explained.is_nan() || explained < LEAST_EXPLAINED {
+            Self::None
+        } else if explained >= MOSTLY_EXPLAINED && is_near_spread {
+            Self::Accounts
+        } else {
+            Self::InPart
+        }
+    }
+
+    /// Returns the stable code used in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::InPart => "in_part",
+            Self::Accounts => "accounts",
+        }
+    }
+}
+
+/// Why a parameter is not named.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WhyNotNamed {
+    /// Its value was set by hand.
+    Held,
+    /// Fewer than four conditions are in the fit.
+    FewConditions { found: usize },
+    /// All parameters together explain less than a tenth.
+    NothingExplained { explained: f64 },
+    /// It would have to change beyond what is plausible.
+    AtBound { z: f64 },
+    /// The data say nothing about it.
+    DataSilent { learned: f64 },
+    /// Its interval contains zero.
+    IntervalContainsZero,
+    /// Conditions left out are hardly predicted better with it.
+    LittleGain { gain: f64 },
+}
+
+impl WhyNotNamed {
+    /// Returns the stable code used in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::FewConditions { .. } => "few-conditions",
+            Self::NothingExplained { .. } => "nothing-explained",
+            Self::AtBound { .. } => "at-bound",
+            Self::DataSilent { .. } => "data-silent",
+            Self::IntervalContainsZero => "interval-contains-zero",
+            Self::LittleGain { .. } => "little-gain",
+        }
+    }
+}
+
+/// The facts that decide whether a fitted parameter is named.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NamingFacts {
+    /// Conditions in the fit.
+    pub(super) conditions: usize,
+    /// `None` without scores.
+    pub(super) explained: Option<f64>,
+    pub(super) z: f64,
+    /// `None` without intervals.
+    pub(super) half_width: Option<f64>,
+    pub(super) learned: f64,
+    /// Decrease of the ratio by its step; `None` without scores.
+    pub(super) gain: Option<f64>,
+}
+
+impl NamingFacts {
+    /// Returns why the parameter is not named; `None` for a named one.
+    pub(super) fn why_not_named(&self) -> Option<WhyNotNamed> {
+        let (Some(half_width), Some(explained), Some(gain)) =
+            (self.half_width, self.explained, self.gain)
+        else {
+            return Some(WhyNotNamed::FewConditions {
+                found: self.conditions,
+            });
+        };
+        if self.conditions < LEAST_CONDITIONS {
+            return Some(WhyNotNamed::FewConditions {
+                found: self.conditions,
+            });
+        }
+        if self.z.abs() >= GREATEST_VALUE {
+            return Some(WhyNotNamed::AtBound { z: self.z });
+        }
+        if self.z.abs() <= half_width {
+            return Some(if self.learned < LEAST_LEARNED {
+                WhyNotNamed::DataSilent {
+                    learned: self.learned,
+                }
+            } else {
+                WhyNotNamed::IntervalContainsZero
+            });
+        }
+        if explained < LEAST_EXPLAINED {
+            return Some(WhyNotNamed::NothingExplained { explained });
+        }
+        if gain < LEAST_GAIN {
+            return Some(WhyNotNamed::LittleGain { gain });
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAMED: NamingFacts = NamingFacts {
+        conditions: 4,
+        explained: Some(0.1),
+        z: -1.0,
+        half_width: Some(0.9),
+        learned: 0.9,
+        gain: Some(0.01),
+    };
+
+    #[test]
+    fn every_rule_can_keep_a_parameter_from_being_named() {
+        assert_eq!(NAMED.why_not_named(), None);
+        let code = |facts: NamingFacts| facts.why_not_named().map(WhyNotNamed::code);
+        for (facts, expected) in [
+            (
+                NamingFacts {
+                    conditions: 3,
+                    half_width: None,
+                    ..NAMED
+                },
+                "few-conditions",
+            ),
+            (
+                NamingFacts {
+                    explained: Some(0.09),
+                    ..NAMED
+                },
+                "nothing-explained",
+            ),
+            (NamingFacts { z: 3.0, ..NAMED }, "at-bound"),
+            (
+                NamingFacts {
+                    half_width: Some(1.0),
+                    ..NAMED
+                },
+                "interval-contains-zero",
+            ),
+            (
+                NamingFacts {
+                    half_width: Some(1.8),
+                    learned: 0.4,
+                    ..NAMED
+                },
+                "data-silent",
+            ),
+            (
+                NamingFacts {
+                    gain: Some(0.009),
+                    ..NAMED
+                },
+                "little-gain",
+            ),
+        ] {
+            assert_eq!(code(facts), Some(expected));
+        }
+    }
+
+    #[test]
+    fn a_misfit_near_the_spread_is_accounted_for() {
+        assert_eq!(Verdict::new(0.09, 0.1, Some(1.0)), Verdict::None);
+        assert_eq!(Verdict::new(0.5, 0.175, Some(0.1)), Verdict::Accounts);
+        assert_eq!(Verdict::new(0.5, 0.176, Some(0.1)), Verdict::InPart);
+        assert_eq!(Verdict::new(0.49, 0.1, Some(0.1)), Verdict::InPart);
+        assert_eq!(Verdict::new(0.9, 0.01, None), Verdict::InPart);
+        assert_eq!(Verdict::new(f64::NAN, 0.01, None), Verdict::None);
+    }
+}

@@ -1,0 +1,167 @@
+//! A condition linearised around the present pass, and its blocks (steps 4 and 5 of `physics`,
+//! M18.2).
+//!
+//! ```text
+//! l <- ln(R / H^), phase: principal value
+//! d_k <- (dH/dz_k) / H
+//! y <- l + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
+//! q^2 <- weight of the response at the frequency;  block += q^2 Re(conj(v) v')
+//! ```
+//!
+//! A response or derivative that is missing or not finite has no weight.
+
+use nalgebra::Complex;
+
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::{FrequencyResponse, wrap};
+
+use super::family::FamilyResponse;
+use super::pair_blocks::{Block, ConditionBlocks, THIRDS};
+use super::point::ChannelPoint;
+use super::problem::{PhysicsCondition, PhysicsProblem};
+use super::weights::FixedWeight;
+
+/// Data of a condition that do not change between passes.
+pub(super) struct WeightedCondition<'a> {
+    condition: &'a PhysicsCondition,
+    omega: &'a [f64],
+    weights: PairTable<Vec<FixedWeight>>,
+}
+
+impl<'a> WeightedCondition<'a> {
+    pub(super) fn new(problem: &'a PhysicsProblem, condition: &'a PhysicsCondition) -> Self {
+        Self {
+            condition,
+            omega: &problem.omega,
+            weights: PairTable::from_fn(problem.outputs(), problem.inputs(), |pair| {
+                FixedWeight::for_response(problem, condition, pair)
+            }),
+        }
+    }
+
+    /// Computes the blocks of the condition at the unknowns of the present pass.
+    pub(super) fn blocks(&self, pass: &PassPoint<'_>) -> ConditionBlocks {
+        let linearisation = Linearisation {
+            condition: self,
+            pass,
+            physics: self.condition.family.evaluate(pass.z, self.omega),
+        };
+        let points = self.omega.len();
+        let parameters = pass.fitted.len();
+        let mut squared_weights = self.weights.map(|_, _| vec![0.0; points]);
+        let mut responses = self
+            .weights
+            .map(|_, _| [(); THIRDS].map(|()| Block::zeros(parameters)));
+        let mut v = vec![Complex::new(0.0, 0.0); parameters + 3];
+        for (pair, blocks) in responses.iter_mut() {
+            for k in 0..points {
+                let weight = self.weights[pair][k];
+                if !weight.counts() {
+                    continue;
+                }
+                let Some(error) = linearisation.set(&mut v, pair, k) else {
+                    continue;
+                };
+                let squared_weight = weight.squared(error);
+                squared_weights[pair][k] = squared_weight;
+                blocks[THIRDS * k / points].add(&v, squared_weight, error);
+            }
+        }
+        ConditionBlocks {
+            responses,
+            other_squares: self.other_squares(&squared_weights),
+        }
+    }
+
+    /// Returns the weighted mean squares of the other identified models (M18.4).
+    fn other_squares(&self, squared_weights: &PairTable<Vec<f64>>) -> Vec<f64> {
+        let mut squares = Vec::new();
+        for other in &self.condition.others {
+            squares.extend(mean_square(&self.condition.flight, other, squared_weights));
+        }
+        squares
+    }
+}
+
+/// The unknowns of the present pass, as one condition sees them.
+pub(super) struct PassPoint<'a> {
+    /// Values of all parameters.
+    pub(super) z: &'a [f64],
+    /// Indices of the fitted parameters.
+    pub(super) fitted: &'a [usize],
+    pub(super) channels: ChannelPoint<'a>,
+}
+
+/// The residuals of a condition, linear around the present pass.
+struct Linearisation<'a> {
+    condition: &'a WeightedCondition<'a>,
+    pass: &'a PassPoint<'a>,
+    physics: FamilyResponse,
+}
+
+impl Linearisation<'_> {
+    /// Sets `v` for a response at frequency `k`, and returns `ln(R / H^)`; `None` if a value is
+    /// missing.
+    fn set(&self, v: &mut [Complex<f64>], pair: Pair, k: usize) -> Option<Complex<f64>> {
+        let WeightedCondition {
+            condition,
+            omega,
+            weights,
+        } = self.condition;
+        let channels = &self.pass.channels;
+        let place = (pair.output * weights.inputs() + pair.input) * omega.len() + k;
+        let response = self.physics.response[place];
+        let channel = Complex::new(channels.ln_gain(pair), -omega[k] * channels.delay_s(pair));
+        let error = log_ratio(condition.flight.curve(pair)[k], response) - channel;
+        // The principal value of the phase error.
+        let error = Complex::new(error.re, wrap(error.im));
+        let [derivatives @ .., delay, gain, target] = v else {
+            return None;
+        };
+        *delay = Complex::new(0.0, -omega[k]);
+        *gain = Complex::new(1.0, 0.0);
+        *target = error + channel;
+        for (derivative, &parameter) in derivatives.iter_mut().zip(self.pass.fitted) {
+            *derivative = self.physics.derivatives[parameter][place] / response;
+            *target += *derivative * self.pass.z[parameter];
+        }
+        if v.iter().all(|value| value.is_finite()) {
+            Some(error)
+        } else {
+            None
+        }
+    }
+}
+
+/// Returns `ln(a / b)` with the principal value of the phase.
+fn log_ratio(a: Complex<f64>, b: Complex<f64>) -> Complex<f64> {
+    Complex::new(
+        0.5 * (a.norm_sqr() / b.norm_sqr()).ln(),
+        (a * b.conj()).arg(),
+    )
+}
+
+/// Returns `sum q^2 |ln(R_b / R)|^2 / (2 sum q^2)` over the frequencies at which both models have a
+/// response; `None` if there are none.
+fn mean_square(
+    flight: &FrequencyResponse,
+    other: &FrequencyResponse,
+    squared_weights: &PairTable<Vec<f64>>,
+) -> Option<f64> {
+    let mut square = 0.0;
+    let mut weight = 0.0;
+    for (pair, squared_weights) in squared_weights.iter() {
+        for (k, squared_weight) in squared_weights.iter().enumerate() {
+            let difference = log_ratio(other.curve(pair)[k], flight.curve(pair)[k]);
+            if *squared_weight > 0.0 && difference.is_finite() {
+                square += squared_weight * difference.norm_sqr();
+                weight += squared_weight;
+            }
+        }
+    }
+    if weight > 0.0 {
+        Some(square / (2.0 * weight))
+    } else {
+        None
+    }
+}

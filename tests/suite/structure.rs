@@ -124,6 +124,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("lead_price", &[]),
             ("leads", &["remark", "lead_price"]),
             ("couplings", &["coupling_remark", "table"]),
+            ("physics", &["couplings", "table"]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
             ("flight_plan", &["table"]),

@@ -9,7 +9,7 @@
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
-//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
+//! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
 //! [`decision_differences`] and [`dataset_differences`]; [`flight_plan`] for further flights.
 //! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
 //! [`time_histories`]. Explained results: [`derivation`].
@@ -39,6 +39,7 @@ pub mod flight_plan;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
+pub mod physics;
 pub mod remark;
 pub mod requirements;
 pub mod requirements_overview;

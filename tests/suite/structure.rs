@@ -125,6 +125,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("leads", &["remark", "lead_price"]),
             ("couplings", &["coupling_remark", "table"]),
             ("physics", &["couplings", "table"]),
+            ("suggested_runs", &[]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
             ("flight_plan", &["table"]),

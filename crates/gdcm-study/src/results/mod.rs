@@ -38,6 +38,7 @@ pub mod requirements;
 pub mod rerun_check;
 pub mod schedule_losses;
 pub mod scheduled_conditions;
+pub mod suggested_runs;
 pub mod test_input_responses;
 pub mod time_histories;
 pub mod uncertainty;

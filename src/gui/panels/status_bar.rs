@@ -187,6 +187,9 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
             steps.percent()
         );
     }
+    if let Some(steps) = background.physics {
+        return format!("physics parameters, {} % …", steps.percent());
+    }
     if background.views > 0 {
         "preparing the views …".to_owned()
     } else {

@@ -154,7 +154,9 @@ impl ExportContents {
     ) -> Result<Self, ScheduleError> {
         let others;
         let schedule = match (correction, conditions) {
-            (AssessedCorrection::Own, _) => return Ok(Self::of_own(analysis)),
+            (AssessedCorrection::Own, _) => {
+                return Ok(Self::of_own(analysis).for_conditions(analysis, conditions));
+            }
             (AssessedCorrection::ScheduleOfOthers, [condition]) => {
                 others = analysis.schedule_without(*condition)?;
                 &others
@@ -179,7 +181,20 @@ impl ExportContents {
             contents.leads = PartSource::None;
             contents.left_out.push(LeftOutPart::Leads);
         }
-        Ok(contents)
+        Ok(contents.for_conditions(analysis, conditions))
+    }
+
+    /// Returns the contents without the physics parameters if they move no model of these
+    /// conditions.
+    fn for_conditions(mut self, analysis: &Analysis, conditions: &[ConditionId]) -> Self {
+        let is_moved = match analysis.applied_physics() {
+            Some(applied) => conditions.iter().any(|id| applied.moved(*id).is_some()),
+            None => false,
+        };
+        if !is_moved {
+            self.physics.clear();
+        }
+        self
     }
 
     fn of_none(analysis: &Analysis) -> Self {

@@ -16,7 +16,9 @@ use gdcm_study::results::couplings_assessment::AxisCost;
 use gdcm_study::results::moved_models::MovedModels;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::rerun_check::RerunVerdict;
+use gdcm_study::results::suggested_runs::{RunPattern, suggested_runs};
 use gdcm_study::{PhaseCorrection, PhysicsCorrection};
+use gdcm_words::suggested_runs::{run_template, suggestion_text};
 
 use super::*;
 
@@ -597,4 +599,53 @@ fn couplings_are_fitted_to_the_moved_models() {
         analysis.fitted_couplings().unwrap().clone()
     };
     assert_ne!(with(PhysicsCorrection::Off), with(PhysicsCorrection::All));
+}
+
+#[test]
+fn the_pattern_of_couplings_and_leads_suggests_runs() {
+    let path = crate::program_folder().join("tests/data/reference/example-dataset.json.gz");
+    let dataset = load_dataset(&path).unwrap().dataset;
+    let mut study = Study::new(Arc::clone(&dataset));
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .unwrap();
+    let mut engine = Engine::with_executor(Box::new(crate::EveryCore));
+    let analysis = analyze(&mut engine, &study);
+    let couplings = engine
+        .assess_couplings(
+            &study,
+            gdcm_study::CouplingCorrection::MixingAndFeedback,
+            &Unobserved,
+        )
+        .unwrap()
+        .unwrap()
+        .unwrap();
+    let found = suggested_runs(&analysis, Some(&couplings));
+    let codes: Vec<&str> = found
+        .iter()
+        .map(|suggestion| suggestion.pattern.code())
+        .collect();
+    assert_eq!(codes[0], "crossed-cyclic", "{codes:?}");
+    assert_eq!(found[0].parameters[0].name, "swashplate_phase");
+    let RunPattern::CrossedCyclic { shares, .. } = found[0].pattern else {
+        panic!("the first pattern")
+    };
+    assert!(shares[0] * shares[1] < 0.0);
+    assert!(codes.contains(&"pitch-gain-over-airspeed"), "{codes:?}");
+    // Without couplings, no pattern of theirs is seen.
+    for suggestion in suggested_runs(&analysis, None) {
+        assert!(!suggestion.pattern.code().starts_with("crossed"));
+    }
+    let template: Value = json(&run_template(&found));
+    let models = list(&template["conditions"][0]["physics_models"]);
+    let parameters = list(&template["parameters"]);
+    assert_eq!(models.len(), parameters.len());
+    for (model, parameter) in models.iter().zip(parameters) {
+        assert_eq!(model["parameter"]["name"], parameter["name"]);
+        assert_eq!(model["parameter"]["delta"], parameter["plausible_sd"]);
+    }
+    for suggestion in &found {
+        let words = suggestion_text(suggestion, &dataset);
+        assert!(!words.contains("cause"), "{words}");
+    }
 }

@@ -164,7 +164,7 @@ const MARKS: &[(&str, &str)] = &[
     ),
     (
         "cells",
-        "J of each held response: magnitude on the left, phase on the right; pale: matched",
+        "J of each held response: magnitude on the left, phase on the right; faint: matched",
     ),
     (
         "number struck out",

@@ -369,3 +369,37 @@ fn flight_state_words(state: &FlightState) -> String {
     }
     words
 }
+
+#[cfg(test)]
+mod tests {
+    use gdcm_io::embedded_example;
+    use gdcm_study::decisions::setting;
+    use gdcm_study::{CouplingCorrection, Study};
+
+    use super::*;
+
+    #[test]
+    fn the_frame_of_a_cell_does_not_reach_the_cells_beside_it() {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        let with_off_column = setting::COUPLINGS.to(CouplingCorrection::Mixing);
+        for edit in [None, Some(with_off_column)] {
+            if let Some(edit) = edit {
+                study.apply(edit).unwrap();
+            }
+            let state = State::new(study.clone(), String::new(), Vec::new());
+            for width in [230.0, 248.0, 300.0] {
+                let rows = ConditionRows::list(&state, width);
+                let row = Rect::from_min_size(pos2(10.0, 0.0), vec2(width, 20.0));
+                let last = rows.columns().len() - 1;
+                for place in 0..last {
+                    let reach = |cell: Rect| rows.focus_frame(cell).expand(FOCUS_WIDTH);
+                    let cell = rows.cell(row, place);
+                    let next = rows.cell(row, place + 1);
+                    assert!(reach(cell).right() <= next.left() + 0.01, "{width}");
+                    assert!(reach(next).left() >= cell.right() - 0.01, "{width}");
+                }
+                assert!(rows.cell(row, last).right() <= row.right() - MARK_ROOM + 1.0);
+            }
+        }
+    }
+}

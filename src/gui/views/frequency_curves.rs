@@ -62,6 +62,8 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
 /// Returns all curves for a response in the displayed condition; empty until its responses are
 /// available.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let shown = state.curves().map(Arc::clone);
+    state.display.frequency.keep_shapes_of(shown.as_ref());
     let mut cache = state
         .display
         .frequency

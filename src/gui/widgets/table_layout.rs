@@ -233,9 +233,10 @@ mod tests {
         apply(&ctx);
         let order: Vec<usize> = (0..table.rows.len()).collect();
         for _ in 0..2 {
-            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let output = ctx.run_ui(egui::RawInput::default(), |ui| {
                 check(ui, &TableLayout::new(ui, table, &order, room));
             });
+            output.drop_without_applying_deltas();
         }
     }
 

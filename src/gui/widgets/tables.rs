@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{
     Align, Color32, Event, EventFilter, Id, Key, Rangef, Rect, Response, Role, ScrollArea, Sense,
-    Shape, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2, vec2,
+    Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_words::Table;
@@ -350,7 +350,7 @@ impl DrawnTable<'_> {
         };
         let response = ui.interact(place, self.cell_id(at), sense);
         let text = shown_text(cell);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
         response.context_menu(|ui| self.menu_ui(ui, Some(text), commands));
         if !ui.is_rect_visible(place) {
             return response;
@@ -460,4 +460,156 @@ fn focus_frame(ui: &Ui, place: Rect, palette: &Palette) {
     let stroke = Stroke::new(1.0, palette.accent);
     ui.painter()
         .rect_stroke(place.shrink(1.0), 2.0, stroke, StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+
+    use super::*;
+    use crate::gui::widgets::palette::apply;
+
+    #[derive(Default)]
+    struct Shown {
+        sorting: Sorting,
+        clicks: Vec<TableClick>,
+        requests: Vec<TableRequest>,
+    }
+
+    fn table() -> Table {
+        let mut table = Table::new("gains", ["channel", "k [-]", "τ [ms]"]);
+        table.row(["LON", "1.132", "-"]);
+        table.row(["LAT", "0.98", "12"]);
+        table.row(["PED", "", "\u{2212}3.5"]);
+        table
+    }
+
+    fn harness() -> Harness<'static, Shown> {
+        let mut harness = Harness::builder().with_context_setup(apply).build_ui_state(
+            |ui, shown: &mut Shown| {
+                let click = table_ui(
+                    ui,
+                    &table(),
+                    &mut shown.sorting,
+                    &TableLook::PLAIN,
+                    &Palette::dark(),
+                    &mut shown.requests,
+                );
+                shown.clicks.extend(click);
+            },
+            Shown::default(),
+        );
+        harness.run_steps(2);
+        harness
+    }
+
+    fn center(harness: &Harness<'_, Shown>, label: &str) -> egui::Pos2 {
+        harness.get_by_label(label).rect().center()
+    }
+
+    #[test]
+    fn cells_are_centred_in_rows_of_one_height_under_their_headings() {
+        let harness = harness();
+        let heading = harness.get_by_label("Sort gains by k [-]").rect();
+        let mut rows = Vec::new();
+        for label in ["LON", "LAT", "PED"] {
+            rows.push(harness.get_by_label(label).rect());
+        }
+        for row in &rows {
+            assert_eq!(row.height(), ROW_HEIGHT);
+        }
+        assert_eq!(rows[1].top(), rows[0].bottom());
+        for label in ["1.132", "0.98"] {
+            let cell = harness.get_by_label(label).rect();
+            assert_eq!(cell.x_range(), heading.x_range());
+        }
+        let shapes = harness.output().shapes.iter();
+        let mut texts = 0;
+        for drawn in shapes {
+            if let Shape::Text(text) = &drawn.shape
+                && text.galley.text() == "LAT"
+            {
+                let middle = text.pos.y + 0.5 * text.galley.size().y;
+                assert!((middle - rows[1].center().y).abs() < 1.0);
+                texts += 1;
+            }
+        }
+        assert_eq!(texts, 1);
+        assert_eq!(harness.query_all_by_label("–").count(), 2, "one sign");
+    }
+
+    #[test]
+    fn a_heading_sorts_and_missing_values_stay_last() {
+        let mut harness = harness();
+        harness.get_by_label("Sort gains by k [-]").click();
+        harness.run_steps(2);
+        assert!(center(&harness, "LAT").y < center(&harness, "LON").y);
+        harness.get_by_label("Sort gains by k [-]").click();
+        harness.run_steps(2);
+        assert!(center(&harness, "LON").y < center(&harness, "LAT").y);
+        assert!(center(&harness, "LAT").y < center(&harness, "PED").y);
+    }
+
+    #[test]
+    fn the_keyboard_moves_through_the_cells_and_copies_the_table() {
+        let mut harness = harness();
+        // Three headings, then one cell: the others are reached with the arrow keys.
+        for _ in 0..4 {
+            harness.key_press(Key::Tab);
+            harness.run_steps(1);
+        }
+        assert!(harness.get_by_label("LON").is_focused());
+        for key in [Key::ArrowDown, Key::ArrowRight] {
+            harness.key_press(key);
+            harness.run_steps(2);
+        }
+        assert!(harness.get_by_label("0.98").is_focused());
+        harness.event(Event::Copy);
+        harness.run_steps(1);
+        let copied = TableRequest::Copy(table().text());
+        assert_eq!(harness.state().requests, [copied]);
+        harness.key_press(Key::Enter);
+        harness.run_steps(1);
+        let click = TableClick { row: 1, column: 1 };
+        assert_eq!(harness.state().clicks, [click]);
+        harness.key_press(Key::Tab);
+        harness.run_steps(1);
+        assert!(!harness.get_by_label("0.98").is_focused(), "one stop only");
+    }
+
+    #[test]
+    fn the_headings_stay_in_sight_while_the_rows_scroll() {
+        let mut long = Table::new("long", ["row"]);
+        for row in 0..100 {
+            long.row([format!("row {row}")]);
+        }
+        let mut harness = Harness::builder()
+            .with_context_setup(apply)
+            .build_ui(move |ui| {
+                ui.set_max_height(200.0);
+                let mut sorting = Sorting::default();
+                let mut requests: Vec<TableRequest> = Vec::new();
+                let palette = Palette::dark();
+                let look = TableLook::PLAIN;
+                table_ui(ui, &long, &mut sorting, &look, &palette, &mut requests);
+            });
+        harness.run_steps(2);
+        let before = harness.get_by_label("Sort long by row").rect();
+        harness.hover_at(harness.get_by_label("row 2").rect().center());
+        harness.event(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: vec2(0.0, -300.0),
+            phase: egui::TouchPhase::Move,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.run_steps(20);
+        let after = harness.get_by_label("Sort long by row").rect();
+        let first = harness.get_by_label("row 0").rect();
+        assert!(
+            (after.top() - before.top()).abs() <= 4.0,
+            "{before} {after}"
+        );
+        assert!(first.top() < before.top() - 100.0, "the rows have moved");
+    }
 }

@@ -85,7 +85,13 @@ pub struct Dot {
     pub label: String,
     /// Object that the dot represents; `None` if the dot does not react to the pointer.
     pub id: Option<MarkId>,
+    /// Whether the screen draws a ring around the dot, of radius [`RING_PT`]. The label lies outside
+    /// the ring.
+    pub is_ringed: bool,
 }
+
+/// Radius of the ring around a dot in focus \[pt\].
+pub const RING_PT: f64 = 4.5;
 
 /// Symbol with which a dot is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -322,6 +328,7 @@ impl Dots {
             y,
             label: label.into(),
             id: None,
+            is_ringed: false,
         });
         self
     }

@@ -384,7 +384,7 @@ mod tests {
         let with_off_column = setting::COUPLINGS.to(CouplingCorrection::Mixing);
         for edit in [None, Some(with_off_column)] {
             if let Some(edit) = edit {
-                study.apply(edit).unwrap();
+                study.apply(&edit).unwrap();
             }
             let state = State::new(study.clone(), String::new(), Vec::new());
             for width in [230.0, 248.0, 300.0] {

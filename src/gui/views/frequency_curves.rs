@@ -1,5 +1,7 @@
 //! Curves over frequency in the displayed condition, with their options and their source.
 
+use std::sync::Arc;
+
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;

@@ -226,7 +226,7 @@ fn text_width(ui: &Ui, text: &str, font: &FontId) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gui::widgets::palette::{Palette, apply};
+    use crate::gui::widgets::palette::apply;
 
     fn with_layout(table: &Table, room: f32, check: impl Fn(&Ui, &TableLayout)) {
         let ctx = egui::Context::default();

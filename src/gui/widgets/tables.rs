@@ -465,7 +465,7 @@ fn focus_frame(ui: &Ui, place: Rect, palette: &Palette) {
 #[cfg(test)]
 mod tests {
     use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
+    use egui_kittest::kittest::Queryable;
 
     use super::*;
     use crate::gui::widgets::palette::apply;
@@ -602,6 +602,7 @@ mod tests {
             delta: vec2(0.0, -300.0),
             phase: egui::TouchPhase::Move,
             modifiers: egui::Modifiers::NONE,
+            source: egui::MouseWheelSource::Wheel,
         });
         harness.run_steps(20);
         let after = harness.get_by_label("Sort long by row").rect();

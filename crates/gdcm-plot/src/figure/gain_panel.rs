@@ -303,7 +303,6 @@ impl GainPanel<'_> {
             y: self.quantity.value_in(&placed.result.correction),
             label,
             id: Some(MarkId::Condition(id)),
-            is_ringed: false,
         }
     }
 

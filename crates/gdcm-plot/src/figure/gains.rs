@@ -173,9 +173,9 @@ pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) 
             let Mark::Dots(group) = mark else {
                 continue;
             };
+            group.ringed = Some(selected.clone());
             for dot in &mut group.dots {
-                dot.is_ringed = dot.id.as_ref() == Some(selected);
-                if !dot.is_ringed && !ends.contains(&[dot.x, dot.y]) {
+                if dot.id.as_ref() != Some(selected) && !ends.contains(&[dot.x, dot.y]) {
                     dot.label.clear();
                 }
             }

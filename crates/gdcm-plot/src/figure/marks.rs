@@ -67,6 +67,9 @@ pub struct Dots {
     /// Diameter relative to a dot of usual size.
     pub size: f64,
     pub dots: Vec<Dot>,
+    /// Object around whose dots the screen draws rings of radius [`RING_PT`]. Labels lie outside
+    /// the rings.
+    pub ringed: Option<MarkId>,
 }
 
 /// Identity of the object that a dot represents, for the pointer in the window.
@@ -85,9 +88,6 @@ pub struct Dot {
     pub label: String,
     /// Object that the dot represents; `None` if the dot does not react to the pointer.
     pub id: Option<MarkId>,
-    /// Whether the screen draws a ring around the dot, of radius [`RING_PT`]. The label lies outside
-    /// the ring.
-    pub is_ringed: bool,
 }
 
 /// Radius of the ring around a dot in focus \[pt\].
@@ -305,6 +305,7 @@ impl Dots {
             filled: true,
             size: 1.0,
             dots: Vec::new(),
+            ringed: None,
         }
     }
 
@@ -328,7 +329,6 @@ impl Dots {
             y,
             label: label.into(),
             id: None,
-            is_ringed: false,
         });
         self
     }

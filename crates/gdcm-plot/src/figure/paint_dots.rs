@@ -76,7 +76,7 @@ fn add_dots<'m>(
             && placed.shows(center)
         {
             shapes.extend(style.shapes(center));
-            let radius = if dot.is_ringed {
+            let radius = if dot.id.is_some() && dot.id == group.ringed {
                 RING_PT + RING_MARGIN
             } else {
                 DOT
@@ -167,9 +167,11 @@ fn upright_bar([from, to]: [[f64; 2]; 2], width: f64) -> Area {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_model::dataset::ConditionId;
+
     use super::super::axis::Axis;
     use super::super::figure::Panel;
-    use super::super::marks::DotShape;
+    use super::super::marks::{DotShape, MarkId};
     use super::super::range::Range;
     use super::*;
 
@@ -178,11 +180,13 @@ mod tests {
         const LETTERS_PT: f64 = 6.0;
         let mut panel = Panel::new(Axis::linear("x"), Axis::linear("y"));
         let mut dots = Dots::new("dots", DotShape::Circle, Color::DIM).dot(0.5, 0.5, "10");
-        dots.dots[0].is_ringed = true;
+        let id = MarkId::Condition(ConditionId(10));
+        dots.dots[0].id = Some(id.clone());
+        dots.ringed = Some(id);
         panel.marks.push(Mark::Dots(dots));
         let unit = Range { min: 0.0, max: 1.0 };
         let painted = panel.shapes(Area::new(0.0, 0.0, 100.0, 60.0), [unit, unit], LETTERS_PT);
-        let center = [50.0, 30.0];
+        let center: [f64; 2] = [50.0, 30.0];
         let mut labels = 0;
         for shape in painted.shapes {
             let Shape::Text(text) = shape else {

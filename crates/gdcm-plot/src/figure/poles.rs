@@ -142,7 +142,6 @@ fn model_dot(model: &SourceModel, value: Complex<f64>) -> Dot {
         y: value.im,
         label: String::new(),
         id: Some(MarkId::Model(model.id.clone())),
-        is_ringed: false,
     }
 }
 

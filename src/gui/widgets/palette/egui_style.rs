@@ -240,7 +240,7 @@ mod tests {
         for _ in 0..2 {
             let mut opacity = 0.0;
             let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-                egui::Area::new(egui::Id::new("menu")).show(ui.ctx(), |ui| {
+                egui::Area::new(egui::Id::unique("menu")).show(ui.ctx(), |ui| {
                     opacity = ui.opacity();
                     ui.label("entry");
                 });

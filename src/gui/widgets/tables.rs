@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{
     Align, Color32, Event, EventFilter, Id, Key, Rangef, Rect, Response, Role, ScrollArea, Sense,
-    Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_words::Table;
@@ -222,9 +222,6 @@ impl DrawnTable<'_> {
                 self.palette.dim_text
             };
             self.paint_heading(ui, column, heading, direction, color);
-            if response.has_focus() {
-                focus_frame(ui, place, self.palette);
-            }
             let response = response.on_hover_text("Sort; right-click: copy or save the table");
             if response.clicked() {
                 *sorting = sorting.clicked(column);
@@ -332,7 +329,7 @@ impl DrawnTable<'_> {
         ui.painter().rect_filled(rect, 0.0, fill);
     }
 
-    /// Draws a cell. The tab key stops at one cell of a table, which is outlined.
+    /// Draws a cell. The tab key stops at one cell of a table only.
     fn cell_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,
@@ -364,9 +361,6 @@ impl DrawnTable<'_> {
         let left = self.rect.left() + self.layout.text_left(ui, cell, at.column);
         let top = place.center().y - 0.5 * galley.size().y;
         ui.painter().galley(pos2(left, top), galley, color);
-        if response.has_focus() {
-            focus_frame(ui, place, self.palette);
-        }
         response
     }
 
@@ -453,13 +447,6 @@ impl DrawnTable<'_> {
         }
         entries_ui(ui, requests, commands);
     }
-}
-
-/// Outlines the control that has the focus.
-fn focus_frame(ui: &Ui, place: Rect, palette: &Palette) {
-    let stroke = Stroke::new(1.0, palette.accent);
-    ui.painter()
-        .rect_stroke(place.shrink(1.0), 2.0, stroke, StrokeKind::Inside);
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::{number, s_to_ms, signed};
 use gdcm_study::decisions::requirement_settings::OverviewLimits;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
@@ -178,7 +179,7 @@ impl RequirementsOverview {
                     outside.push(judged.is_outside);
                 }
                 None => {
-                    cells.push("-".to_owned());
+                    cells.push(NO_VALUE.to_owned());
                     outside.push(false);
                 }
             }
@@ -298,7 +299,7 @@ mod tests {
         };
         let strict = RequirementsOverview::new(&found, dataset, None, &strict);
         let known = (heads..strict.table.columns.len())
-            .find(|column| strict.table.rows[row][*column] != "-")
+            .find(|column| strict.table.rows[row][*column] != NO_VALUE)
             .unwrap();
         assert!(strict.is_outside(row, known) && !strict.is_outside(row, 0));
     }

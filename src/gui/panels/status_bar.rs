@@ -107,11 +107,17 @@ impl Status {
             return Self::colored(text, palette.warning);
         }
         if !state.results.is_stale(now) {
-            // The text is not green: green would suggest that gains and phases are matched.
+            // The text is not green: green would suggest that gains and phases are matched. The dot
+            // is green only if no other work is under way.
+            let dot = if words_beside(state, now).is_some() {
+                palette.accent
+            } else {
+                palette.good
+            };
             return Self {
                 text: "up to date".to_owned(),
                 color: palette.dim_text,
-                dot: palette.good,
+                dot,
             };
         }
         let text = match state.results.background.analysis {
@@ -225,7 +231,23 @@ fn data_remark(state: &State) -> String {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_io::embedded_example;
+    use gdcm_study::Study;
+
     use super::*;
+
+    #[test]
+    fn the_dot_is_green_only_while_nothing_is_computed() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let mut state = State::new(study, "study".to_owned(), Vec::new());
+        let palette = Palette::dark();
+        assert_eq!(Status::new(&state, 9.0, &palette).dot, palette.good);
+        state.results.background.views = 1;
+        state.results.background_since = Some(0.0);
+        let status = Status::new(&state, 9.0, &palette);
+        assert_eq!(status.dot, palette.accent);
+        assert_eq!(status.color, palette.dim_text);
+    }
 
     #[test]
     fn the_progress_of_a_couplings_assessment_is_reported() {

@@ -18,6 +18,7 @@ mod layout;
 mod lead;
 mod lists;
 mod logs;
+mod memory;
 mod pictures;
 mod plots;
 mod pointing;

@@ -149,6 +149,15 @@ pub struct ResponseCache {
 }
 
 impl ResponseCache {
+    /// Returns whether the shapes were computed from these curves. A cache keeps its curves in
+    /// memory.
+    pub fn is_from(&self, curves: &Arc<ConditionCurves>) -> bool {
+        match &self.source {
+            Some(source) => Arc::ptr_eq(&source.curves, curves),
+            None => false,
+        }
+    }
+
     /// Computes the shapes of a response. Phases are aligned with the reference up to the limit of
     /// the displayed band. The curves of identified models end there, because they carry no
     /// information beyond.

@@ -79,7 +79,9 @@ use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
 use poles::{poles_header_ui, poles_view_ui};
-use records::{records_header_ui, records_side_ui, records_view_ui, simulation_jobs};
+use records::{
+    records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
+};
 use requirements::{
     NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
 };
@@ -220,6 +222,7 @@ const RECORDS: ViewContent = ViewContent {
     title: ViewTitle::Condition,
     tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
     tools_width: 380.0,
+    pages: records_pages,
     side: Some(records_side_ui),
     needs: |state| {
         simulation_jobs(state)

@@ -44,15 +44,14 @@ mod time_charts;
 mod typed_lists;
 mod value_range;
 
-use egui::scroll_area::ScrollBarVisibility;
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 use crate::gui::state::window_state::State;
+use crate::gui::views::PageEntry;
 use crate::gui::views::frequency_curves::plain_curves;
-use crate::gui::widgets::choices::page_tab_ui;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use columns::columns_ui;
@@ -115,37 +114,27 @@ pub fn records_view_ui(
         left: 6,
         ..Margin::ZERO
     };
-    Frame::new().inner_margin(margin).show(ui, |ui| {
-        page_tabs_ui(ui, state.records.page, commands);
-        match state.records.page {
+    Frame::new()
+        .inner_margin(margin)
+        .show(ui, |ui| match state.records.page {
             RecordsPage::Fit => fit_ui(ui, page, &curves, commands),
             RecordsPage::Inputs => inputs_ui(ui, page),
             RecordsPage::Order => order_ui(ui, page),
             RecordsPage::Columns => columns_ui(ui, page, commands),
-        }
-    });
+        });
     state.records.path = path;
     state.records.advanced_field = focused;
 }
 
-/// Shows a tab for each page, in a line that scrolls if it is too long.
-fn page_tabs_ui(ui: &mut Ui, displayed: RecordsPage, commands: &mut Vec<Command>) {
-    let tabs = ScrollArea::horizontal()
-        .id_salt("pages")
-        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
-    tabs.show(ui, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 2.0;
-            for page in RecordsPage::ALL {
-                let is_displayed = page == displayed;
-                let (tab, is_clicked) = page_tab_ui(ui, is_displayed, page.words());
-                if tab.gained_focus() {
-                    tab.scroll_to_me(None);
-                }
-                if is_clicked {
-                    commands.push(RecordsCommand::Show(page).into());
-                }
-            }
+/// Returns the pages, in display order.
+pub fn records_pages(state: &State) -> Vec<PageEntry> {
+    let mut pages = Vec::with_capacity(RecordsPage::ALL.len());
+    for page in RecordsPage::ALL {
+        pages.push(PageEntry {
+            words: page.words(),
+            is_shown: page == state.records.page,
+            command: RecordsCommand::Show(page).into(),
         });
-    });
+    }
+    pages
 }

@@ -29,7 +29,8 @@ const GAP: f32 = 3.0;
 /// Thickness of the bar of the coherence \[pt\].
 const BAR: f32 = 2.5;
 
-/// Values of an identified response, as medians over the band.
+/// Values of an identified response: standard deviations in the middle of the band, which decide
+/// whether it is identified, and the median partial coherence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct PairFigures {
     sd_db: Option<f64>,
@@ -45,11 +46,12 @@ impl PairFigures {
             ..Self::default()
         };
         if let Some(bands) = &found.refined.bands {
-            figures.sd_db = middle(bands.sd_db()[pair].iter().copied());
-            figures.sd_deg = middle(bands.sd_deg()[pair].iter().copied());
+            let middle = bands.omega().len() / 2;
+            figures.sd_db = bands.sd_db()[pair].get(middle).copied();
+            figures.sd_deg = bands.sd_deg()[pair].get(middle).copied();
         }
         let points = &found.measured.points;
-        figures.coherence = middle(
+        figures.coherence = median_of(
             points
                 .iter()
                 .map(|point| point.partial_coherence[(pair.output, pair.input)]),
@@ -59,7 +61,7 @@ impl PairFigures {
 }
 
 /// Returns the median of the finite values.
-fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+fn median_of(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut finite: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     if finite.is_empty() {
         return None;
@@ -234,10 +236,10 @@ impl Grid<'_> {
 }
 
 impl PairFigures {
-    /// Describes the figures: "± 0.5 dB, ± 3°, coherence 0.97".
+    /// Describes the figures: "± 0.5 dB and ± 3° in the middle of the band, …".
     fn words(&self) -> String {
         let mut words = format!(
-            "± {} dB, ± {}°, partial coherence {} (medians over the band)",
+            "± {} dB and ± {}° in the middle of the band, median partial coherence {}",
             value_text(self.sd_db, 2),
             value_text(self.sd_deg, 1),
             value_text(self.coherence, 2)

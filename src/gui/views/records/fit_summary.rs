@@ -70,7 +70,7 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         Some((job, Ok(found))) => {
             let models = counted(1 + found.bundle.len(), "model");
             let words = if records.changed {
-                "outdated: records or settings changed".to_owned()
+                "outdated".to_owned()
             } else {
                 match job.news().duration_s {
                     Some(duration_s) => format!("{} s, {models}", decimals(duration_s, 1)),

@@ -13,6 +13,7 @@ use super::value_range::value_text;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
@@ -26,6 +27,8 @@ const CELL: [f32; 2] = [27.0, 19.0];
 /// Least width of a cell \[pt\].
 const LEAST_WIDTH: f32 = 58.0;
 const GAP: f32 = 3.0;
+/// Meaning of the cells; the first note that fits is shown.
+const NOTES: [&str; 2] = ["± 1 σ, dB and deg; bar: coherence", "± 1 σ, dB and deg"];
 /// Thickness of the bar of the coherence \[pt\].
 const BAR: f32 = 2.5;
 
@@ -79,16 +82,15 @@ pub(super) fn identified_grid_ui(
     let palette = page.palette;
     let width = ui.available_width();
     let (heading, _) = ui.allocate_exact_size(vec2(width, HEADING), Sense::hover());
-    painted_text(
-        ui,
-        heading,
-        0.0,
-        "Identified responses",
-        medium(BODY_SIZE),
-        palette.text,
-    );
-    let note = "± 1 σ, dB and deg; bar: coherence";
-    painted_text(ui, heading, AT_RIGHT_END, note, small(), palette.dim_text);
+    let title = "Identified responses";
+    let shown = painted_text(ui, heading, 0.0, title, medium(BODY_SIZE), palette.text);
+    let room = heading.right() - shown.right() - 8.0;
+    let note = NOTES
+        .into_iter()
+        .find(|note| text_width(ui, note, small()) <= room);
+    if let Some(note) = note {
+        painted_text(ui, heading, AT_RIGHT_END, note, small(), palette.dim_text);
+    }
     let dataset = page.state.dataset();
     let outputs = dataset.outputs().len();
     let rows = outputs.max(1) as f32;

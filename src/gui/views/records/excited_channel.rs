@@ -8,10 +8,10 @@ use gdcm_model::simulation::FlightRecord;
 
 use super::frame_cache::{Source, cached};
 use super::page::Page;
-use crate::gui::state::excited_input::excited_inputs;
+use crate::gui::state::excited_input::Excitation;
 
-/// Returns the index of the input that the displayed record excites most, compared with the other
-/// records; the input in focus if no input moves.
+/// Returns the index of the input in focus if the displayed record excites it, otherwise of the input
+/// that it excites most, compared with the other records.
 pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
     let records = page.records;
     let mut flights: Vec<Arc<FlightRecord>> = Vec::new();
@@ -28,12 +28,12 @@ pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
     for flight in &flights {
         sources.push(Arc::clone(flight) as _);
     }
-    let excited = cached(ui, "excited inputs", &sources, (), || {
-        excited_inputs(&flights)
+    let excitations = cached(ui, "excited inputs", &sources, (), || {
+        Excitation::of_records(&flights)
     });
     let focus = page.state.display.selection.pair.input;
-    match displayed {
-        Some(displayed) => excited.get(displayed).copied().flatten().unwrap_or(focus),
-        None => focus,
-    }
+    let excitation = displayed.and_then(|displayed| excitations.get(displayed));
+    excitation
+        .and_then(|excitation| excitation.input(focus))
+        .unwrap_or(focus)
 }

@@ -24,7 +24,7 @@ impl Excitation {
     /// s_ri   standard deviation of input i in record r
     /// share of input i in record r = s_ri / max_r s_ri
     /// ```
-    pub fn of_records(flights: &[Arc<FlightRecord>]) -> Vec<Self> {
+    pub fn compare_records(flights: &[Arc<FlightRecord>]) -> Vec<Self> {
         let deviations: Vec<Vec<f64>> = flights
             .iter()
             .map(|flight| input_deviations(flight))
@@ -115,7 +115,7 @@ impl ConditionRecords {
             .filter_map(|(_, row)| row.flight.clone())
             .collect();
         let mut of_input = Vec::new();
-        let excitations = Excitation::of_records(&flights);
+        let excitations = Excitation::compare_records(&flights);
         for ((index, row), excitation) in rows.into_iter().zip(excitations) {
             if excitation.excites(input) && !row.guess.held_out {
                 of_input.push((index, row.guess.kind));
@@ -152,7 +152,7 @@ mod tests {
     fn the_excited_input_is_found_whatever_the_units() {
         // The second input has a unit in which it always moves more than the first.
         let records = [[1.0, 20.0], [0.1, 100.0], [0.0, 0.0], [0.9, 90.0]].map(record);
-        let excitations = Excitation::of_records(&records);
+        let excitations = Excitation::compare_records(&records);
         let inputs: Vec<[Option<usize>; 2]> = excitations
             .iter()
             .map(|excitation| [0, 1].map(|focus| excitation.input(focus)))

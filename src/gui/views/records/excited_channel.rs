@@ -29,7 +29,7 @@ pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
         sources.push(Arc::clone(flight) as _);
     }
     let excitations = cached(ui, "excited inputs", &sources, (), || {
-        Excitation::of_records(&flights)
+        Excitation::compare_records(&flights)
     });
     let focus = page.state.display.selection.pair.input;
     let excitation = displayed.and_then(|displayed| excitations.get(displayed));

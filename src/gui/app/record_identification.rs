@@ -48,8 +48,8 @@ impl GdcmApp {
             }
         }
         let page = &mut self.state.records.page;
-        if let RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs = page {
-            *page = RecordsPage::Response;
+        if let RecordsPage::Columns | RecordsPage::Inputs = page {
+            *page = RecordsPage::Fit;
         }
         if let Some(refusal) = refusal {
             self.notify_error(refusal);
@@ -81,7 +81,6 @@ impl GdcmApp {
         if self.state.records.running.is_empty() && requested > 1 {
             let text = format!("finished: models of {requested} conditions identified");
             self.notify_done(Message::new("identification-finished", text));
-            self.state.records.page = RecordsPage::Conditions;
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
             records.changed = false;

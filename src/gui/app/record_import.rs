@@ -34,6 +34,16 @@ impl GdcmApp {
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
+        if self
+            .state
+            .display
+            .layout
+            .arrangement
+            .is_shown(View::Records)
+            && let Some(records) = self.state.records.conditions.get_mut(&id)
+        {
+            records.open_on_input(self.state.display.selection.pair.input);
+        }
         let records = &self.state.records;
         if !self.shows_records()
             || records.reading.is_some()

@@ -8,7 +8,7 @@ use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_sysid::identification::{Hold, SearchSpace};
 use gdcm_sysid::records::RecordLayout;
 
-use crate::gui::state::records::{RecordsPage, TimeModel};
+use crate::gui::state::records::{RecordsPage, TimeRole};
 
 /// A command in the Records view.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,8 +45,10 @@ pub enum RecordsCommand {
     SetSearch(SearchSpace),
     /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
-    /// Draw a model's response to the recorded inputs, or hide it.
-    ShowTimeModel(TimeModel, bool),
+    /// Draw the curves of a role over time, or hide them.
+    ShowTimeRole(TimeRole, bool),
+    /// Draw these outputs over time below the output in focus.
+    ShowOutputs(Vec<usize>),
     /// Assume the unit of the dataset's channel wherever a file states none, in the records of all
     /// conditions.
     TakeDatasetUnits,
@@ -54,10 +56,10 @@ pub enum RecordsCommand {
     ShowUnclear,
     /// Add the part between two times \[s\] as a separate record, used instead of the whole.
     AddPart(usize, [f64; 2]),
+    /// Move the ends \[s\] of the part in this row.
+    MovePart(usize, [f64; 2]),
     /// Remove the part of a record in this row.
     RemovePart(usize),
-    /// Set whether dragging in the time charts selects parts of a record.
-    ChooseParts(bool),
     /// Show an input's spectrogram beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
     Show(RecordsPage),

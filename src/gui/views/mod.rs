@@ -81,7 +81,9 @@ use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
 use physics::{physics_header_ui, physics_job, physics_pages, physics_view_ui};
 use poles::{poles_header_ui, poles_view_ui};
-use records::{records_header_ui, records_view_ui, simulation_jobs};
+use records::{
+    records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
+};
 use requirements::{
     NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
 };
@@ -111,6 +113,9 @@ pub fn view_content(view: View) -> ViewContent {
     }
 }
 
+/// Draws the right panel below the verdict.
+pub type SideUi = fn(&mut Ui, &State, &Palette, &mut Vec<Command>);
+
 /// Content of a view.
 #[derive(Clone, Copy)]
 pub struct ViewContent {
@@ -125,6 +130,8 @@ pub struct ViewContent {
     pub tools_width: f32,
     /// Computations needed in addition to the analysis of the current settings.
     pub needs: fn(&State) -> Vec<Need>,
+    /// Content of the right panel below the verdict; `None` for the result and the constraint matrix.
+    pub side: Option<SideUi>,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
@@ -138,6 +145,7 @@ impl ViewContent {
         tools: |_, _, _, _| {},
         tools_width: 0.0,
         needs: |_| Vec::new(),
+        side: None,
         figure_pairs: |_| Vec::new(),
     };
 }
@@ -159,6 +167,8 @@ pub enum ViewTitle {
     ResponseAndCondition,
     /// The response in focus without the condition, for views of all conditions.
     ResponseOnly,
+    /// This name of the view, and the condition.
+    NameAndCondition(&'static str),
     Words(fn(&State) -> String),
 }
 
@@ -224,9 +234,11 @@ const COUPLINGS: ViewContent = ViewContent {
 
 const RECORDS: ViewContent = ViewContent {
     draw: records_view_ui,
-    title: ViewTitle::Condition,
+    title: ViewTitle::NameAndCondition("Records"),
     tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
     tools_width: 380.0,
+    pages: records_pages,
+    side: Some(records_side_ui),
     needs: |state| {
         simulation_jobs(state)
             .into_iter()

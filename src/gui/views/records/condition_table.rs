@@ -1,52 +1,11 @@
 //! Table with a row for each condition that has records.
 
-use egui::Ui;
-
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::decimals;
 use gdcm_words::Table;
 
-use super::page::Page;
-use crate::gui::commands::command::Command;
-use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
-
-/// Index of the column with the number of cautions.
-const CAUTIONS: usize = 6;
-
-/// Shows the table; a heading sorts it, a click on a row displays the condition.
-pub(super) fn condition_table_ui(
-    ui: &mut Ui,
-    page: Page<'_>,
-    sorting: &mut Sorting,
-    commands: &mut Vec<Command>,
-) {
-    let Page { state, palette, .. } = page;
-    let table = condition_table(state);
-    let ids: Vec<ConditionId> = conditions_with_records(state).map(|(id, _)| *id).collect();
-    if ids.is_empty() {
-        ui.label(palette.dim("No condition has records yet"));
-        return;
-    }
-    let displayed = state.condition().id();
-    let look = TableLook {
-        color: &|row, column| {
-            if column == CAUTIONS && table.rows[row][CAUTIONS] != "0" {
-                Some(palette.warning)
-            } else {
-                None
-            }
-        },
-        selected: &|row| ids.get(row) == Some(&displayed),
-    };
-    if let Some(click) = table_ui(ui, &table, sorting, &look, palette, commands)
-        && let Some(id) = ids.get(click.row)
-    {
-        commands.push(SelectionCommand::SelectCondition(*id).into());
-    }
-}
 
 /// Returns the conditions with at least one used record.
 pub(super) fn conditions_with_records(

@@ -22,8 +22,10 @@ impl GdcmApp {
         self.readers.opener.give_up();
         self.readers.record_reader.give_up();
         if records.is_some() {
-            // This entry, even if it is empty, prevents another automatic search for records.
-            self.records_of(self.state.condition().id());
+            // These entries, even if they are empty, prevent another automatic search for records.
+            for id in self.unread_conditions() {
+                self.records_of(id);
+            }
         }
         let text = format!("stopped reading {name}; the open study is unchanged");
         self.notify_done(Message::new("reading-stopped", text));

@@ -1,5 +1,7 @@
 //! Commands that stop and resume the computation.
 
+use gdcm_model::dataset::ConditionId;
+
 use super::GdcmApp;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::message::Message;
@@ -23,7 +25,8 @@ impl GdcmApp {
         self.readers.record_reader.give_up();
         if records.is_some() {
             // These entries, even if they are empty, prevent another automatic search for records.
-            for id in self.unread_conditions() {
+            let ids: Vec<ConditionId> = self.state.study.dataset.ids().collect();
+            for id in ids {
                 self.records_of(id);
             }
         }

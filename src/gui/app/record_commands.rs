@@ -51,6 +51,7 @@ impl GdcmApp {
                 records.open_fold = Some(RecordsFold::Settings);
                 records.advanced_field = Some(field);
             }
+            RecordsCommand::AdvancedFocused => records.advanced_field = None,
             RecordsCommand::Choose(index) => {
                 if let Some(records) = records.conditions.get_mut(&condition) {
                     records.choose(index);

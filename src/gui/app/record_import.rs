@@ -15,6 +15,7 @@ use super::GdcmApp;
 use super::readers::SilentProgress;
 use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
+use crate::gui::state::forms::FormKind;
 use crate::gui::state::record_change::RecordChange;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
@@ -55,7 +56,8 @@ impl GdcmApp {
             _ => "the records of the other conditions".to_owned(),
         };
         let sources = self.state.records.sources.clone();
-        self.read_records_in_thread(name, sources, move |channels, stop| {
+        let searched = ids.clone();
+        self.read_records_in_thread(name, sources, searched, move |channels, stop| {
             let mut found = ReadRecords::default();
             own.read(&ids, channels, &stop, &mut found)?;
             Ok(found)
@@ -64,7 +66,7 @@ impl GdcmApp {
 
     /// Returns the conditions whose own records are to be read next: the displayed one, then all
     /// others if the view *Records* is shown.
-    pub(super) fn unread_conditions(&self) -> Vec<ConditionId> {
+    fn unread_conditions(&self) -> Vec<ConditionId> {
         let known = &self.state.records.conditions;
         let shown = self.state.condition().id();
         if !known.contains_key(&shown) {
@@ -105,6 +107,10 @@ impl GdcmApp {
             .into_iter()
             .map(|path| self.files.at_home(path))
             .collect();
+        if self.state.forms.shown == Some(FormKind::AddRecords) {
+            self.state.forms.shown = None;
+            self.state.forms.typed.remove(&FormKind::AddRecords);
+        }
         let sources = self.state.records.sources.clone();
         self.state.records.sources.extend(paths.iter().cloned());
         let name = match paths.first() {
@@ -116,16 +122,18 @@ impl GdcmApp {
             own: self.own_records(),
             loaded: self.state.records.conditions.keys().copied().collect(),
         };
-        self.read_records_in_thread(name, sources, move |channels, stop| {
+        self.read_records_in_thread(name, sources, Vec::new(), move |channels, stop| {
             files.read(channels, &SilentProgress(stop))
         });
     }
 
-    /// Reads records in a thread; `sources` are the files and folders that were added earlier.
+    /// Reads records in a thread; `sources` are the files and folders that were added earlier,
+    /// `searched` the conditions whose own records are read.
     fn read_records_in_thread(
         &mut self,
         name: String,
         sources: Vec<PathBuf>,
+        searched: Vec<ConditionId>,
         read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError>
         + Send
         + 'static,
@@ -136,7 +144,6 @@ impl GdcmApp {
             sources,
         };
         let dataset = Arc::clone(self.state.study.file_dataset());
-        let searched = self.unread_conditions();
         self.state.records.reading = Some(name);
         let reading = self.readers.record_reader.join();
         let number = reading.number;
@@ -304,7 +311,9 @@ impl AddedCounts {
         }
         if self.unassigned > 0 {
             let records = counted(self.unassigned, "record");
-            parts.push(format!("{records} without a condition: choose it in the list"));
+            parts.push(format!(
+                "{records} without a condition: choose it in the list"
+            ));
         }
         if self.known > 0 && parts.is_empty() {
             let known = counted(self.known, "record");

@@ -62,8 +62,7 @@ impl GdcmApp {
             let Some(records) = self.state.records.conditions.get_mut(&id) else {
                 continue;
             };
-            let is_changed =
-                change_layouts(&mut records.rows, &channels, &layout_for);
+            let is_changed = change_layouts(&mut records.rows, &channels, &layout_for);
             if is_changed {
                 records.changed = true;
                 changed.conditions.insert(id, before);

@@ -57,6 +57,8 @@ pub enum RecordsCommand {
     SetSearch(SearchSpace),
     /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
+    /// The field asked for by [`Self::ShowAdvanced`] has the focus.
+    AdvancedFocused,
     /// Draw a model's response to the recorded inputs, or hide it.
     ShowTimeModel(TimeModel, bool),
     /// Confirm the assumed units, in the records of all conditions.

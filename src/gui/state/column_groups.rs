@@ -62,6 +62,17 @@ impl ColumnGroup {
         }
     }
 
+    /// Returns whether a record has these columns, assigned in the same way.
+    fn contains(&self, record: &LaidOutRecord) -> bool {
+        self.columns.len() == record.table.columns.len()
+            && self
+                .columns
+                .iter()
+                .zip(&record.table.columns)
+                .all(|(name, column)| *name == column.name)
+            && self.layout == record.layout.without_remedies()
+    }
+
     fn add(&mut self, row: &LaidOutRecord, place: Option<RecordPlace>) {
         self.records += 1;
         if self.problems.is_empty() {
@@ -107,6 +118,13 @@ impl RecordsState {
         groups
     }
 
+    /// Returns the group of a record; `None` without such a record.
+    pub fn group_of(&self, place: RecordPlace) -> Option<ColumnGroup> {
+        let record = self.conditions.get(&place.condition)?.rows.get(place.row)?;
+        let groups = self.column_groups();
+        groups.into_iter().find(|group| group.contains(record))
+    }
+
     /// Returns the channels with assumed units; `None` if no unit is an assumption.
     pub fn assumed_units(&self) -> Option<AssumedUnits> {
         let mut units = AssumedUnits::default();
@@ -140,15 +158,8 @@ impl RecordsState {
 }
 
 fn add_to_group(groups: &mut Vec<ColumnGroup>, record: &LaidOutRecord, place: Option<RecordPlace>) {
-    let layout = record.layout.without_remedies();
     for group in &mut *groups {
-        let has_same_columns = group.columns.len() == record.table.columns.len()
-            && group
-                .columns
-                .iter()
-                .zip(&record.table.columns)
-                .all(|(name, column)| *name == column.name);
-        if has_same_columns && group.layout == layout {
+        if group.contains(record) {
             group.add(record, place);
             return;
         }
@@ -157,6 +168,7 @@ fn add_to_group(groups: &mut Vec<ColumnGroup>, record: &LaidOutRecord, place: Op
     for column in &record.table.columns {
         columns.push(column.name.clone());
     }
+    let layout = record.layout.without_remedies();
     let mut group = ColumnGroup::new(record, columns, layout);
     group.add(record, place);
     groups.push(group);

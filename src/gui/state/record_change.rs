@@ -76,7 +76,10 @@ impl RecordChange {
             Self::DatasetUnits => "confirm the assumed units".to_owned(),
             Self::Add { records } => format!("add {}", counted(*records, "record")),
             Self::Assign { records, condition } => {
-                format!("assign {} to condition {condition}", counted(*records, "record"))
+                format!(
+                    "assign {} to condition {condition}",
+                    counted(*records, "record")
+                )
             }
             Self::Discard { record } => format!("remove {record}"),
         }

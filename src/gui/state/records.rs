@@ -13,7 +13,6 @@ use gdcm_sysid::records::LaidOutRecord;
 pub use super::condition_records::ConditionRecords;
 pub use super::records_page::{RecordsPage, TimeModel};
 pub use super::wanted_dataset::WantedDataset;
-use crate::gui::widgets::tables::Sorting;
 
 /// State of the records before or after an edit, which an undo or redo step restores. Only the
 /// conditions changed by the edit are included.
@@ -28,7 +27,7 @@ pub struct RecordsBefore {
 }
 
 /// Section below the records that can be unfolded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RecordsFold {
     /// Columns and units of all records.
     Columns,
@@ -44,8 +43,6 @@ pub struct RecordsState {
     /// The example that the dataset is, if any: its records are part of the program.
     pub example: Option<Example>,
     pub page: RecordsPage,
-    /// Sorting of the table of conditions.
-    pub sorting: Sorting,
     /// Models whose responses to the recorded inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
     /// Whether dragging in the time charts selects parts of the record.

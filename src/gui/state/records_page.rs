@@ -23,13 +23,11 @@ pub enum RecordsPage {
     Fit,
     /// Columns assigned to channels.
     Columns,
-    /// Identification results in every condition.
-    Conditions,
 }
 
 impl RecordsPage {
     /// All pages, in display order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::Histories,
         Self::Inputs,
         Self::Response,
@@ -37,7 +35,6 @@ impl RecordsPage {
         Self::Poles,
         Self::Fit,
         Self::Columns,
-        Self::Conditions,
     ];
 
     /// Returns the texts of the page's tab.
@@ -80,11 +77,6 @@ impl RecordsPage {
                 name: "Columns",
                 short_name: "Columns",
                 purpose: "Assignment of the record's columns to time and channels",
-            },
-            Self::Conditions => PageWords {
-                name: "Conditions",
-                short_name: "Conditions",
-                purpose: "Identification results of every condition; click a row to show its condition",
             },
         }
     }

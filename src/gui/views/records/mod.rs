@@ -1,22 +1,26 @@
-//! Flight records of the displayed condition and the models identified from them: records and
-//! search settings on the left, a page about them on the right.
+//! Flight records of all conditions and the models identified from them: records in the left panel
+//! of the window (`list_panel.rs`), outcome and a page about them in the middle.
 
 mod autospectra;
 mod caution_remedies;
 mod columns;
+mod columns_fold;
 mod condition_table;
 mod drawn_response;
 mod fit_page;
+mod fold_summary;
 pub mod frame_cache;
 mod header;
 mod histories;
 mod history_spans;
 mod identified_poles;
 mod input_charts;
+mod list_panel;
 mod next_flight;
 mod offered_models;
 mod outcome;
 pub mod page;
+mod record_details;
 mod record_files;
 mod record_list;
 mod record_parts;
@@ -28,6 +32,7 @@ mod search_settings;
 mod simulation;
 mod spectrogram;
 mod typed_lists;
+mod unassigned_records;
 
 use egui::scroll_area::ScrollBarVisibility;
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
@@ -40,20 +45,17 @@ use crate::gui::widgets::choices::page_tab_ui;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use columns::columns_ui;
-use condition_table::condition_table_ui;
 use fit_page::fit_ui;
 use histories::histories_ui;
 use identified_poles::{identified_poles_ui, stabilisation_ui};
 use input_charts::inputs_ui;
 use outcome::outcome_ui;
 use page::Page;
-use record_files::source_ui;
-use record_list::record_list_ui;
 use response::response_ui;
-use search_settings::search_settings_ui;
 
 pub use condition_table::condition_table;
 pub use header::records_header_ui;
+pub use list_panel::{records_panel_ui, records_sheet_ui};
 pub use simulation::simulation_jobs;
 
 /// Initial width of the record list \[pt\].
@@ -67,10 +69,6 @@ pub fn records_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let condition = state.condition().id();
-    // The page borrows the state, so the fields that widgets change are taken out of it meanwhile.
-    let mut path = std::mem::take(&mut state.records.path);
-    let mut sorting = state.records.sorting;
-    let mut focused = state.records.advanced_field;
     let nothing = ConditionRecords::default();
     let records = state.records.conditions.get(&condition).unwrap_or(&nothing);
     let page = Page {
@@ -89,9 +87,6 @@ pub fn records_view_ui(
                 .id_salt("records")
                 .auto_shrink(false)
                 .show(ui, |ui| {
-                    source_ui(ui, page, &mut path, commands);
-                    record_list_ui(ui, page, commands);
-                    search_settings_ui(ui, page, &mut focused, commands);
                     outcome_ui(ui, page, commands);
                 });
         });
@@ -110,12 +105,8 @@ pub fn records_view_ui(
             RecordsPage::Poles => identified_poles_ui(ui, page),
             RecordsPage::Fit => fit_ui(ui, page, commands),
             RecordsPage::Columns => columns_ui(ui, page, commands),
-            RecordsPage::Conditions => condition_table_ui(ui, page, &mut sorting, commands),
         }
     });
-    state.records.path = path;
-    state.records.sorting = sorting;
-    state.records.advanced_field = focused;
 }
 
 /// Shows a tab for each page, in a line that scrolls if it is too long.

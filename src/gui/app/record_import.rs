@@ -144,7 +144,7 @@ impl GdcmApp {
             sources,
         };
         let dataset = Arc::clone(self.state.study.file_dataset());
-        self.state.records.reading = Some(name);
+        self.state.records.reading = Some(name.clone());
         let reading = self.readers.record_reader.join();
         let number = reading.number;
         let read = move || read(&channels, reading.stop);
@@ -154,7 +154,10 @@ impl GdcmApp {
             {
                 return;
             }
-            app.state.records.reading = None;
+            // Another reading may have begun in the meantime.
+            if app.state.records.reading.as_ref() == Some(&name) {
+                app.state.records.reading = None;
+            }
             if let Some(found) = found.and_then(|found| app.value_or_notify(found)) {
                 app.take_records(found, start);
             }

@@ -15,6 +15,8 @@ use gdcm_study::results::coupling_remark::{
 };
 use gdcm_study::results::couplings_assessment::{NoPoles, UnstablePole};
 
+use crate::complex_pair::pole_text;
+
 /// Returns a remark on couplings in a sentence: "LAT receives 4.7 % of LON, equivalent to a
 /// swashplate phase of 2.7°."
 pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> String {
@@ -319,15 +321,9 @@ fn unstable_place(condition: ConditionId, poles: &[&UnstablePole]) -> String {
     format!("condition {condition}{models} at {frequencies} rad/s")
 }
 
-/// Formats a pole: "−0.30 ± 1.20j rad/s".
+/// Formats a pole: "−0.300 ± j1.20 rad/s".
 fn pole_words(pole: Complex<f64>) -> String {
-    let imaginary = pole.im.abs();
-    let imaginary = if imaginary > 0.0 {
-        format!(" ± {}j", telling(imaginary, 2))
-    } else {
-        String::new()
-    };
-    format!("{}{imaginary} rad/s", signed(pole.re, 3))
+    format!("{} rad/s", pole_text(pole, [3, 2]))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Tables of the values of couplings, their costs and their poles (M16.5).
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Channel, Dataset};
@@ -11,6 +11,7 @@ use gdcm_study::results::couplings_assessment::{
     AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment,
 };
 
+use crate::complex_pair::pole_text;
 use crate::table::Table;
 
 /// Returns the heading: "mixing and feedback fitted to 11 conditions; the normal equations of the
@@ -158,25 +159,20 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
         });
         for shift in shifts {
             let before = match shift.before {
-                Some(before) => pole_cell(before),
+                Some(before) => pole_text(before, [3, 3]),
                 None => "-".to_owned(),
             };
             let distance = match shift.distance_rad_s() {
                 Some(distance_rad_s) => telling(distance_rad_s, 3),
                 None => "-".to_owned(),
             };
-            table.row([id.to_string(), before, pole_cell(shift.after), distance]);
+            table.row([
+                id.to_string(),
+                before,
+                pole_text(shift.after, [3, 3]),
+                distance,
+            ]);
         }
     }
     table
-}
-
-/// Formats a pole in a table: "−0.300 ± 1.200j".
-fn pole_cell(pole: Complex<f64>) -> String {
-    let imaginary = if pole.im == 0.0 {
-        String::new()
-    } else {
-        format!(" ± {}j", telling(pole.im.abs(), 3))
-    };
-    format!("{}{imaginary}", with_minus_sign(&telling(pole.re, 3)))
 }

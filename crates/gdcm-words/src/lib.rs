@@ -10,8 +10,9 @@
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
-//! [`decision_differences`] and [`dataset_differences`]; [`flight_plan`] for further flights.
-//! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
+//! [`decision_differences`] and [`dataset_differences`]; [`identification_caution`] for identified
+//! models; [`flight_plan`] for further flights.
+//! Poles: [`complex_pair`]. Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -27,6 +28,7 @@
 pub mod assessment;
 pub mod caution;
 pub mod channel_time_skew;
+pub mod complex_pair;
 pub mod conflict_text;
 pub mod convention_doubt;
 pub mod coupling_remark;
@@ -36,6 +38,7 @@ pub mod decision_differences;
 pub mod derivation;
 pub mod edit;
 pub mod flight_plan;
+pub mod identification_caution;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;

@@ -27,14 +27,14 @@ impl GdcmApp {
             RecordsCommand::Discard(index) => self.discard_record(index),
             RecordsCommand::ShowFold(fold) => records.open_fold = fold,
             RecordsCommand::Show(page) => records.page = page,
-            RecordsCommand::ChooseParts(chooses) => records.chooses_parts = chooses,
             RecordsCommand::ShowSpectrogram(input) => records.spectrogram = input,
-            RecordsCommand::ShowTimeModel(model, true) => {
-                records.time_models.insert(model);
+            RecordsCommand::ShowTimeRole(role, true) => {
+                records.hidden_roles.remove(&role);
             }
-            RecordsCommand::ShowTimeModel(model, false) => {
-                records.time_models.remove(&model);
+            RecordsCommand::ShowTimeRole(role, false) => {
+                records.hidden_roles.insert(role);
             }
+            RecordsCommand::ShowOutputs(outputs) => records.more_outputs = Some(outputs),
             RecordsCommand::Identify => self.identify_conditions(&[condition]),
             RecordsCommand::IdentifyAll => {
                 let conditions = self.state.conditions_to_identify();
@@ -55,6 +55,7 @@ impl GdcmApp {
             RecordsCommand::Choose(index) => {
                 if let Some(records) = records.conditions.get_mut(&condition) {
                     records.choose(index);
+                    records.is_chosen = true;
                 }
             }
             RecordsCommand::SetLayout(index, layout) => self.set_layout(condition, index, layout),

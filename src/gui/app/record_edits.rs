@@ -124,6 +124,9 @@ fn described_edit(records: &ConditionRecords, command: &RecordsCommand) -> Condi
         RecordsCommand::AddPart(index, _) => ConditionRecordChange::AddPart {
             record: record_name(records, *index),
         },
+        RecordsCommand::MovePart(index, _) => ConditionRecordChange::MovePart {
+            record: record_name(records, *index),
+        },
         RecordsCommand::RemovePart(index) => ConditionRecordChange::RemovePart {
             record: record_name(records, *index),
         },
@@ -150,6 +153,7 @@ fn apply_edit(
     match command {
         RecordsCommand::SetUsed(index, used) => return Ok(records.set_used(index, used)),
         RecordsCommand::AddPart(index, part_s) => records.add_part(index, part_s, channels)?,
+        RecordsCommand::MovePart(index, part_s) => records.move_part(index, part_s, channels)?,
         RecordsCommand::RemovePart(index) => return Ok(records.remove_part(index)),
         RecordsCommand::SetKind(index, kind) => {
             if let Some(row) = records.rows.get_mut(index) {

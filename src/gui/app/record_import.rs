@@ -36,6 +36,12 @@ impl GdcmApp {
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
+        let shown_input = self.state.display.selection.pair.input;
+        if self.state.shows_view(View::Records)
+            && let Some(records) = self.state.records.conditions.get_mut(&id)
+        {
+            records.open_on_input(shown_input);
+        }
         if !self.shows_records() || self.state.records.reading.is_some() {
             return;
         }

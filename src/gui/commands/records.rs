@@ -10,7 +10,7 @@ use gdcm_sysid::identification::{Hold, SearchSpace};
 use gdcm_sysid::records::RecordLayout;
 
 use crate::gui::state::column_groups::RecordPlace;
-use crate::gui::state::records::{RecordsFold, RecordsPage, TimeModel};
+use crate::gui::state::records::{RecordsFold, RecordsPage, TimeRole};
 
 /// A command in the Records view.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,8 +59,10 @@ pub enum RecordsCommand {
     ShowAdvanced(&'static str),
     /// The field asked for by [`Self::ShowAdvanced`] has the focus.
     AdvancedFocused,
-    /// Draw a model's response to the recorded inputs, or hide it.
-    ShowTimeModel(TimeModel, bool),
+    /// Draw the curves of a role over time, or hide them.
+    ShowTimeRole(TimeRole, bool),
+    /// Draw these outputs over time below the output in focus.
+    ShowOutputs(Vec<usize>),
     /// Confirm the assumed units, in the records of all conditions.
     ConfirmUnits,
     /// Show the first record with assumed units, from any condition, on the Columns page.
@@ -69,10 +71,10 @@ pub enum RecordsCommand {
     ShowColumns(RecordPlace),
     /// Add the part between two times \[s\] as a separate record, used instead of the whole.
     AddPart(usize, [f64; 2]),
+    /// Move the ends \[s\] of the part in this row.
+    MovePart(usize, [f64; 2]),
     /// Remove the part of a record in this row.
     RemovePart(usize),
-    /// Set whether dragging in the time charts selects parts of a record.
-    ChooseParts(bool),
     /// Show an input's spectrogram beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
     Show(RecordsPage),

@@ -182,6 +182,8 @@ impl ConditionRecords {
             self.found = now.found;
         }
         self.choose(now.chosen);
+        self.is_chosen = now.is_chosen;
+        self.opening = now.opening;
         self
     }
 

@@ -32,6 +32,13 @@ pub enum AddedRecord {
     KnownAlready,
 }
 
+/// Input and number of records for which the displayed record was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opening {
+    pub input: usize,
+    pub records: usize,
+}
+
 /// Flight records of a condition, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
@@ -39,6 +46,10 @@ pub struct ConditionRecords {
     pub rows: Vec<LaidOutRecord>,
     /// Index of the displayed row.
     pub chosen: usize,
+    /// Whether the engineer has chosen the displayed row; otherwise it follows the input in focus.
+    pub is_chosen: bool,
+    /// Input for which the displayed row was found, while the engineer has not chosen one.
+    pub opening: Option<Opening>,
     /// Delay and hold of each input.
     pub inputs: Vec<ChannelPreparation>,
     /// Delay and hold of each output.
@@ -103,15 +114,7 @@ impl ConditionRecords {
         let Some(whole) = self.rows.get_mut(index) else {
             return Err(Message::new("unknown-record", "there is no such record"));
         };
-        // A pointer gives more digits than anyone can read: hundredths of a second are enough.
-        let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
-        let table = Arc::new(whole.table.part_of_time(part_s));
-        let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
-        if let Some(flight) = &part.flight
-            && flight.time_s.len() < 2
-        {
-            return Err(Message::new("no-samples", no_samples(whole, part_s)));
-        }
+        let part = part_of(whole, part_s, channels)?;
         let source = whole.table.source.clone();
         let was_used = whole.used;
         if whole.table.part_s.is_none() {
@@ -129,6 +132,36 @@ impl ConditionRecords {
         }
         self.rows.insert(position, part);
         Ok(())
+    }
+
+    /// Moves the ends of the part in a row \[s\]; its use and manoeuvre are kept.
+    ///
+    /// # Errors
+    /// A message, if the row is no part, or if the record has no samples in that time span.
+    pub fn move_part(
+        &mut self,
+        index: usize,
+        part_s: [f64; 2],
+        channels: &RecordChannels,
+    ) -> Result<(), Message> {
+        let row = match self.rows.get(index) {
+            Some(row) if row.table.part_s.is_some() => row,
+            _ => return Err(Message::new("unknown-record", "there is no such part")),
+        };
+        let whole = self.whole_of(&row.table.source);
+        let mut part = part_of(whole.unwrap_or(row), part_s, channels)?;
+        part.used = row.used;
+        part.guess = row.guess.clone();
+        part.layout = row.layout.clone();
+        self.rows[index] = part.laid_out(row.layout.clone(), channels);
+        Ok(())
+    }
+
+    /// Returns the row of the whole record with this source.
+    pub fn whole_of(&self, source: &RecordSource) -> Option<&LaidOutRecord> {
+        self.rows
+            .iter()
+            .find(|row| row.table.part_s.is_none() && row.table.source == *source)
     }
 
     /// Returns whether a row exists and is a part of a record.
@@ -235,6 +268,27 @@ impl ConditionRecords {
     pub fn choose(&mut self, index: usize) {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
+}
+
+/// Creates a part of a record between two times \[s\].
+///
+/// # Errors
+/// A message, if the record has no samples in that time span.
+fn part_of(
+    whole: &LaidOutRecord,
+    part_s: [f64; 2],
+    channels: &RecordChannels,
+) -> Result<LaidOutRecord, Message> {
+    // A pointer gives more digits than anyone can read: hundredths of a second are enough.
+    let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
+    let table = Arc::new(whole.table.part_of_time(part_s));
+    let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
+    if let Some(flight) = &part.flight
+        && flight.time_s.len() < 2
+    {
+        return Err(Message::new("no-samples", no_samples(whole, part_s)));
+    }
+    Ok(part)
 }
 
 /// Returns the message for a part \[s\] without samples.

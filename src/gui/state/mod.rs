@@ -16,6 +16,7 @@ pub mod condition_records;
 pub mod curve_display;
 pub mod display;
 pub mod evidence_cache;
+pub mod excited_input;
 pub mod forms;
 pub mod frequency_plots;
 pub mod gain_display;

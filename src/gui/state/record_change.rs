@@ -58,6 +58,9 @@ pub enum ConditionRecordChange {
     AddPart {
         record: String,
     },
+    MovePart {
+        record: String,
+    },
     RemovePart {
         record: String,
     },
@@ -104,6 +107,7 @@ impl ConditionRecordChange {
             Self::Search => "identification search settings".to_owned(),
             Self::References => "references".to_owned(),
             Self::AddPart { record } => format!("part of {record}"),
+            Self::MovePart { record } => format!("ends of {record}"),
             Self::RemovePart { record } => format!("remove {record}"),
             Self::Records => "records".to_owned(),
         }

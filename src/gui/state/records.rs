@@ -11,7 +11,7 @@ use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_sysid::records::LaidOutRecord;
 
 pub use super::condition_records::ConditionRecords;
-pub use super::records_page::{RecordsPage, TimeModel};
+pub use super::records_page::{RecordsPage, TimeRole};
 pub use super::wanted_dataset::WantedDataset;
 
 /// State of the records before or after an edit, which an undo or redo step restores. Only the
@@ -43,10 +43,11 @@ pub struct RecordsState {
     /// The example that the dataset is, if any: its records are part of the program.
     pub example: Option<Example>,
     pub page: RecordsPage,
-    /// Models whose responses to the recorded inputs are drawn.
-    pub time_models: BTreeSet<TimeModel>,
-    /// Whether dragging in the time charts selects parts of the record.
-    pub chooses_parts: bool,
+    /// Roles whose curves over time are hidden.
+    pub hidden_roles: BTreeSet<TimeRole>,
+    /// Outputs drawn over time below the output in focus, by index; `None` selects the first two
+    /// others.
+    pub more_outputs: Option<Vec<usize>>,
     /// Index of the input shown by the spectrogram.
     pub spectrogram: Option<usize>,
     /// Search setting whose field is to be focused.

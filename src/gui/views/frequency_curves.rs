@@ -78,6 +78,23 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
     drawn
 }
 
+/// Returns all curves for a response in the displayed condition with unwrapped phases, whatever the
+/// engineer has hidden, isolated or shifted; empty until its responses are available.
+pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let mut cache = state
+        .display
+        .frequency
+        .shapes
+        .remove(&pair)
+        .unwrap_or_default();
+    let curves = match condition_source(state) {
+        Some(source) => source.response_curves(pair, &BodeOptions::default(), &mut cache),
+        None => Vec::new(),
+    };
+    state.display.frequency.shapes.insert(pair, cache);
+    curves
+}
+
 /// Returns the error curves of a response in the displayed condition, as used by the fit; empty
 /// until the responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {

@@ -79,7 +79,9 @@ use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
 use poles::{poles_header_ui, poles_view_ui};
-use records::{records_header_ui, records_view_ui, simulation_jobs};
+use records::{
+    records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
+};
 use requirements::{
     NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
 };
@@ -108,6 +110,9 @@ pub fn view_content(view: View) -> ViewContent {
     }
 }
 
+/// Draws the right panel below the verdict.
+pub type SideUi = fn(&mut Ui, &State, &Palette, &mut Vec<Command>);
+
 /// Content of a view.
 #[derive(Clone, Copy)]
 pub struct ViewContent {
@@ -122,6 +127,8 @@ pub struct ViewContent {
     pub tools_width: f32,
     /// Computations needed in addition to the analysis of the current settings.
     pub needs: fn(&State) -> Vec<Need>,
+    /// Content of the right panel below the verdict; `None` for the result and the constraint matrix.
+    pub side: Option<SideUi>,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
@@ -135,6 +142,7 @@ impl ViewContent {
         tools: |_, _, _, _| {},
         tools_width: 0.0,
         needs: |_| Vec::new(),
+        side: None,
         figure_pairs: |_| Vec::new(),
     };
 }
@@ -214,6 +222,8 @@ const RECORDS: ViewContent = ViewContent {
     title: ViewTitle::Condition,
     tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
     tools_width: 380.0,
+    pages: records_pages,
+    side: Some(records_side_ui),
     needs: |state| {
         simulation_jobs(state)
             .into_iter()

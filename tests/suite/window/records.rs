@@ -14,7 +14,7 @@ use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::condition_fit::FitStatus;
 use gdcm::gui::state::record_change::ConditionRecordChange;
-use gdcm::gui::state::records::RecordsPage;
+use gdcm::gui::state::records::{RecordsPage, TimeRole};
 use gdcm::gui::state::view::View;
 use gdcm::gui::views::records::condition_table;
 use gdcm_io::{Example, Existing};
@@ -44,6 +44,7 @@ fn records_window() -> Window {
         state(window).records.conditions.len() == 11 && state(window).records.reading.is_none()
     });
     assert_eq!(rows(&window), 9);
+    give(&mut window, RecordsCommand::Choose(0));
     window
 }
 
@@ -58,6 +59,20 @@ fn add_by_path(window: &mut Window, path: &str) {
     click(window, "Add records…");
     click(window, "Path…");
     type_into(window, "Path of records", path);
+}
+
+/// Types the ends of a part into the menu of the lane, and closes the menu.
+fn type_part(window: &mut Window, ends: &str) {
+    click(window, "Parts of the record");
+    type_into(window, "Part of the record", ends);
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+}
+
+/// Removes the displayed part through the menu of the lane.
+fn remove_part(window: &mut Window) {
+    click(window, "Parts of the record");
+    click(window, "Remove this part");
 }
 
 fn rows(window: &Window) -> usize {
@@ -112,6 +127,22 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     let held_out = found
         .held_out_cost
         .expect("the validation record is held out");
+    // The summary and the table give the same figure.
+    window.get_by_label(&format!("held out {held_out:.2}"));
+    window.get_by_label(&format!("χ²/dof {:.2}", found.cost));
+    let chosen = found
+        .order_fits
+        .iter()
+        .find(|fit| Some(fit.order) == found.refined.order())
+        .expect("the chosen order was compared with others");
+    assert!(
+        (chosen.cost / found.cost - 1.0).abs() < 0.05,
+        "{chosen:?} of {}",
+        found.cost
+    );
+    assert!(
+        found.order_fits.len() > 2 && found.order_fits.iter().all(|fit| fit.held_out.is_some())
+    );
     assert!(
         held_out <= 1.15 * found.cost,
         "held out {held_out} of {}",
@@ -121,6 +152,14 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         click(&mut window, &format!("Page {}", page.words().name));
         assert_eq!(state(&window).records.page, page);
     }
+    click(&mut window, "Page Fit");
+    let pair = Pair {
+        output: 5,
+        input: 3,
+    };
+    let name = state(&window).dataset().pair_name(pair);
+    click(&mut window, &format!("Response {name}"));
+    assert_eq!(state(&window).display.selection.pair, pair);
     let table = condition_table(state(&window));
     let [
         id,
@@ -188,8 +227,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         state(&window).shown().is_some(),
         "the correction follows the models taken"
     );
-    click(&mut window, "More ways to use the fits");
-    click(&mut window, "Restore the file's models of 10");
+    click(&mut window, "Restore the file's models");
     assert_eq!(identified_models(&window), before);
     window.get_by_label("Use 1 fit");
     give(&mut window, StudyCommand::Undo);
@@ -256,8 +294,8 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
         [ConditionId(3), CONDITION_10_ID]
     );
     // Only the displayed condition.
-    click(&mut window, "More ways to use the fits");
-    click(&mut window, "Use for 10: refined models");
+    click(&mut window, "Use for 10");
+    click(&mut window, "The refined models");
     let taken: Vec<ConditionId> = state(&window)
         .study
         .taken_models()
@@ -283,6 +321,88 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
     assert!(is_finished(&window, 3) && is_finished(&window, 10));
 }
 
+/// Drags from one place to another.
+fn drag(window: &mut Window, [from, to]: [egui::Pos2; 2]) {
+    window.drag_at(from);
+    window.run_steps(2);
+    window.hover_at(to);
+    window.run_steps(2);
+    window.drop_at(to);
+    window.run_steps(3);
+}
+
+/// Drags over the lane of the parts between two shares of its width.
+fn drag_in_lane(window: &mut Window, shares: [f32; 2]) {
+    let lane = window.get_by_label("Lane of the parts").rect();
+    let places =
+        shares.map(|share| egui::pos2(lane.left() + share * lane.width(), lane.center().y));
+    drag(window, places);
+}
+
+#[test]
+fn the_view_opens_on_a_sweep_of_the_input_in_focus_until_a_record_is_chosen() {
+    fn displayed(window: &Window) -> String {
+        let records = &state(window).records.conditions[&CONDITION_10_ID];
+        records.rows[records.chosen].table.name.clone()
+    }
+
+    let mut window = window();
+    click(&mut window, CONDITION_10);
+    show(&mut window, View::Records);
+    wait_until(&mut window, "the records", |window| rows(window) == 9);
+    for input in [0, 2] {
+        let pair = Pair { output: 1, input };
+        give(&mut window, SelectionCommand::FocusPair(pair));
+        window.run_steps(2);
+        let name = state(&window).dataset().inputs()[input].name.clone();
+        assert_eq!(displayed(&window), format!("cond10_sweep_{name}_1"));
+        window.get_by_label_contains(&format!("{name} at the cursor"));
+    }
+    give(&mut window, RecordsCommand::Choose(0));
+    give(
+        &mut window,
+        SelectionCommand::FocusPair(Pair {
+            output: 1,
+            input: 1,
+        }),
+    );
+    window.run_steps(2);
+    assert_eq!(displayed(&window), "cond10_sweep_COL_1");
+}
+
+#[test]
+fn a_condition_without_records_says_so_in_place_of_the_charts() {
+    let mut window = records_window();
+    give(
+        &mut window,
+        SelectionCommand::SelectCondition(ConditionId(5)),
+    );
+    wait_until(&mut window, "the absence of records", |window| {
+        state(window)
+            .records
+            .conditions
+            .contains_key(&ConditionId(5))
+    });
+    window.run_steps(2);
+    window.get_by_label_contains("No flight records of this condition: add");
+    assert!(window.query_by_label_contains("at the cursor").is_none());
+    assert!(window.query_by_label_contains("fit in %").is_none());
+}
+
+#[test]
+fn chips_hide_curves_and_further_outputs_are_chosen() {
+    let mut window = records_window();
+    click(&mut window, "Show measured over time");
+    let hidden = &state(&window).records.hidden_roles;
+    assert!(hidden.contains(&TimeRole::Measured), "{hidden:?}");
+    click(&mut window, "Show measured over time");
+    assert!(state(&window).records.hidden_roles.is_empty());
+    give(&mut window, RecordsCommand::ShowOutputs(vec![5]));
+    window.run_steps(2);
+    window.get_by_label_contains("NZ at the cursor");
+    assert!(window.query_by_label_contains("NX at the cursor").is_none());
+}
+
 #[test]
 fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_place() {
     fn part(window: &Window, index: usize) -> (Option<[f64; 2]>, bool, usize) {
@@ -296,7 +416,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
 
     let mut window = records_window();
     assert_eq!(part(&window, 0), (None, true, 3001));
-    type_into(&mut window, "Part of the record", "5 25");
+    type_part(&mut window, "5 25");
     assert_eq!(
         part(&window, 0),
         (None, false, 3001),
@@ -307,15 +427,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         (Some([5.0, 25.0]), true, 1001),
         "20 s at 50 Hz"
     );
-    click(&mut window, "drag parts");
-    let chart = window.get_by_label_contains("LON [%]").rect();
-    let [from, to] =
-        [0.6, 0.8].map(|share| egui::pos2(chart.left() + share * chart.width(), chart.center().y));
-    window.drag_at(from);
-    window.run_steps(2);
-    window.hover_at(to);
-    window.run_steps(2);
-    window.drop_at(to);
+    drag_in_lane(&mut window, [0.6, 0.8]);
     window.run_steps(3);
     assert_eq!(rows(&window), 11);
     let (Some([first, last]), true, samples) = part(&window, 2) else {
@@ -325,10 +437,27 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         first > 25.0 && last > first && samples > 200,
         "{first} to {last} s, {samples} samples"
     );
+    assert_eq!(
+        state(&window).records.conditions[&CONDITION_10_ID].chosen,
+        2,
+        "the new part is displayed"
+    );
+    let moved = window
+        .get_by_label_contains("Move the end of cond10_sweep_COL_1, 2")
+        .rect()
+        .center();
+    drag(&mut window, [moved, moved + egui::vec2(30.0, 0.0)]);
+    let (Some([still_first, later]), true, _) = part(&window, 2) else {
+        panic!("{:?}", part(&window, 2))
+    };
+    assert!(
+        still_first == first && later > last,
+        "{still_first} to {later} s"
+    );
     click(&mut window, "Remove cond10_sweep_COL_1, 5 to 25 s");
     assert_eq!(
         (rows(&window), part(&window, 1).0),
-        (10, Some([first, last]))
+        (10, Some([first, later]))
     );
     // The search space can be typed as well; impossible values are refused.
     click(&mut window, "Identification settings");
@@ -653,12 +782,13 @@ fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless
     }
 
     let mut window = records_window();
-    type_into(&mut window, "Part of the record", "5 25");
-    type_into(&mut window, "Part of the record", "30 50");
+    type_part(&mut window, "5 25");
+    type_part(&mut window, "30 50");
     assert!(!used(&window));
     click(&mut window, "Remove cond10_sweep_COL_1, 5 to 25 s");
     assert!(!used(&window), "another part stays");
-    click(&mut window, "Remove cond10_sweep_COL_1, 30 to 50 s");
+    click(&mut window, "Record cond10_sweep_COL_1, 30 to 50 s");
+    remove_part(&mut window);
     assert!(used(&window) && rows(&window) == 9, "its tick is back");
     for command in [
         RecordsCommand::SetUsed(0, false),
@@ -700,10 +830,13 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         (span_s[0] - 42.3).abs() < 1e-9 && (span_s[1] - 81.3).abs() < 1e-9,
         "{span_s:?}"
     );
+    click(&mut window, "Parts of the record");
     window.get_by_label(
         "42.30 s to 81.30 s on the record's time axis, +0.00 s to +39.00 s from its start",
     );
-    type_into(&mut window, "Part of the record", "5 34");
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    type_part(&mut window, "5 34");
     assert_notice(
         &window,
         NoticeKind::Trouble,
@@ -711,7 +844,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         &["42.30 s", "81.30 s"],
     );
     assert_eq!(rows(&window), 10);
-    type_into(&mut window, "Part of the record", "+5 +34");
+    type_part(&mut window, "+5 +34");
     let part = &state(&window).records.conditions[&CONDITION_10_ID].rows[10];
     assert_eq!(part.table.part_s, Some([47.3, 76.3]));
     let [first_s, last_s] = part.span_s().unwrap();
@@ -1031,8 +1164,7 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
         state(window).shown().is_some()
     });
     assert!(window.query_by_label("Identify from records").is_none());
-    click(&mut window, "More ways to use the fits");
-    click(&mut window, "Restore the file's models of 7");
+    click(&mut window, "Restore the file's models");
     wait_until(&mut window, "none again", |window| {
         failure(window) == Some("no-reference")
     });

@@ -27,7 +27,7 @@ const IDENTIFY_HINT: &str =
 pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let palette = Palette::from_visuals(ui.visuals());
     let fits = state.unused_fits();
-    use_ui(ui, state, &fits, &palette, commands);
+    use_ui(ui, &fits, &palette, commands);
     match state.batch_progress() {
         Some(progress) => progress_ui(ui, state, progress, &palette, commands),
         None => identify_ui(ui, state, fits.is_empty(), &palette, commands),
@@ -52,41 +52,18 @@ fn more_ui(ui: &mut Ui, name: &str, entries: Vec<(String, Command)>, commands: &
     named(response, Role::Button, name);
 }
 
-/// Draws the command that takes all finished fits, and a menu with other choices.
-fn use_ui(
-    ui: &mut Ui,
-    state: &State,
-    fits: &[ConditionId],
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let condition = state.condition().id();
-    let records = state.records.conditions.get(&condition);
-    let is_found = records.is_some_and(|records| records.identification().is_some());
-    let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
-    let mut entries: Vec<(String, Command)> = Vec::new();
-    if is_found {
-        for offer in OFFERS {
-            let text = format!("Use for {condition}: {}", offer.words);
-            entries.push((text, RecordsCommand::Take(offer.models).into()));
-        }
-    }
-    if fits.len() > 1 {
-        for offer in OFFERS {
-            let text = format!("Use for all {}: {}", fits.len(), offer.words);
-            entries.push((text, RecordsCommand::TakeAll(offer.models).into()));
-        }
-    }
-    if is_taken {
-        let text = format!("Restore the file's models of {condition}");
-        entries.push((text, RecordsCommand::Return.into()));
-    }
-    if !entries.is_empty() {
-        more_ui(ui, "More ways to use the fits", entries, commands);
-    }
+/// Draws the command that takes all finished fits, and a menu with other models; the fit of the
+/// displayed condition alone is used in the right panel.
+fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut Vec<Command>) {
     if fits.is_empty() {
         return;
     }
+    let mut entries: Vec<(String, Command)> = Vec::new();
+    for offer in OFFERS {
+        let command = RecordsCommand::TakeAll(offer.models);
+        entries.push((offer.words.to_owned(), command.into()));
+    }
+    more_ui(ui, "Other models of the fits", entries, commands);
     let text = format!("Use {}", counted(fits.len(), "fit"));
     let names: Vec<String> = fits.iter().map(ToString::to_string).collect();
     let hint = format!(

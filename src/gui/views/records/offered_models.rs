@@ -1,8 +1,10 @@
 //! The identified models that can replace the present models of a condition.
 
+use egui::Ui;
+
 use gdcm_study::decisions::adopted_models::OfferedModels;
 
-/// A choice of models, and its name in a menu.
+/// A choice of models, and its name in menus.
 #[derive(Clone, Copy)]
 pub(super) struct Offer {
     pub(super) words: &'static str,
@@ -11,15 +13,30 @@ pub(super) struct Offer {
 
 pub(super) const OFFERS: [Offer; 3] = [
     Offer {
-        words: "refined models",
+        words: "The refined models",
         models: OfferedModels::REFINED,
     },
     Offer {
-        words: "refined models, and CT-PBSID (unrefined)",
+        words: "The refined models, and CT-PBSID (unrefined)",
         models: OfferedModels::WITH_UNREFINED,
     },
     Offer {
-        words: "measured response",
+        words: "The measured response",
         models: OfferedModels::MEASURED,
     },
 ];
+
+/// Shows a menu button; returns the chosen models.
+pub(super) fn offered_models_ui(ui: &mut Ui, text: &str, hint: &str) -> Option<OfferedModels> {
+    let menu = ui.menu_button(text, |ui| {
+        for offer in OFFERS {
+            if ui.button(offer.words).clicked() {
+                ui.close();
+                return Some(offer.models);
+            }
+        }
+        None
+    });
+    menu.response.on_hover_text(hint);
+    menu.inner.flatten()
+}

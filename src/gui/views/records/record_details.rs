@@ -10,7 +10,8 @@ use gdcm_sysid::records::LaidOutRecord;
 use gdcm_sysid::records::layout_problem::LayoutCaution;
 
 use super::autospectra::{Autospectra, autospectra};
-use super::frame_cache::{Source, cached};
+use super::excited_channel::displayed_excited_input;
+use super::frame_cache::cached;
 use super::page::Page;
 use super::record_problems::problem_texts;
 use crate::gui::commands::command::Command;
@@ -75,7 +76,7 @@ fn kind_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<
 /// "of LON, 0.3 to 13 rad/s, 60 s at 50 Hz".
 fn excitation_words(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> String {
     let mut parts = Vec::new();
-    if let Some(input) = most_moved_input(ui, page, flight) {
+    if let Some(input) = displayed_excited_input(ui, page) {
         parts.push(format!("of {}", page.state.dataset().inputs()[input].name));
         let highest = page.state.study.settings.band.max();
         let spectra: Arc<Autospectra> = cached(
@@ -113,58 +114,6 @@ fn excited_band(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let first = excited.next()?;
     let last = excited.next_back().unwrap_or(first);
     Some([first, last])
-}
-
-/// Returns the input that moves most in a record, compared with the most that it moves in any
-/// record of the condition; `None` if no input moves.
-fn most_moved_input(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> Option<usize> {
-    let mut flights = vec![Arc::clone(flight)];
-    for row in &page.records.rows {
-        flights.extend(row.flight.clone());
-    }
-    let mut sources: Vec<Source> = Vec::new();
-    for flight in &flights {
-        sources.push(Arc::clone(flight) as _);
-    }
-    *cached(ui, "most moved input", &sources, (), || {
-        most_moved(flight, &flights)
-    })
-}
-
-fn most_moved(flight: &FlightRecord, others: &[Arc<FlightRecord>]) -> Option<usize> {
-    let mut found = None;
-    let mut best = 0.0;
-    for input in 0..flight.inputs.ncols() {
-        let mut greatest = 0.0_f64;
-        for other in others {
-            greatest = greatest.max(deviation(other, input));
-        }
-        let share = deviation(flight, input) / greatest;
-        if share > best {
-            best = share;
-            found = Some(input);
-        }
-    }
-    found
-}
-
-/// Returns the standard deviation of an input over its finite samples.
-fn deviation(flight: &FlightRecord, input: usize) -> f64 {
-    let Some(samples) = flight.inputs.column_iter().nth(input) else {
-        return 0.0;
-    };
-    let mut count = 0.0;
-    let mut sum = 0.0;
-    let mut squares = 0.0;
-    for value in samples.iter().filter(|value| value.is_finite()) {
-        count += 1.0;
-        sum += value;
-        squares += value * value;
-    }
-    if count == 0.0 {
-        return 0.0;
-    }
-    (squares / count - (sum / count).powi(2)).max(0.0).sqrt()
 }
 
 /// "no gap, no clipping": what the identification found in the record, and cautions about its

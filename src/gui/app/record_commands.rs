@@ -75,6 +75,7 @@ impl GdcmApp {
     fn show_columns(&mut self, place: RecordPlace) {
         if let Some(records) = self.state.records.conditions.get_mut(&place.condition) {
             records.choose(place.row);
+            records.is_chosen = true;
         }
         self.state.records.page = RecordsPage::Columns;
         self.dispatch(SelectionCommand::SelectCondition(place.condition));

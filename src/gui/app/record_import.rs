@@ -17,6 +17,7 @@ use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::record_change::RecordChange;
+use crate::gui::state::records::RecordsFold;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::message::Message;
@@ -233,6 +234,15 @@ impl GdcmApp {
         unassigned: Vec<LaidOutRecord>,
         start: ReadingStart,
     ) {
+        let has_problems = added
+            .values()
+            .flatten()
+            .chain(&unassigned)
+            .any(|row| !row.problems.is_empty());
+        if has_problems {
+            // Columns are part of adding records: ask for them at once.
+            self.state.records.open_fold = Some(RecordsFold::Columns);
+        }
         let mut before = self.state.records.before(added.keys().copied());
         before.sources = Some(start.sources);
         let mut counts = AddedCounts::default();

@@ -14,7 +14,7 @@ use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::condition_fit::FitStatus;
 use gdcm::gui::state::record_change::ConditionRecordChange;
-use gdcm::gui::state::records::{RecordsPage, TimeRole};
+use gdcm::gui::state::records::{RecordsFold, RecordsPage, TimeRole};
 use gdcm::gui::state::view::View;
 use gdcm::gui::views::records::condition_table;
 use gdcm_io::{Example, Existing};
@@ -579,6 +579,19 @@ fn the_work_of_the_view_is_stopped_beside_its_progress_and_elsewhere_in_the_stat
 }
 
 #[test]
+fn beside_the_rail_the_records_open_as_a_sheet() {
+    let mut window = records_window();
+    give(&mut window, LayoutCommand::ShowLeft(false));
+    assert!(window.query_by_label("Record cond10_validation").is_none());
+    click(&mut window, "Open the list: Records");
+    let sheet = window.get_by_label("Record cond10_validation").rect();
+    assert!(sheet.width() <= 272.0, "{sheet:?}");
+    click(&mut window, "Hold out cond10_sweep_LON_1");
+    let counts = state(&window).condition_fit(CONDITION_10_ID).counts;
+    assert_eq!((counts.fitted, counts.held_out), (7, 2));
+}
+
+#[test]
 fn the_records_that_a_dataset_names_are_read_out_of_their_archive() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-dataset.json.gz");
     let mut window = window_with(load_any(&path, &Default::default()).unwrap(), warm());
@@ -642,6 +655,7 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     );
     let of_condition_5 = &records.conditions[&ConditionId(5)].rows;
     assert_eq!(of_condition_5.len(), 1, "by the name of its folder");
+    assert_eq!(records.open_fold, Some(RecordsFold::Columns), "it is asked");
     // The record without a condition blocks nothing; its condition can be chosen.
     window.get_by_label("Identify all 3");
     let name = state(&window).condition().flight_state().name.clone();

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Checkbox, Galley, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui};
+use egui::{Align2, Checkbox, Galley, Rect, Role, Sense, Stroke, StrokeKind, Ui};
 use egui::{pos2, vec2};
 
 use gdcm_model::units::number;
@@ -353,16 +353,6 @@ fn paint_lock(ui: &Ui, row: Rect, color: egui::Color32) {
 fn wrapped(ui: &Ui, text: &str, room: f32, is_strong: bool, color: egui::Color32) -> Arc<Galley> {
     let font = if is_strong { medium(BODY_SIZE) } else { body() };
     ui.fonts_mut(|fonts| fonts.layout(text.to_owned(), font, color, room.max(40.0)))
-}
-
-/// Formats χ²/dof, in the warning colour if the fit is bad.
-pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
-    let color = if cost <= BAD_FIT {
-        palette.text
-    } else {
-        palette.warning
-    };
-    RichText::new(format!("{cost:.2}")).color(color)
 }
 
 #[cfg(test)]

@@ -9,10 +9,11 @@
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
-//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
+//! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
 //! [`decision_differences`] and [`dataset_differences`]; [`identification_caution`] for identified
-//! models; [`flight_plan`] for further flights.
-//! Poles: [`complex_pair`]. Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
+//! models; [`flight_plan`] for further flights, [`suggested_runs`] for further runs of the physics
+//! model. Poles: [`complex_pair`]. Settings: [`setting_words`]. Tables: [`table`],
+//! [`requirements`], [`requirements_overview`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -42,6 +43,7 @@ pub mod identification_caution;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
+pub mod physics;
 pub mod remark;
 pub mod requirements;
 pub mod requirements_overview;
@@ -49,6 +51,7 @@ pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;
 pub mod solution_details;
+pub mod suggested_runs;
 pub mod table;
 pub mod time_histories;
 pub mod uncertainty;

@@ -117,7 +117,7 @@ fn heads_ui(ui: &mut Ui, heads: &[(f32, &str)], palette: &Palette) -> Rect {
 
 /// Draws two lines that explain the columns.
 fn key_ui(ui: &mut Ui, palette: &Palette) {
-    let size = vec2(ui.available_width(), 34.0);
+    let size = vec2(ui.available_width(), 32.0);
     let (row, _) = ui.allocate_exact_size(size, Sense::hover());
     let lines = [
         (

@@ -46,7 +46,7 @@ fn command_button<'b>(text: String, is_primary: bool, palette: &Palette) -> Butt
 
 /// Draws the menu beside a button.
 fn more_ui(ui: &mut Ui, name: &str, entries: Vec<(String, Command)>, commands: &mut Vec<Command>) {
-    let (response, _) = MenuButton::from_button(Button::new("⏷")).ui(ui, |ui| {
+    let (response, _) = MenuButton::from_button(Button::new("▾")).ui(ui, |ui| {
         entries_ui(ui, entries, commands);
     });
     named(response, Role::Button, name);

@@ -182,6 +182,10 @@ fn title_words(state: &State, title: ViewTitle) -> TitleWords {
             heading: format!("Condition {id}"),
             context: flight_state.clone(),
         },
+        ViewTitle::NameAndCondition(name) => TitleWords {
+            heading: name.to_owned(),
+            context: format!("condition {id}, {flight_state}"),
+        },
         ViewTitle::Words(words) => TitleWords {
             heading: String::new(),
             context: words(state),

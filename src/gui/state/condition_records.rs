@@ -100,8 +100,8 @@ impl ConditionRecords {
         true
     }
 
-    /// Adds a part behind its record. The whole record is no longer used, so that no sample counts
-    /// twice.
+    /// Adds a part behind its record, and displays it. The whole record is no longer used, so that no
+    /// sample counts twice. A part of a part is a part of the whole record.
     ///
     /// # Errors
     /// A message, if the record has no samples in that time span.
@@ -111,6 +111,7 @@ impl ConditionRecords {
         part_s: [f64; 2],
         channels: &RecordChannels,
     ) -> Result<(), Message> {
+        let index = self.whole_index(index);
         let Some(whole) = self.rows.get_mut(index) else {
             return Err(Message::new("unknown-record", "there is no such record"));
         };
@@ -131,7 +132,23 @@ impl ConditionRecords {
             position += 1;
         }
         self.rows.insert(position, part);
+        self.chosen = position;
+        self.is_chosen = true;
         Ok(())
+    }
+
+    /// Returns the index of the whole record of a row, or of the row itself if the whole is not
+    /// loaded.
+    fn whole_index(&self, index: usize) -> usize {
+        let Some(row) = self.rows.get(index) else {
+            return index;
+        };
+        let source = &row.table.source;
+        let whole = self
+            .rows
+            .iter()
+            .position(|other| other.table.part_s.is_none() && other.table.source == *source);
+        whole.unwrap_or(index)
     }
 
     /// Moves the ends of the part in a row \[s\]; its use and manoeuvre are kept.
@@ -148,20 +165,13 @@ impl ConditionRecords {
             Some(row) if row.table.part_s.is_some() => row,
             _ => return Err(Message::new("unknown-record", "there is no such part")),
         };
-        let whole = self.whole_of(&row.table.source);
-        let mut part = part_of(whole.unwrap_or(row), part_s, channels)?;
+        let whole = &self.rows[self.whole_index(index)];
+        let mut part = part_of(whole, part_s, channels)?;
         part.used = row.used;
         part.guess = row.guess.clone();
         part.layout = row.layout.clone();
         self.rows[index] = part.laid_out(row.layout.clone(), channels);
         Ok(())
-    }
-
-    /// Returns the row of the whole record with this source.
-    pub fn whole_of(&self, source: &RecordSource) -> Option<&LaidOutRecord> {
-        self.rows
-            .iter()
-            .find(|row| row.table.part_s.is_none() && row.table.source == *source)
     }
 
     /// Returns whether a row exists and is a part of a record.

@@ -9,29 +9,65 @@ use gdcm_sysid::records::LaidOutRecord;
 
 use super::condition_records::{ConditionRecords, Opening};
 
-/// Returns the index of the input that each record excites most; `None` for a record whose inputs
-/// do not move.
-///
-/// ```text
-/// s_ri   standard deviation of input i in record r
-/// input of r = argmax_i  s_ri / max_r s_ri
-/// ```
-pub fn excited_inputs(flights: &[Arc<FlightRecord>]) -> Vec<Option<usize>> {
-    let deviations: Vec<Vec<f64>> = flights
-        .iter()
-        .map(|flight| input_deviations(flight))
-        .collect();
-    let mut greatest: Vec<f64> = Vec::new();
-    for record in &deviations {
-        greatest.resize(greatest.len().max(record.len()), 0.0);
-        for (most, deviation) in greatest.iter_mut().zip(record) {
-            *most = most.max(*deviation);
+/// Share from which an input counts as excited.
+const EXCITED: f64 = 0.5;
+
+/// Excitation of the inputs by a record: the standard deviation of each input, relative to the
+/// largest among the records, 0 to 1.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Excitation(Vec<f64>);
+
+impl Excitation {
+    /// Compares records.
+    ///
+    /// ```text
+    /// s_ri   standard deviation of input i in record r
+    /// share of input i in record r = s_ri / max_r s_ri
+    /// ```
+    pub fn compare_records(flights: &[Arc<FlightRecord>]) -> Vec<Self> {
+        let deviations: Vec<Vec<f64>> = flights
+            .iter()
+            .map(|flight| input_deviations(flight))
+            .collect();
+        let mut greatest: Vec<f64> = Vec::new();
+        for record in &deviations {
+            greatest.resize(greatest.len().max(record.len()), 0.0);
+            for (most, deviation) in greatest.iter_mut().zip(record) {
+                *most = most.max(*deviation);
+            }
         }
+        let mut excitations = Vec::with_capacity(flights.len());
+        for record in deviations {
+            let mut shares = Vec::with_capacity(record.len());
+            for (deviation, most) in record.into_iter().zip(&greatest) {
+                shares.push(if *most > 0.0 { deviation / most } else { 0.0 });
+            }
+            excitations.push(Self(shares));
+        }
+        excitations
     }
-    deviations
-        .iter()
-        .map(|record| most_excited(record, &greatest))
-        .collect()
+
+    /// Returns whether the record excites an input.
+    pub fn excites(&self, input: usize) -> bool {
+        self.0.get(input).is_some_and(|share| *share >= EXCITED)
+    }
+
+    /// Returns the input in focus if it is excited, otherwise the most excited input; `None` if no
+    /// input moves.
+    pub fn input(&self, focus: usize) -> Option<usize> {
+        if self.excites(focus) {
+            return Some(focus);
+        }
+        let mut most_excited = None;
+        let mut most = 0.0;
+        for (input, share) in self.0.iter().enumerate() {
+            if *share > most {
+                most = *share;
+                most_excited = Some(input);
+            }
+        }
+        most_excited
+    }
 }
 
 /// Returns the standard deviation of each input over its finite samples.
@@ -53,18 +89,6 @@ fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
         deviations.push(square.sqrt());
     }
     deviations
-}
-
-fn most_excited(record: &[f64], greatest: &[f64]) -> Option<usize> {
-    let mut best = None;
-    let mut best_share = 0.0;
-    for (input, deviation) in record.iter().enumerate() {
-        if greatest[input] > 0.0 && deviation / greatest[input] > best_share {
-            best_share = deviation / greatest[input];
-            best = Some(input);
-        }
-    }
-    best
 }
 
 impl ConditionRecords {
@@ -91,8 +115,9 @@ impl ConditionRecords {
             .filter_map(|(_, row)| row.flight.clone())
             .collect();
         let mut of_input = Vec::new();
-        for ((index, row), excited) in rows.into_iter().zip(excited_inputs(&flights)) {
-            if excited == Some(input) && !row.guess.held_out {
+        let excitations = Excitation::compare_records(&flights);
+        for ((index, row), excitation) in rows.into_iter().zip(excitations) {
+            if excitation.excites(input) && !row.guess.held_out {
                 of_input.push((index, row.guess.kind));
             }
         }
@@ -126,7 +151,21 @@ mod tests {
     #[test]
     fn the_excited_input_is_found_whatever_the_units() {
         // The second input has a unit in which it always moves more than the first.
-        let flights = [[1.0, 20.0], [0.1, 100.0], [0.0, 0.0]].map(record);
-        assert_eq!(excited_inputs(&flights), [Some(0), Some(1), None]);
+        let records = [[1.0, 20.0], [0.1, 100.0], [0.0, 0.0], [0.9, 90.0]].map(record);
+        let excitations = Excitation::compare_records(&records);
+        let inputs: Vec<[Option<usize>; 2]> = excitations
+            .iter()
+            .map(|excitation| [0, 1].map(|focus| excitation.input(focus)))
+            .collect();
+        assert_eq!(
+            inputs,
+            [
+                [Some(0), Some(0)],
+                [Some(1), Some(1)],
+                [None, None],
+                [Some(0), Some(1)]
+            ],
+            "the input in focus if both are excited"
+        );
     }
 }

@@ -108,3 +108,24 @@ impl TimeRole {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roles_over_time_have_the_colours_of_the_bode_view() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let colors = TimeRole::ALL.map(|role| role.color(&palette));
+            assert_eq!(
+                colors,
+                [
+                    palette.perturbed,
+                    palette.identified,
+                    palette.corrected,
+                    palette.text
+                ]
+            );
+        }
+    }
+}

@@ -167,6 +167,8 @@ pub enum ViewTitle {
     ResponseAndCondition,
     /// The response in focus without the condition, for views of all conditions.
     ResponseOnly,
+    /// This name of the view, and the condition.
+    NameAndCondition(&'static str),
     Words(fn(&State) -> String),
 }
 
@@ -232,7 +234,7 @@ const COUPLINGS: ViewContent = ViewContent {
 
 const RECORDS: ViewContent = ViewContent {
     draw: records_view_ui,
-    title: ViewTitle::Condition,
+    title: ViewTitle::NameAndCondition("Records"),
     tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
     tools_width: 380.0,
     pages: records_pages,

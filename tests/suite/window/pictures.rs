@@ -324,7 +324,6 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
             .identification()
             .is_some()
     });
-    click(&mut window, "Page Response");
     look(&mut window, "records");
     let folder = tempfile::tempdir().unwrap();
     crate::assembling::example_folder(folder.path());

@@ -1273,9 +1273,9 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
 #[test]
 fn a_simulation_is_computed_beside_the_window() {
     let mut window = records_window();
-    click(&mut window, "physics model");
-    wait_until(&mut window, "the simulation", |window| {
-        state(window).results.simulations.len() == 1
+    // Nothing is identified, so only the physics model and its correction are compared.
+    wait_until(&mut window, "the simulations", |window| {
+        state(window).results.simulations.len() == 2
     });
     let (job, outcome) = &state(&window).results.simulations[0];
     let validation = outcome.as_ref().unwrap();
@@ -1289,7 +1289,13 @@ fn a_simulation_is_computed_beside_the_window() {
         job.record.time_s.len(),
         "all samples are in some window"
     );
-    click(&mut window, "physics model");
+    click(&mut window, "Show physics over time");
+    assert_eq!(
+        state(&window).results.simulations.len(),
+        2,
+        "a chip hides the curve, and the range of the axis stays"
+    );
+    show(&mut window, View::Bode);
     assert!(
         state(&window).results.simulations.is_empty(),
         "what is not asked for is not kept"
@@ -1390,6 +1396,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "Use x0 as reference");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
     // The list of columns can deselect the reference, and select it again.
+    click(&mut window, "Instead of: Use x0 as reference");
     click(&mut window, "Choose a reference…");
     window.run_steps(10);
     for expected in [&[][..], &["x0".to_owned()][..]] {

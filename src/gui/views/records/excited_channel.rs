@@ -8,15 +8,15 @@ use gdcm_model::simulation::FlightRecord;
 
 use super::frame_cache::{Source, cached};
 use super::page::Page;
-use crate::gui::state::excited_input::excited_inputs;
+use crate::gui::state::excited_input::Excitation;
 
-/// Returns the index of the input that the displayed record excites most, compared with the other
-/// records; the input in focus if no input moves.
+/// Returns the index of the input in focus if the displayed record excites it, otherwise of the input
+/// that it excites most, compared with the other records.
 pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
     displayed_excited_input(ui, page).unwrap_or(page.state.display.selection.pair.input)
 }
 
-/// Returns the index of the input that the displayed record excites most; `None` if no input moves.
+/// Like [`displayed_input`]; `None` if no input moves.
 pub(super) fn displayed_excited_input(ui: &Ui, page: Page<'_>) -> Option<usize> {
     let records = page.records;
     let mut flights: Vec<Arc<FlightRecord>> = Vec::new();
@@ -33,8 +33,10 @@ pub(super) fn displayed_excited_input(ui: &Ui, page: Page<'_>) -> Option<usize> 
     for flight in &flights {
         sources.push(Arc::clone(flight) as _);
     }
-    let excited = cached(ui, "excited inputs", &sources, (), || {
-        excited_inputs(&flights)
+    let excitations = cached(ui, "excited inputs", &sources, (), || {
+        Excitation::compare_records(&flights)
     });
-    excited.get(displayed?).copied().flatten()
+    let focus = page.state.display.selection.pair.input;
+    let excitation = excitations.get(displayed?)?;
+    excitation.input(focus)
 }

@@ -68,9 +68,14 @@ pub(super) struct CaptionedChart {
 }
 
 impl FitLayout {
-    pub(super) fn new(area: Rect) -> Self {
+    /// Divides an area; `more_outputs` outputs are to be drawn below the output in focus.
+    pub(super) fn new(area: Rect, more_outputs: usize) -> Self {
         let is_full = area.height() >= LEAST_FULL;
-        let more = if is_full { MORE_OUTPUTS } else { 0 };
+        let more = if is_full {
+            more_outputs.min(MORE_OUTPUTS)
+        } else {
+            0
+        };
         let charts = 2 + more;
         let texts = CHIPS
             + LANE
@@ -187,7 +192,10 @@ mod tests {
     use super::*;
 
     fn layout(height: f32) -> FitLayout {
-        FitLayout::new(Rect::from_min_size(pos2(10.0, 20.0), vec2(900.0, height)))
+        FitLayout::new(
+            Rect::from_min_size(pos2(10.0, 20.0), vec2(900.0, height)),
+            5,
+        )
     }
 
     fn chart_height(layout: &FitLayout, chart: usize) -> f32 {

@@ -3,12 +3,13 @@
 use egui::{Align2, Rect, Role, Sense, Stroke, Ui, UiBuilder, vec2};
 
 use super::fit_layout::FitLayout;
-use super::histories::histories_ui;
+use super::histories::{histories_ui, shown_outputs};
 use super::page::Page;
 use super::parts_lane::parts_lane_ui;
 use super::record_span::RecordSpan;
 use super::response::response_ui;
 use super::role_chips::role_chips_ui;
+use super::simulation::simulated;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::BodeCurve;
@@ -29,11 +30,13 @@ pub(super) fn fit_ui(
         message_ui(ui, page, area, &no_records_text(page));
         return;
     }
-    let layout = FitLayout::new(area);
-    role_chips_ui(ui, page, layout.chips, commands);
+    let more_outputs = shown_outputs(page).len() - 1;
+    let layout = FitLayout::new(area, more_outputs);
+    let models = simulated(page.state);
+    role_chips_ui(ui, page, &models, layout.chips, commands);
     match RecordSpan::new(page) {
         Some(record) => {
-            if let Some(view) = histories_ui(ui, page, &record, &layout.time) {
+            if let Some(view) = histories_ui(ui, page, &record, &models, &layout.time) {
                 parts_lane_ui(ui, page, &record, layout.lane, &view, commands);
             }
         }

@@ -1,7 +1,7 @@
 //! Summary of the identification of the displayed condition: costs and order of the recommended
 //! model, its use, and progress or failure.
 
-use egui::{Color32, Label, ProgressBar, Rect, RichText, Sense, Ui, vec2};
+use egui::{Color32, Label, ProgressBar, Rect, RichText, Role, Sense, Ui, UiBuilder, vec2};
 
 use gdcm_model::number_format::{counted, decimals};
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
@@ -16,10 +16,12 @@ use super::record_list::{BAD_FIT, CHI_SQUARED};
 use super::value_range::value_text;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::controls::Asks;
+use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
+/// Height of the summary, which does not depend on its content \[pt\].
+const SUMMARY: f32 = 4.0 * LINE + USE_LINE + 8.0;
 /// Height of a line \[pt\].
 const LINE: f32 = 20.0;
 /// Height of the line with the use of the models \[pt\].
@@ -27,8 +29,17 @@ const USE_LINE: f32 = 26.0;
 /// Tooltip of the cost of held-out records.
 const HELD_OUT_HINT: &str = "χ²/dof of the held-out records for the model as it is";
 
-/// Shows the summary; its height does not depend on its content.
+/// Shows the summary; only the reason of a failure may need more than the reserved height.
 pub(super) fn fit_summary_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let size = vec2(ui.available_width(), SUMMARY);
+    ui.allocate_ui(size, |ui| {
+        ui.set_min_size(size);
+        ui.spacing_mut().item_spacing.y = 2.0;
+        lines_ui(ui, page, commands);
+    });
+}
+
+fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
         records,
@@ -60,7 +71,7 @@ pub(super) fn fit_summary_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
             let models = counted(1 + found.bundle.len(), "model");
             let is_outdated = state.is_fit_outdated(condition);
             let words = if is_outdated {
-                "outdated: records or settings changed".to_owned()
+                "outdated".to_owned()
             } else {
                 match job.news().duration_s {
                     Some(duration_s) => format!("{} s, {models}", decimals(duration_s, 1)),
@@ -77,6 +88,7 @@ pub(super) fn fit_summary_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
         }
     }
     use_ui(ui, page, commands);
+    band_ui(ui, page, commands);
 }
 
 /// Allocates a line over the whole width.
@@ -159,8 +171,7 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
             );
             let response = ui.interact(place, ui.scope_id().with(figure.name), Sense::hover());
             let sentence = format!("{} {}", figure.name, figure.value);
-            crate::gui::widgets::controls::named(response, egui::Role::Label, sentence)
-                .on_hover_text(figure.hint);
+            named(response, Role::Label, sentence).on_hover_text(figure.hint);
         }
     }
 }
@@ -186,6 +197,7 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     ui.allocate_ui(size, |ui| {
         ui.set_min_size(size);
         ui.horizontal_centered(|ui| {
+            ui.spacing_mut().item_spacing.x = 8.0;
             if records.identification().is_some() {
                 let text = format!("Use for {condition}");
                 let hint = "Replaces the identified models of this condition; one step to undo";
@@ -200,19 +212,39 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             };
             ui.label(palette.small(words));
             if is_taken {
-                ui.small_button("Restore the file's models")
+                ui.small_button("Restore")
+                    .on_hover_text("Restores the models of the file; one step to undo")
                     .asks(RecordsCommand::Return, commands);
             }
         });
     });
-    if let Some([low, high]) = records.band {
-        ui.horizontal(|ui| {
-            let words = format!(
-                "own band, {} to {} rad/s",
-                decimals(low, 2),
-                decimals(high, 1)
-            );
-            ui.label(palette.small(words));
+}
+
+/// Shows the identification band; an own band has a button that returns to the study's.
+fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
+    let study_band = state.study.settings.band;
+    let [low, high] = records.band.unwrap_or([study_band.min(), study_band.max()]);
+    let line = line_ui(ui, LINE);
+    let whose = if records.band.is_some() {
+        "own band"
+    } else {
+        "band of the study"
+    };
+    let words = format!(
+        "{whose}, {} to {} rad/s",
+        decimals(low, 2),
+        decimals(high, 1)
+    );
+    let shown = painted_text(ui, line, 0.0, &words, small(), palette.dim_text);
+    if records.band.is_some() {
+        let place = line.with_min_x(shown.right() + 10.0);
+        ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+            ui.spacing_mut().button_padding.y = 0.0;
             remedy_ui(ui, &study_band_remedy(), commands);
         });
     }

@@ -18,7 +18,7 @@ use super::history_spans::{gap_spans, mode_spans};
 use super::page::Page;
 use super::record_span::RecordSpan;
 use super::recorded_lines::{RecordedLines, recorded_lines};
-use super::simulation::{Simulated, simulated, value_at};
+use super::simulation::{Simulated, value_at};
 use super::spectrogram::spectrogram_ui;
 use super::time_charts::{READOUT_WIDTH, VALUE_AXIS, time_axis};
 use super::value_range::rounded_range;
@@ -48,12 +48,13 @@ pub(super) fn histories_ui(
     ui: &mut Ui,
     page: Page<'_>,
     record: &RecordSpan,
+    models: &[Simulated<'_>],
     places: &[Rect],
 ) -> Option<TimeView> {
     let charts = TimeCharts {
         page,
         record,
-        models: simulated(page.state),
+        models,
         spans: marked_spans(page),
     };
     charts.show(ui, places)
@@ -110,7 +111,7 @@ struct DrawnChart<'a> {
 struct TimeCharts<'a> {
     page: Page<'a>,
     record: &'a RecordSpan,
-    models: Vec<Simulated<'a>>,
+    models: &'a [Simulated<'a>],
     /// Marked time spans \[s\], the same in every chart.
     spans: Vec<ChartSpan>,
 }
@@ -215,7 +216,7 @@ impl<'a> TimeCharts<'a> {
             has_ticks_across: is_lowest,
         };
         chart.spans = self.spans.clone();
-        for model in &self.models {
+        for model in self.models {
             if let Some(output) = channel.output
                 && self.is_shown(model.role)
             {
@@ -268,7 +269,7 @@ impl<'a> TimeCharts<'a> {
         );
         let mut range = samples;
         if let Some(output) = channel.output {
-            for model in &self.models {
+            for model in self.models {
                 let lines = model.lines(ui, output);
                 let source = Arc::clone(&lines) as _;
                 let name = format!("range {} of {}", channel.index, model.role.name());
@@ -347,7 +348,7 @@ impl<'a> TimeCharts<'a> {
             output: chart.channel.output,
             range: chart.range,
             values,
-            models: &self.models,
+            models: self.models,
             page: self.page,
         };
         let mut place = chart.place.with_min_x(frame.right() + 10.0);
@@ -358,7 +359,7 @@ impl<'a> TimeCharts<'a> {
     fn values_at(&self, ui: &Ui, chart: &DrawnChart<'_>, cursor_s: f64) -> Vec<RoleValue> {
         let mut values = Vec::new();
         if let Some(output) = chart.channel.output {
-            for model in &self.models {
+            for model in self.models {
                 values.push(RoleValue {
                     role: model.role,
                     value: value_at(&model.lines(ui, output), cursor_s),

@@ -104,17 +104,12 @@ impl ChannelReadout<'_> {
         for RoleValue { role, value } in &self.values {
             parts.push(format!("{} {}", role.name(), value_text(*value, digits)));
         }
-        let mut sentence = format!(
+        format!(
             "{} at the cursor [{}]: {}",
             self.channel.name,
             self.channel.unit,
             parts.join(", ")
-        );
-        for mark in channel_caution_marks(self.page, &self.channel.name) {
-            sentence.push_str("; ");
-            sentence.push_str(&mark);
-        }
-        sentence
+        )
     }
 
     /// Shows fit and Theil's coefficient of every model, and χ²/dof of the output.

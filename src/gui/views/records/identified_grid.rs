@@ -13,6 +13,7 @@ use super::value_range::value_text;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
@@ -26,10 +27,13 @@ const CELL: [f32; 2] = [27.0, 19.0];
 /// Least width of a cell \[pt\].
 const LEAST_WIDTH: f32 = 58.0;
 const GAP: f32 = 3.0;
+/// Meaning of the cells; the first note that fits is shown.
+const NOTES: [&str; 2] = ["± 1 σ, dB and deg; bar: coherence", "± 1 σ, dB and deg"];
 /// Thickness of the bar of the coherence \[pt\].
 const BAR: f32 = 2.5;
 
-/// Values of an identified response, as medians over the band.
+/// Values of an identified response: standard deviations in the middle of the band, which decide
+/// whether it is identified, and the median partial coherence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct PairFigures {
     sd_db: Option<f64>,
@@ -45,11 +49,12 @@ impl PairFigures {
             ..Self::default()
         };
         if let Some(bands) = &found.refined.bands {
-            figures.sd_db = middle(bands.sd_db()[pair].iter().copied());
-            figures.sd_deg = middle(bands.sd_deg()[pair].iter().copied());
+            let middle = bands.omega().len() / 2;
+            figures.sd_db = bands.sd_db()[pair].get(middle).copied();
+            figures.sd_deg = bands.sd_deg()[pair].get(middle).copied();
         }
         let points = &found.measured.points;
-        figures.coherence = middle(
+        figures.coherence = median_of(
             points
                 .iter()
                 .map(|point| point.partial_coherence[(pair.output, pair.input)]),
@@ -59,7 +64,7 @@ impl PairFigures {
 }
 
 /// Returns the median of the finite values.
-fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+fn median_of(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut finite: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     if finite.is_empty() {
         return None;
@@ -77,16 +82,15 @@ pub(super) fn identified_grid_ui(
     let palette = page.palette;
     let width = ui.available_width();
     let (heading, _) = ui.allocate_exact_size(vec2(width, HEADING), Sense::hover());
-    painted_text(
-        ui,
-        heading,
-        0.0,
-        "Identified responses",
-        medium(BODY_SIZE),
-        palette.text,
-    );
-    let note = "± 1 σ, dB and deg; bar: coherence";
-    painted_text(ui, heading, AT_RIGHT_END, note, small(), palette.dim_text);
+    let title = "Identified responses";
+    let shown = painted_text(ui, heading, 0.0, title, medium(BODY_SIZE), palette.text);
+    let room = heading.right() - shown.right() - 8.0;
+    let note = NOTES
+        .into_iter()
+        .find(|note| text_width(ui, note, small()) <= room);
+    if let Some(note) = note {
+        painted_text(ui, heading, AT_RIGHT_END, note, small(), palette.dim_text);
+    }
     let dataset = page.state.dataset();
     let outputs = dataset.outputs().len();
     let rows = outputs.max(1) as f32;
@@ -234,10 +238,10 @@ impl Grid<'_> {
 }
 
 impl PairFigures {
-    /// Describes the figures: "± 0.5 dB, ± 3°, coherence 0.97".
+    /// Describes the figures: "± 0.5 dB and ± 3° in the middle of the band, …".
     fn words(&self) -> String {
         let mut words = format!(
-            "± {} dB, ± {}°, partial coherence {} (medians over the band)",
+            "± {} dB and ± {}° in the middle of the band, median partial coherence {}",
             value_text(self.sd_db, 2),
             value_text(self.sd_deg, 1),
             value_text(self.coherence, 2)

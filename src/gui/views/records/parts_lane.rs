@@ -248,9 +248,6 @@ impl Lane<'_> {
             None => {
                 let whole = self.record.whole_row;
                 commands.push(RecordsCommand::AddPart(whole, ends_s).into());
-                // A new part is placed after the earlier parts of its record.
-                let part = whole + self.record.parts.len() + 1;
-                commands.push(RecordsCommand::Choose(part).into());
             }
         }
     }

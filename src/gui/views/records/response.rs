@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, Id, Rect, Sense, Ui, pos2};
+use egui::{Align2, Color32, Id, Rect, Role as WidgetRole, Sense, Ui, pos2};
 
 use gdcm_plot::figure::Range;
 use gdcm_sysid::identification::{CautionNote, TRUSTED_COHERENCE};
@@ -126,7 +126,7 @@ fn empty_ui(ui: &Ui, page: Page<'_>, layout: &ResponseLayout) {
         palette.dim_text,
     );
     let response = ui.interact(area, ui.scope_id().with("no response"), Sense::hover());
-    named(response, egui::Role::Label, text);
+    named(response, WidgetRole::Label, text);
 }
 
 /// Returns the curves of the pair in focus: of the first model while it is refined, otherwise of

@@ -6,7 +6,7 @@ use gdcm_plot::figure::drawing::Dash;
 
 use super::histories::shown_outputs;
 use super::page::Page;
-use super::simulation::simulated;
+use super::simulation::Simulated;
 use super::spectrogram::spectrogram_choice_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
@@ -24,10 +24,16 @@ const SELECTORS: f32 = 290.0;
 /// Number of outputs below the output in focus.
 const MOST_MORE: usize = 2;
 
-pub(super) fn role_chips_ui(ui: &mut Ui, page: Page<'_>, place: Rect, commands: &mut Vec<Command>) {
+/// Draws the row; `models` are compared with the displayed record.
+pub(super) fn role_chips_ui(
+    ui: &mut Ui,
+    page: Page<'_>,
+    models: &[Simulated<'_>],
+    place: Rect,
+    commands: &mut Vec<Command>,
+) {
     let chips = place.with_max_x(place.right() - SELECTORS);
     let mut row = ChipRow::new(chips, SAMPLE);
-    let models = simulated(page.state);
     for role in TimeRole::ALL {
         let is_shown = !page.state.records.hidden_roles.contains(&role);
         let style = CurveStyle {

@@ -30,7 +30,7 @@ pub fn records_side_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: 
         palette,
     };
     let height = ui.available_height();
-    ui.spacing_mut().item_spacing = vec2(6.0, 3.0);
+    ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
     let plots = if height >= LEAST_WITH_PLOTS {
         SMALL_PLOTS_HEIGHT + GAP
     } else {

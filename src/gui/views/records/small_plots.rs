@@ -16,6 +16,7 @@ use crate::gui::plot::chart::{Chart, ChartAxis, ChartLayout};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::records::RecordsPage;
 use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::small;
 
@@ -48,7 +49,7 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
         let caption = half.with_max_y(half.top() + CAPTION);
         let shown = painted_text(ui, caption, 0.0, name, small(), palette.text);
         let room = caption.right() - shown.right();
-        if crate::gui::widgets::elision::text_width(ui, note, small()) + 6.0 < room {
+        if text_width(ui, note, small()) + 6.0 < room {
             painted_text(ui, caption, AT_RIGHT_END, note, small(), palette.dim_text);
         }
     }
@@ -114,6 +115,6 @@ fn plot_ui(
     );
     response
         .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text("Open page Order")
+        .on_hover_text("Opens page Order. Dashed: held out; grey: not determined by the records")
         .asks(RecordsCommand::Show(RecordsPage::Order), commands);
 }

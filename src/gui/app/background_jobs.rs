@@ -36,6 +36,7 @@ use super::wanted_jobs::{
 };
 use crate::executor::Pool;
 use crate::gui::state::background::Background;
+use crate::gui::state::view::View;
 use crate::gui::views::need::Need;
 
 /// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
@@ -231,7 +232,8 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         GdcmApp::identified,
     )
     .with_report(|queue, background| background.identification = queue.progress())
-    .with_withdrawal(GdcmApp::stop_identifying);
+    .with_withdrawal(GdcmApp::stop_identifying)
+    .with_own_stop(|app| app.state.shows_view(View::Records));
     kinds.add(LaneClass::Long, cores, identifications);
 }
 
@@ -274,7 +276,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops every job.
+    /// Stops every job, except those with a *Stop* of their own in a view in front.
     pub(super) fn stop_jobs(&mut self) {
         let kinds = Rc::clone(&self.work.jobs.kinds);
         for kind in kinds.iter() {

@@ -236,11 +236,7 @@ impl<'a> ConditionRows<'a> {
         let id = condition.id();
         let marks = Marks::new(state, id);
         let flight_state = condition.flight_state();
-        let name = format!(
-            "Condition {id}: {}{}",
-            flight_state_words(flight_state),
-            marks.after_name()
-        );
+        let name = condition_name(condition, &marks);
         let look = RowLook {
             is_selected: id == state.condition().id(),
             is_pointed: state.display.selection.hovered_condition == Some(id),
@@ -356,6 +352,16 @@ fn cost_words(
         );
     }
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
+}
+
+/// Returns the accessible name of a row: "Condition 10: 60 kt, low altitude, high weight".
+pub(super) fn condition_name(condition: &Condition, marks: &Marks) -> String {
+    format!(
+        "Condition {}: {}{}",
+        condition.id(),
+        flight_state_words(condition.flight_state()),
+        marks.after_name()
+    )
 }
 
 /// "60 kt, low altitude, high weight".

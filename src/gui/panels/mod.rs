@@ -25,6 +25,7 @@ mod path_forms;
 mod phase_sketch;
 pub mod rail;
 pub mod reasons;
+pub mod record_conditions;
 mod record_dataset_form;
 pub mod response_card;
 pub mod result_panel;

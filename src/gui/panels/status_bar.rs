@@ -12,6 +12,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::state::background::{Background, Steps, error_bar_progress};
 use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -70,7 +71,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     let is_stopped = state.results.stopped || state.results.background.stopped;
     if !is_reading && is_stopped {
         small_button_ui(ui, "Compute", ComputingCommand::Compute.into(), commands);
-    } else if is_reading || state.results.is_stale(now) || beside.is_some() {
+    } else if is_reading || state.results.is_stale(now) || stops_background(state, now) {
         let stop = ComputingCommand::StopComputing.into();
         small_button_ui(ui, "Stop", stop, commands);
     }
@@ -152,6 +153,16 @@ fn words_beside(state: &State, now: f64) -> Option<String> {
     None
 }
 
+/// Returns whether the *Stop* in the status bar stops background work: work started in a view in
+/// front has its *Stop* there.
+fn stops_background(state: &State, now: f64) -> bool {
+    let mut background = state.results.background.clone();
+    if state.shows_view(View::Records) {
+        background.identification = None;
+    }
+    background.is_busy() && state.results.shows_background(now)
+}
+
 /// Counts the models in both bundles over all conditions.
 fn count_models(state: &State) -> usize {
     let mut count = 0;
@@ -203,17 +214,20 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
 }
 
-/// "identifying condition 10, 40 %, then 2 more …".
+/// "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged until the fits are
+/// used".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
-    let jobs = records.running.len();
-    match records.under_way() {
-        Some(job) if jobs >= 2 => {
-            let condition = job.condition;
-            let more = jobs - 1;
-            format!("identifying condition {condition}, {percent} %, then {more} more …")
-        }
-        _ => format!("identifying, {percent} % …"),
+    let mut words = match records.under_way() {
+        Some(job) => format!("identifying condition {}, {percent} %", job.condition),
+        None => format!("identifying, {percent} %"),
+    };
+    let requested = records.requested_count;
+    if requested > 1 {
+        let finished = requested.saturating_sub(records.running.len());
+        words.push_str(&format!(", {finished} of {requested} finished"));
     }
+    words.push_str(" · correction unchanged until the fits are used");
+    words
 }
 
 /// Returns why the assessment leaves out the displayed condition, or else the name of its flight

@@ -19,6 +19,7 @@ use super::forms::Forms;
 use super::notices::{MessageBar, Notice};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
+use super::view::View;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -114,6 +115,11 @@ impl State {
             records: RecordsState::default(),
             assembling: None,
         }
+    }
+
+    /// Returns whether a view is shown, in front or beside it.
+    pub fn shows_view(&self, view: View) -> bool {
+        !self.on_start_page && self.display.layout.arrangement.is_shown(view)
     }
 
     /// Returns the window title: the study, marked if unsaved, and the dataset.

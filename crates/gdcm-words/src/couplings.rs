@@ -5,6 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Channel, Dataset};
 use gdcm_model::number_format::counted;
+use gdcm_model::number_format::decimals;
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, telling};
 use gdcm_study::results::couplings_assessment::{
@@ -171,12 +172,16 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     table
 }
 
-/// Formats a pole in a table: "−0.300 ± 1.200j".
+/// Formats a pole in a table by modulus \[rad/s\] and damping ratio: "2.840, ζ 0.90"; a real pole by
+/// its value: "−0.300".
 fn pole_cell(pole: Complex<f64>) -> String {
-    let imaginary = if pole.im == 0.0 {
-        String::new()
-    } else {
-        format!(" ± {}j", telling(pole.im.abs(), 3))
-    };
-    format!("{}{imaginary}", with_minus_sign(&telling(pole.re, 3)))
+    if pole.im == 0.0 {
+        return with_minus_sign(&telling(pole.re, 3));
+    }
+    let modulus = pole.norm();
+    format!(
+        "{}, \u{3b6} {}",
+        telling(modulus, 3),
+        decimals(-pole.re / modulus, 2)
+    )
 }

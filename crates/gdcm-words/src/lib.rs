@@ -11,7 +11,7 @@
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
 //! [`decision_differences`] and [`dataset_differences`]; [`flight_plan`] for further flights.
-//! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
+//! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirement_grid`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -40,8 +40,8 @@ pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
 pub mod remark;
+pub mod requirement_grid;
 pub mod requirements;
-pub mod requirements_overview;
 pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;

@@ -26,11 +26,13 @@ impl GdcmApp {
             DisplayCommand::ShowEvidence(shown) => display.gains.show_evidence = shown,
             DisplayCommand::ShowAcross(role) => display.frequency.across_role = role,
             DisplayCommand::Assess(figures) => display.judging.assessed = figures,
-            DisplayCommand::ShowRequirements(page) => {
-                display.judging.requirements_page = page;
-                display.judging.requirements_sorting = Default::default();
-                // Discard the zoom: another page has other plots.
-                display.figures.remove(&View::Requirements);
+            DisplayCommand::ShowRequirements(requirements) => {
+                if display.judging.requirements.selected != requirements.selected {
+                    // Discard the zoom: another requirement has other plots.
+                    display.figures.remove(&View::Requirements);
+                    display.judging.history_figure = Default::default();
+                }
+                display.judging.requirements = requirements;
             }
             DisplayCommand::SetFrequencyUnit(unit) => display.curves.unit = unit,
             DisplayCommand::SetLooks(looks) => display.curves.looks = looks,
@@ -39,10 +41,11 @@ impl GdcmApp {
                 for figure in display.figures.values_mut() {
                     figure.request_fit();
                 }
+                display.judging.history_figure.request_fit();
             }
             DisplayCommand::ShowTest(shown) => {
                 display.judging.shows_test = shown;
-                display.figures.remove(&View::Requirements);
+                display.judging.history_figure = Default::default();
             }
         }
     }

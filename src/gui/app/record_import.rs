@@ -16,7 +16,6 @@ use super::readers::SilentProgress;
 use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::record_change::RecordChange;
-use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::message::Message;
 
@@ -30,15 +29,17 @@ struct ReadingStart {
 }
 
 impl GdcmApp {
-    /// Reads the records of the displayed condition once a view that needs them is shown.
+    /// Reads the records of the displayed condition once a view that needs them is shown, then those
+    /// of all conditions if the requirements are shown.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
         let records = &self.state.records;
-        if !self.shows_records()
-            || records.reading.is_some()
-            || records.conditions.contains_key(&id)
-        {
+        if !self.shows_records() || records.reading.is_some() {
+            return;
+        }
+        if records.conditions.contains_key(&id) {
+            self.look_for_other_records();
             return;
         }
         self.state.records.example = self.files.loaded.origin.example();
@@ -49,9 +50,32 @@ impl GdcmApp {
         }
         let name = format!("the records of condition {id}");
         let sources = self.state.records.sources.clone();
-        self.read_records_in_thread(name, sources, move |channels, stop| {
+        self.read_records_in_thread(name, sources, vec![id], move |channels, stop| {
             let mut found = ReadRecords::default();
             own.read(&[id], channels, &stop, &mut found)?;
+            Ok(found)
+        });
+    }
+
+    /// Reads the records of the other conditions if the requirements are shown, which judge all
+    /// conditions.
+    fn look_for_other_records(&mut self) {
+        let arrangement = &self.state.display.layout.arrangement;
+        if !arrangement.is_shown(View::Requirements) {
+            return;
+        }
+        let own = self.own_records();
+        let mut others: Vec<ConditionId> = self.state.dataset().ids().collect();
+        others.retain(|id| !self.state.records.conditions.contains_key(id) && own.has_some(*id));
+        if others.is_empty() {
+            return;
+        }
+        let sources = self.state.records.sources.clone();
+        let name = format!("the records of {}", counted(others.len(), "condition"));
+        let asked = others.clone();
+        self.read_records_in_thread(name, sources, others, move |channels, stop| {
+            let mut found = ReadRecords::default();
+            own.read(&asked, channels, &stop, &mut found)?;
             Ok(found)
         });
     }
@@ -59,9 +83,7 @@ impl GdcmApp {
     fn shows_records(&self) -> bool {
         let display = &self.state.display;
         let arrangement = &display.layout.arrangement;
-        let is_compared = display.judging.requirements_page == RequirementsPage::Histories;
-        arrangement.is_shown(View::Records)
-            || arrangement.is_shown(View::Requirements) && is_compared
+        arrangement.is_shown(View::Records) || arrangement.is_shown(View::Requirements)
     }
 
     /// Returns the source of the conditions' own records.
@@ -90,16 +112,18 @@ impl GdcmApp {
             shown: self.state.condition().id(),
             loaded: self.state.records.conditions.keys().copied().collect(),
         };
-        self.read_records_in_thread(name, sources, move |channels, stop| {
+        self.read_records_in_thread(name, sources, Vec::new(), move |channels, stop| {
             files.read(channels, &SilentProgress(stop))
         });
     }
 
-    /// Reads records in a thread; `sources` are the files and folders that were added earlier.
+    /// Reads records in a thread; `sources` are the files and folders that were added earlier,
+    /// `conditions` those whose own records are read.
     fn read_records_in_thread(
         &mut self,
         name: String,
         sources: Vec<PathBuf>,
+        conditions: Vec<ConditionId>,
         read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError>
         + Send
         + 'static,
@@ -124,8 +148,11 @@ impl GdcmApp {
             if let Some(found) = found.and_then(|found| app.value_or_notify(found)) {
                 app.take_records(found, start);
             }
-            // Create an entry, even without records, to prevent a repeated search.
+            // Create entries, even without records, to prevent a repeated search.
             app.records_of(app.state.condition().id());
+            for id in conditions {
+                app.records_of(id);
+            }
         });
     }
 

@@ -8,7 +8,7 @@ use gdcm_study::AcrossRole;
 use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
-use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::widgets::palette::PlotStyle;
 
 /// Changes the content of a view; no result depends on it.
@@ -34,8 +34,8 @@ pub enum DisplayCommand {
     ShowAcross(AcrossRole),
     /// Changes the assessed quantity or its representation.
     Assess(AssessmentDisplay),
-    /// Shows a page of the Requirements view.
-    ShowRequirements(RequirementsPage),
+    /// Changes the selected requirement, its details, or the order of the grid.
+    ShowRequirements(RequirementsDisplay),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.
     ShowTest(bool),
     SetFrequencyUnit(FrequencyUnit),

@@ -186,6 +186,10 @@ fn title_words(state: &State, title: ViewTitle) -> TitleWords {
             heading: String::new(),
             context: words(state),
         },
+        ViewTitle::Named(name, words) => TitleWords {
+            heading: name.to_owned(),
+            context: words(state),
+        },
         ViewTitle::None => TitleWords {
             heading: String::new(),
             context: String::new(),

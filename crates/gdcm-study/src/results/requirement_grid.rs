@@ -404,7 +404,9 @@ impl RequirementGrid {
 
     /// Returns the column of a condition.
     pub fn column(&self, condition: ConditionId) -> Option<usize> {
-        self.conditions.iter().position(|known| known.id == condition)
+        self.conditions
+            .iter()
+            .position(|known| known.id == condition)
     }
 }
 
@@ -456,11 +458,15 @@ impl GridSource<'_> {
         rows
     }
 
-    /// Returns the rows of the tolerance table that apply to the outputs of the dataset.
+    /// Returns the first row of the tolerance table for each quantity of the dataset. Further rows
+    /// for the same quantity are alternatives in the standard (2.c.3.b joins attitude and rate by
+    /// "or"), not requirements of their own.
     fn peak_error_rows(&self) -> Vec<RowSource> {
         let mut rows = Vec::new();
+        let mut known = BTreeSet::new();
         for (row, tolerance) in self.settings.tolerances.rows().iter().enumerate() {
-            if tolerance.of_outputs(self.dataset.outputs()).is_ok() {
+            let is_new = known.insert((&tolerance.channel, tolerance.integrated));
+            if is_new && tolerance.of_outputs(self.dataset.outputs()).is_ok() {
                 rows.push(RowSource {
                     requirement: Requirement::PeakError(row),
                     limit: RequirementLimit::Tolerance(tolerance.clone()),

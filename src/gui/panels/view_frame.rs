@@ -136,7 +136,7 @@ pub(super) fn tools_ui(
 ) {
     // Skip the front view: its figure button is in the view bar.
     if view != state.display.layout.arrangement.view() {
-        figure_button_ui(ui, state, view, commands);
+        figure_button_ui(ui, view, commands);
     }
     (view_content(view).tools)(ui, state, palette, commands);
     if view.facts().is_of_all_conditions && state.others_are_older() {

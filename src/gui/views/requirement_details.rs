@@ -81,11 +81,22 @@ pub(super) fn details_ui(
     );
     commands.extend(bar_commands);
     if is_closed {
-        let display = RequirementsDisplay {
-            are_details_hidden: true,
-            ..state.display.judging.requirements
-        };
+        let display = closed(state.display.judging.requirements);
         commands.push(DisplayCommand::ShowRequirements(display).into());
+    }
+}
+
+/// Returns the display after Escape: an open editor of a limit is closed before the details.
+fn closed(display: RequirementsDisplay) -> RequirementsDisplay {
+    if display.edited_limit.is_some() {
+        return RequirementsDisplay {
+            edited_limit: None,
+            ..display
+        };
+    }
+    RequirementsDisplay {
+        are_details_hidden: true,
+        ..display
     }
 }
 

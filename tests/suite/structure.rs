@@ -124,6 +124,8 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("lead_price", &[]),
             ("leads", &["remark", "lead_price"]),
             ("couplings", &["coupling_remark", "table"]),
+            ("physics", &["couplings", "table"]),
+            ("suggested_runs", &[]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
             ("flight_plan", &["table"]),

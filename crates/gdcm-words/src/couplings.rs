@@ -49,7 +49,7 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
     table
 }
 
-fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
+pub(crate) fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     let cell = |cost: Option<f64>| match cost {
         Some(cost) => format!("{cost:.1}"),
         None => "-".to_owned(),

@@ -36,6 +36,7 @@ pub mod net_gain;
 mod net_gain_header;
 pub mod net_gain_pairs;
 pub mod overview;
+pub mod physics;
 pub mod poles;
 pub mod records;
 mod requirement_cards;
@@ -84,6 +85,7 @@ use net_gain::net_gain_view_ui;
 use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
+use physics::{physics_header_ui, physics_job, physics_pages, physics_view_ui};
 use poles::{poles_header_ui, poles_view_ui};
 use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
@@ -102,6 +104,7 @@ pub fn view_content(view: View) -> ViewContent {
         View::Overview => OVERVIEW,
         View::Across => ACROSS,
         View::Poles => POLES,
+        View::Physics => PHYSICS,
         View::Couplings => COUPLINGS,
         View::Records => RECORDS,
         View::Channels => CHANNELS,
@@ -205,6 +208,16 @@ const POLES: ViewContent = ViewContent {
     tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
     tools_width: 180.0,
     needs: modes_needs,
+    ..ViewContent::PLAIN
+};
+
+const PHYSICS: ViewContent = ViewContent {
+    draw: physics_view_ui,
+    title: ViewTitle::Words(|_| "common to all conditions".to_owned()),
+    pages: physics_pages,
+    tools: physics_header_ui,
+    tools_width: 240.0,
+    needs: |state| vec![Need::Physics(physics_job(state))],
     ..ViewContent::PLAIN
 };
 

@@ -19,7 +19,9 @@ use super::requirement_modes::modes_detail_ui;
 use super::requirement_selection::{SelectedCell, requirement_names, selected_cell};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::requirements_display::{RequirementDetail, RequirementsDisplay};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::controls::Asks;
@@ -32,7 +34,7 @@ const HEIGHT: f32 = 250.0;
 /// Least distance between cards \[pt\].
 const CARD_GAP: f32 = 16.0;
 /// Widths of the cards, as shares.
-const CARD_SHARES: [f32; 3] = [0.27, 0.36, 0.37];
+const CARD_SHARES: [f32; 3] = [0.26, 0.35, 0.39];
 /// Width of the numbers beside a single card \[pt\].
 const NUMBERS: f32 = 250.0;
 
@@ -167,6 +169,11 @@ impl DetailsBar {
             }
             ui.add_space(8.0);
         }
+        let link = ui
+            .link("Physics parameters…")
+            .on_hover_text("Parameters of the physics model that could explain the difference");
+        link.asks(LayoutCommand::ShowView(View::Physics), commands);
+        ui.add_space(8.0);
         if let Some(command) = &self.use_couplings {
             let link = ui
                 .link("Use couplings")

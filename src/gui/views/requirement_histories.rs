@@ -268,11 +268,8 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         ui.label(palette.small(format!("reading {reading} …")));
     } else if compared_record(state).is_none() {
         ui.add(
-            Label::new(palette.small(
-                "No flight record of this condition is in use (view Records): responses to a test \
-                input are shown instead",
-            ))
-            .truncate(),
+            Label::new(palette.small("No flight record of this condition (view Records)"))
+                .truncate(),
         );
     }
     let test = state.study.requirements.test;

@@ -18,13 +18,13 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::elision::elided;
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, small};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, small};
 
 /// Height of a row \[pt\].
 const ROW: f32 = 19.0;
 /// Right edges of the numbers, as a share of the width: modulus and damping ratio of the model, and
 /// of the identified model.
-const NUMBERS: [f32; 4] = [0.42, 0.53, 0.67, 0.78];
+const NUMBERS: [f32; 4] = [0.41, 0.50, 0.63, 0.72];
 /// Right edge of the names, as a share of the width.
 const NAME: f32 = 0.32;
 
@@ -128,9 +128,9 @@ impl ModeRow<'_> {
         };
         let room = (1.0 - NUMBERS[3]) * row.width() - 10.0;
         let verdict = verdict_words(found.verdict);
-        let shown = elided(ui, verdict, room, BODY_SIZE);
+        let shown = elided(ui, verdict, room, SMALL_SIZE);
         let at = pos2(row.left() + NUMBERS[3] * row.width() + 10.0, row.center().y);
-        painter.text(at, Align2::LEFT_CENTER, shown, body(), color);
+        painter.text(at, Align2::LEFT_CENTER, shown, small(), color);
         let words = format!("Mode {name}: {}", mode_verdict_words(found.verdict));
         let response = named(response, Role::Button, words);
         if response.clicked() {

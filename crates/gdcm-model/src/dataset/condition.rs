@@ -213,6 +213,16 @@ impl Condition {
             .with_moved_models(self.moved.clone())
     }
 
+    /// Returns the condition with other physics models.
+    ///
+    /// # Errors
+    /// The errors of [`Condition::new`] and [`Condition::with_moved_models`].
+    pub fn with_physics(&self, models: Vec<Model>) -> Result<Self, ConditionError> {
+        Self::new(self.flight_state.clone(), models, self.bundles[1].clone())?
+            .with_records(self.records.clone())?
+            .with_moved_models(self.moved.clone())
+    }
+
     /// Returns the flight records in file order; empty where the dataset lists none.
     pub fn records(&self) -> &[ConditionRecord] {
         &self.records

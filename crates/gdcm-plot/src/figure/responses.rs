@@ -53,14 +53,13 @@ impl ConditionSource<'_> {
         }
         for corrected in self.corrected_models(pair, options) {
             let correction = corrected.correction;
-            let shape = match &corrected.result.coupled {
-                None => cache.physics[corrected.model].corrected(&cache.omega, correction),
-                Some(_) => {
-                    let curves = self.curves;
-                    let coupled = curves.with_couplings(corrected.result, corrected.model);
-                    let shape = cache.aligned_shape(&coupled, pair);
-                    shape.corrected(&cache.omega, correction)
-                }
+            let shape = if corrected.result.has_changed_physics() {
+                let curves = self.curves;
+                let coupled = curves.with_couplings(corrected.result, corrected.model);
+                let shape = cache.aligned_shape(&coupled, pair);
+                shape.corrected(&cache.omega, correction)
+            } else {
+                cache.physics[corrected.model].corrected(&cache.omega, correction)
             };
             drawn.push(presentation.curve(corrected.curve, &shape));
         }

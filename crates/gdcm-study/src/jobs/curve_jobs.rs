@@ -89,6 +89,11 @@ impl AcrossJob {
             (AcrossRole::Corrected, Some(analysis)) => analysis.fitted_couplings().cloned(),
             _ => None,
         };
+        // Corrections apply to the moved physics models (M18.5).
+        let dataset = match (role, analysis) {
+            (AcrossRole::Corrected, Some(analysis)) => analysis.moved_dataset(),
+            _ => dataset,
+        };
         Self {
             dataset: Arc::clone(dataset).into(),
             models,

@@ -160,8 +160,9 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
     }
     let analysis = state.shown()?;
     let name = analysis.representative_name(BundleKind::Physics);
-    let physics = state
-        .condition()
+    // The models as compared and corrected: moved by the physics parameters, where there are any.
+    let physics = analysis
+        .condition
         .model(BundleKind::Physics, name)?
         .state_space()?;
     let space = if model == TimeModel::Corrected {

@@ -134,7 +134,10 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 "requirements",
                 &["missing_results", "table", "time_histories"],
             ),
-            ("requirements_overview", &["table", "time_histories"]),
+            (
+                "requirement_grid",
+                &["missing_results", "table", "time_histories"],
+            ),
             (
                 "derivation",
                 &["assessment", "uncertainty", "leads", "solution_details"],

@@ -12,7 +12,7 @@
 //! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
 //! [`decision_differences`] and [`dataset_differences`]; [`identification_caution`] for identified
 //! models; [`flight_plan`] for further flights, [`suggested_runs`] for further runs of the physics
-//! [`requirements`], [`requirements_overview`],
+//! model. Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirement_grid`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -43,8 +43,8 @@ pub mod leads;
 pub mod missing_results;
 pub mod physics;
 pub mod remark;
+pub mod requirement_grid;
 pub mod requirements;
-pub mod requirements_overview;
 pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;

@@ -28,11 +28,13 @@ impl GdcmApp {
             DisplayCommand::Assess(figures) => display.judging.assessed = figures,
             DisplayCommand::ShowParameter(name) => display.physics.selected = Some(name),
             DisplayCommand::ShowPhysics(page) => display.physics.page = page,
-            DisplayCommand::ShowRequirements(page) => {
-                display.judging.requirements_page = page;
-                display.judging.requirements_sorting = Default::default();
-                // Discard the zoom: another page has other plots.
-                display.figures.remove(&View::Requirements);
+            DisplayCommand::ShowRequirements(requirements) => {
+                if display.judging.requirements.selected != requirements.selected {
+                    // Discard the zoom: another requirement has other plots.
+                    display.figures.remove(&View::Requirements);
+                    display.judging.history_figure = Default::default();
+                }
+                display.judging.requirements = requirements;
             }
             DisplayCommand::SetFrequencyUnit(unit) => display.curves.unit = unit,
             DisplayCommand::SetLooks(looks) => display.curves.looks = looks,
@@ -41,10 +43,11 @@ impl GdcmApp {
                 for figure in display.figures.values_mut() {
                     figure.request_fit();
                 }
+                display.judging.history_figure.request_fit();
             }
             DisplayCommand::ShowTest(shown) => {
                 display.judging.shows_test = shown;
-                display.figures.remove(&View::Requirements);
+                display.judging.history_figure = Default::default();
             }
         }
     }

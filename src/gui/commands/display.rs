@@ -9,7 +9,7 @@ use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::physics_display::PhysicsPage;
-use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::widgets::palette::PlotStyle;
 
 /// Changes the content of a view; no result depends on it.
@@ -39,8 +39,8 @@ pub enum DisplayCommand {
     ShowParameter(String),
     /// Shows a page of the Physics view.
     ShowPhysics(PhysicsPage),
-    /// Shows a page of the Requirements view.
-    ShowRequirements(RequirementsPage),
+    /// Changes the selected requirement, its details, or the order of the grid.
+    ShowRequirements(RequirementsDisplay),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.
     ShowTest(bool),
     SetFrequencyUnit(FrequencyUnit),

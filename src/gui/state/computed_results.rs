@@ -83,7 +83,7 @@ pub struct Results {
         RecordHistoryJob,
         Result<Arc<RecordHistory>, NoRecordHistory>,
     )>,
-    /// Models' responses to all records, with their job; see `State::time_histories`.
+    /// Models' responses to the held-out records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Comparisons of models with a record in the time domain, or the reasons for their absence.

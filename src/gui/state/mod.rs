@@ -34,7 +34,7 @@ pub mod preferences;
 pub mod record_change;
 pub mod records;
 pub mod records_page;
-pub mod requirements_page;
+pub mod requirements_display;
 pub mod selection;
 pub mod sheet;
 pub mod shown_results;

@@ -17,7 +17,7 @@
 //! | `assessment`                   | displayed dataset and choice                | may be older |
 //! | `test_answers`                 | displayed dataset, condition and input      | may be older |
 //! | `record_history`               | condition and record of the requested job   | may be older |
-//! | `time_histories`               | the records now in use                      | may be older |
+//! | `time_histories`               | the held-out records                        | may be older |
 //! | `couplings`                    | displayed dataset and assessed couplings    | may be older |
 //! | `physics`                      | displayed dataset and assessed parameters   | may be older |
 //! | `uncertainty`                  | newest analysis                             | its own     |
@@ -215,11 +215,11 @@ impl State {
         Some(history)
     }
 
-    /// Returns the responses of the models to all records; until they are ready, the responses from
-    /// an older analysis with the same records.
+    /// Returns the responses of the models to the held-out records; until they are ready, the
+    /// responses from an older analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, histories) = self.results.time_histories.as_ref()?;
-        if job.records != self.records.history_records() {
+        if job.records != self.records.held_out_records() {
             return None;
         }
         Some(histories)

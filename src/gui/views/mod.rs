@@ -39,9 +39,15 @@ pub mod overview;
 pub mod physics;
 pub mod poles;
 pub mod records;
-pub mod requirement_histories;
+mod requirement_cards;
+mod requirement_details;
+mod requirement_edits;
+mod requirement_grid;
+mod requirement_histories;
 pub mod requirement_history_jobs;
-pub mod requirement_limits;
+mod requirement_limits;
+mod requirement_modes;
+pub mod requirement_selection;
 mod requirement_tables;
 pub mod requirements;
 mod scatter_bars;
@@ -85,7 +91,7 @@ use records::{
     records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
 };
 use requirements::{
-    NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
+    requirements_needs, requirements_tools_ui, requirements_view_ui, requirements_words,
 };
 use variant_analyses::variant_jobs;
 
@@ -170,6 +176,8 @@ pub enum ViewTitle {
     /// This name of the view, and the condition.
     NameAndCondition(&'static str),
     Words(fn(&State) -> String),
+    /// A name, and further words, which are cut first.
+    Named(&'static str, fn(&State) -> String),
 }
 
 const BODE: ViewContent = ViewContent {
@@ -278,8 +286,9 @@ const COMPARE: ViewContent = ViewContent {
 
 const REQUIREMENTS: ViewContent = ViewContent {
     draw: requirements_view_ui,
-    title: ViewTitle::Words(|_| NOT_A_QUALIFICATION.to_owned()),
-    pages: requirements_pages,
+    title: ViewTitle::Named("Requirements", requirements_words),
+    tools: requirements_tools_ui,
+    tools_width: 290.0,
     needs: requirements_needs,
     ..ViewContent::PLAIN
 };

@@ -33,6 +33,7 @@ pub mod reported_error;
 pub mod required_bandwidth;
 pub mod required_modes;
 pub mod required_summary;
+pub mod requirement_grid;
 pub mod requirement_role;
 pub mod requirements;
 pub mod rerun_check;

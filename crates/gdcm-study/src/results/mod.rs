@@ -31,6 +31,7 @@ pub mod required_modes;
 pub mod required_summary;
 pub mod requirement_role;
 pub mod requirements;
+pub mod response_costs;
 pub mod schedule_losses;
 pub mod scheduled_conditions;
 pub mod test_input_responses;

@@ -36,7 +36,7 @@ mod canvas;
 pub mod chart;
 mod chart_layers;
 pub mod chart_view;
-mod chip_row;
+pub mod chip_row;
 pub mod chips;
 mod coherence_strip;
 pub mod curve_command;

@@ -9,7 +9,7 @@ use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Height of the strip \[pt\].
-pub(super) const STRIP_HEIGHT: f32 = 40.0;
+pub(in crate::gui) const STRIP_HEIGHT: f32 = 40.0;
 /// Minimum width of a cell \[pt\].
 const LEAST_CELL: f32 = 96.0;
 /// Width of the columns of frequency and difference, whose names are longer, relative to the column
@@ -102,7 +102,7 @@ impl Readout {
 
 /// Draws a read-out between the panes, its cells side by side; if there is not enough room, the
 /// first cells are omitted.
-pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
+pub(in crate::gui) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
     ui.painter().rect_filled(strip, 6.0, palette.raised);
     let most = ((strip.width() / LEAST_CELL) as usize).saturating_sub(1);
     let left_out = readout.cells.len().saturating_sub(most);

@@ -18,6 +18,7 @@ use super::forms::Forms;
 use super::notices::{MessageBar, Notice};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
+use super::settings_session::SettingsSession;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +50,8 @@ pub struct State {
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: UndoHistory,
+    /// Session of the settings panel, while it is open.
+    pub settings_session: Option<SettingsSession>,
     /// File name of the study, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.
@@ -98,6 +101,7 @@ impl State {
             example: None,
             on_start_page: false,
             history: History::default(),
+            settings_session: None,
             study_name,
             unsaved: false,
             display,

@@ -9,6 +9,7 @@
 //! | live   | live analysis                          | follows every drag                  |
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
+//! | short  | trade-off of α                         | plot beside its slider              |
 //! | short  | test input, record history, simulation | time responses in visible views     |
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
@@ -32,7 +33,7 @@ use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::JobQueue;
 use super::threads::ReplySender;
 use super::wanted_jobs::{
-    curves_job, keep_wanted, needs, proof_jobs, toggles_job, uncertainty_job,
+    curves_job, keep_wanted, needs, proof_jobs, toggles_job, trade_off_job, uncertainty_job,
 };
 use crate::executor::Pool;
 use crate::gui::state::background::Background;
@@ -165,6 +166,12 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app, job, curves| app.state.results.across = Some((job, curves)),
     );
     kinds.add(LaneClass::Short, no_tools, across);
+    let trade_offs = JobKind::new(
+        |app| trade_off_job(&app.state).into_iter().collect(),
+        |app, job, trade_off| app.state.results.trade_off = Some((job, trade_off)),
+    )
+    .with_report(|_, _| {});
+    kinds.add(LaneClass::Short, no_tools, trade_offs);
     let requirements = JobKind::new(
         |app| needed_jobs!(app, Requirements),
         |app, job, tables| app.state.results.requirements = Some((job, tables)),

@@ -38,6 +38,7 @@ pub mod start_page;
 pub mod status_bar;
 pub mod table_menu;
 pub mod tour;
+mod trade_off_plot;
 mod trim_columns;
 pub mod verdict;
 mod verdict_caution;

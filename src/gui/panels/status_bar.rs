@@ -26,6 +26,9 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             if let Some(pointed) = &state.display.selection.pointed_words {
                 let text = RichText::new(pointed).size(SMALL_SIZE);
                 ui.add(Label::new(text).truncate());
+            } else if state.is_setting_dragged() {
+                let words = "error bars update when the slider rests";
+                ui.add(Label::new(palette.small(words)).truncate());
             } else if let Some(notice) = &state.notice {
                 notice_ui(ui, notice, palette, commands);
             } else {

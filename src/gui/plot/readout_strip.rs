@@ -9,7 +9,7 @@ use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Height of the strip \[pt\].
-pub(super) const STRIP_HEIGHT: f32 = 40.0;
+pub(in crate::gui) const STRIP_HEIGHT: f32 = 40.0;
 /// Minimum gap between the two values of a cell \[pt\].
 const VALUE_GAP: f32 = 10.0;
 /// Minimum width of a name beside its sample \[pt\].
@@ -126,7 +126,7 @@ impl Readout {
 
 /// Draws a read-out between the panes, its cells side by side; if there is not enough room, the
 /// first cells are omitted.
-pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
+pub(in crate::gui) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
     ui.painter().rect_filled(strip, 6.0, palette.raised);
     let fit = StripFit::new(ui, strip.width(), readout);
     let cells = &readout.cells[fit.left_out..];

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::error::ErrorCache;
 use gdcm_plot::figure::responses::{AirspeedCache, ResponseCache};
-use gdcm_study::AcrossRole;
 use gdcm_study::stages::condition_curves::ConditionCurves;
 
+use super::across_display::{AcrossDisplay, AcrossFit};
 use crate::gui::plot::overview_scene::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
@@ -19,12 +19,14 @@ pub struct FrequencyPlots {
     pub bode: BodeView,
     /// Axis ranges and transforms of the error plot (ratio and phase difference of the models).
     pub error: BodeView,
-    /// Model role displayed by the plot across conditions.
-    pub across_role: AcrossRole,
+    /// Models and conditions in the plots across conditions.
+    pub across_display: AcrossDisplay,
     /// Axis ranges and transforms of the plot across conditions.
     pub across: BodeView,
-    /// Response and role for which the axes of the plot across conditions were last fitted.
-    pub across_fitted: Option<(Pair, AcrossRole)>,
+    /// Axis ranges and transforms of the plot of the error of the schedule.
+    pub across_error: BodeView,
+    /// Content for which the axes of both plots were last fitted.
+    pub across_fitted: Option<AcrossFit>,
     /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
     pub overview: OverviewView,
@@ -53,6 +55,7 @@ impl FrequencyPlots {
         self.bode.request_fit();
         self.error.request_fit();
         self.across.request_fit();
+        self.across_error.request_fit();
     }
 
     /// Requests that the value axes be fitted to other curves, except axes that have been zoomed.

@@ -3,6 +3,7 @@
 //! Begin with [`window_state`]; its `State` contains everything else. [`shown_results`] says which
 //! results are shown, [`display`] holds the display options of all views.
 
+pub mod across_display;
 pub mod assembling;
 pub mod assembly_columns;
 pub mod assessment_display;
@@ -36,6 +37,7 @@ pub mod records;
 pub mod records_page;
 pub mod requirements_display;
 pub mod selection;
+pub mod settings_session;
 pub mod sheet;
 pub mod shown_results;
 pub mod value_uncertainty;

@@ -19,6 +19,7 @@ use super::forms::Forms;
 use super::notices::{MessageBar, Notice};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
+use super::settings_session::SettingsSession;
 use super::view::View;
 
 /// Recently opened or saved file.
@@ -51,6 +52,8 @@ pub struct State {
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: UndoHistory,
+    /// Session of the settings panel, while it is open.
+    pub settings_session: Option<SettingsSession>,
     /// File name of the study, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.
@@ -100,6 +103,7 @@ impl State {
             example: None,
             on_start_page: false,
             history: History::default(),
+            settings_session: None,
             study_name,
             unsaved: false,
             display,

@@ -27,6 +27,7 @@ pub(crate) mod records;
 mod recovery;
 mod reload;
 mod requirements;
+mod settings;
 mod start;
 mod views;
 mod walk;

@@ -37,6 +37,7 @@ pub mod requirement_grid;
 pub mod requirement_role;
 pub mod requirements;
 pub mod rerun_check;
+pub mod response_costs;
 pub mod schedule_losses;
 pub mod scheduled_conditions;
 pub mod suggested_runs;

@@ -371,15 +371,10 @@ fn every_export_states_what_it_contains() {
             &name,
         ]);
         ended.assert_done();
-        let delays = if ["mat", "csv", "json", "state-space"].contains(&format) {
+        let delays = if ["mat", "csv", "json", "assessment"].contains(&format) {
             "delays own"
         } else {
             "delays none"
-        };
-        let delays = if format == "state-space" {
-            "delays none"
-        } else {
-            delays
         };
         let line = ended
             .out

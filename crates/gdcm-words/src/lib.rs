@@ -10,7 +10,7 @@
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
-//! [`decision_differences`] and [`dataset_differences`]; [`flight_plan`] for further flights.
+//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files; [`flight_plan`] for further flights.
 //! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
@@ -35,6 +35,7 @@ pub mod dataset_differences;
 pub mod decision_differences;
 pub mod derivation;
 pub mod edit;
+pub mod export;
 pub mod flight_plan;
 pub mod lead_price;
 pub mod leads;

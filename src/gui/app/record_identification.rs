@@ -114,7 +114,8 @@ impl GdcmApp {
             };
             let names = names.join(", ");
             let text = format!("adopted {models} in {conditions} {names}");
-            self.notify_done(Message::new("models-adopted", text));
+            let message = Message::new("models-adopted", text);
+            self.notify_done_with(Activity::Other, message, Some(NoticeAction::Undo));
         }
     }
 

@@ -14,6 +14,7 @@ pub mod condition_records;
 pub mod curve_display;
 pub mod display;
 pub mod evidence_cache;
+pub mod export_form;
 pub mod forms;
 pub mod frequency_plots;
 pub mod gain_display;

@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 use gdcm_io::Example;
 use gdcm_io::export::export_set::CHECKSUMS;
-use gdcm_model::dataset::BundleKind;
-use gdcm_model::number_format::full_precision;
+use gdcm_model::dataset::{BundleKind, ModelId};
 use gdcm_study::decisions::export_choices::ExportChoices;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::{Edit, Study};
@@ -77,14 +76,13 @@ pub(super) fn export_command_line(
         if !set.prefix.is_empty() {
             words.extend(["--prefix".to_owned(), set.prefix.clone()]);
         }
-        let is_accepted = |option: &str| {
-            set.formats
+        for given in given_options(form, set.request.breakpoints_kt.as_deref()) {
+            let is_accepted = set
+                .formats
                 .iter()
-                .any(|format| format.options.contains(&option))
-        };
-        for given in option_words(form, &set.request.breakpoints_kt) {
-            if is_accepted(given[0].as_str()) {
-                words.extend(given);
+                .any(|format| format.options.contains(&given.option));
+            if is_accepted {
+                words.extend([given.option.to_owned(), given.argument]);
             }
         }
         let existing = if form.choices.replaces {
@@ -108,30 +106,47 @@ pub(super) fn export_command_line(
     Ok(lines.join("\n"))
 }
 
-/// Returns the options of the export that differ from their defaults, each with its value.
-fn option_words(form: &ExportForm, breakpoints_kt: &Option<Vec<f64>>) -> Vec<[String; 2]> {
+/// Option of a command with its argument.
+struct GivenOption {
+    option: &'static str,
+    argument: String,
+}
+
+/// Returns the options of the export that differ from their defaults.
+fn given_options(form: &ExportForm, breakpoints_kt: Option<&[f64]>) -> Vec<GivenOption> {
     let choices = &form.choices;
     let mut options = Vec::new();
-    let mut add = |option: &str, value: String| options.push([option.to_owned(), value]);
     if let Some(conditions) = &choices.conditions {
         let ids: Vec<String> = conditions.iter().map(ToString::to_string).collect();
-        add("--condition", ids.join(","));
+        options.push(GivenOption {
+            option: "--condition",
+            argument: ids.join(","),
+        });
     }
     if choices.model != ExportChoices::NOMINAL {
-        add("--model", choices.model.clone());
+        options.push(GivenOption {
+            option: "--model",
+            argument: choices.model.clone(),
+        });
     }
     if choices.per_condition {
-        add("--correction", "own".to_owned());
+        options.push(GivenOption {
+            option: "--correction",
+            argument: "own".to_owned(),
+        });
     }
     if choices.pade_order != ExportChoices::default().pade_order {
-        add("--pade", choices.pade_order.to_string());
+        options.push(GivenOption {
+            option: "--pade",
+            argument: choices.pade_order.to_string(),
+        });
     }
     if let Some(airspeeds_kt) = breakpoints_kt {
-        let airspeeds: Vec<String> = airspeeds_kt
-            .iter()
-            .map(|airspeed_kt| full_precision(Some(*airspeed_kt)))
-            .collect();
-        add("--breakpoints", airspeeds.join(","));
+        let airspeeds: Vec<String> = airspeeds_kt.iter().map(f64::to_string).collect();
+        options.push(GivenOption {
+            option: "--breakpoints",
+            argument: airspeeds.join(","),
+        });
     }
     options
 }
@@ -204,7 +219,7 @@ fn condition_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
                     continue;
                 }
                 words.extend(["--reject".to_owned(), format!("{id}:{name}")]);
-                let model = gdcm_model::dataset::ModelId::new(*id, bundle, name);
+                let model = ModelId::new(*id, bundle, name);
                 trial.apply(&Edit::Reject(model)).ok()?;
             }
         }

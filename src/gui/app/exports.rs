@@ -13,6 +13,7 @@ use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
 use gdcm_study::Analysis;
 use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_row::Value;
 use gdcm_study::results::export_note::ExportRemedy;
 
 use super::GdcmApp;
@@ -136,9 +137,7 @@ impl GdcmApp {
                 self.decide(&setting::SCHEDULE_DELAYS.to(DelayScheduling::Always));
             }
             ExportRemedy::SignedDelaysOverAirspeed => {
-                self.decide(&setting::TAU_DEGREE.to(
-                    gdcm_study::decisions::setting_row::Value::Choice(SIGNED_DELAY_DEGREE),
-                ));
+                self.decide(&setting::TAU_DEGREE.to(Value::Choice(SIGNED_DELAY_DEGREE)));
             }
             _ => {}
         }

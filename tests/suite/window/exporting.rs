@@ -5,9 +5,15 @@ use std::path::Path;
 
 use gdcm::gui::state::notices::NoticeAction;
 use gdcm_method::schedule::DelayScheduling;
+use gdcm_study::Edit;
 
 use super::*;
 use crate::commands::Desk;
+
+fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
+    window.key_press_modifiers(modifiers, key);
+    window.run_steps(2);
+}
 
 /// Returns the codes of what the files omit or approximate.
 fn note_codes(window: &Window) -> Vec<&'static str> {

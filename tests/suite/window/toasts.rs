@@ -5,6 +5,7 @@ use gdcm::gui::commands::output::OutputCommand;
 use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::state::panel_tables::TableKind;
 use gdcm::message::Message;
+use gdcm_study::Edit;
 
 use super::*;
 
@@ -79,9 +80,8 @@ fn a_visible_change_produces_no_message() {
     let mut window = window();
     let before = state(&window).notices.messages().len();
     click(&mut window, "Keep physics model V+10kt");
-    window
-        .state_mut()
-        .dispatch(Edit::Hold(pair(&window, "P", "LON"), true));
+    let edit = Edit::Hold(pair(&window, "P", "LON"), true);
+    window.state_mut().dispatch(edit);
     settle(&mut window);
     assert_eq!(state(&window).notices.messages().len(), before);
 }

@@ -19,7 +19,6 @@ use gdcm_study::results::export_note::ExportRemedy;
 use super::GdcmApp;
 use super::export_command_line::{CommandSource, export_command_line};
 use crate::gui::state::export_form::{ExportForm, ExportPlanJob};
-use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::Activity;
 use crate::message::Message;
 

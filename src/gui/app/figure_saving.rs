@@ -1,6 +1,6 @@
 //! Copies and saves the figures and the tables of the views.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::csv_text::{csv_text, save_tables};

@@ -11,6 +11,7 @@ use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
+use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::gui::state::records_page::RecordsPage;
 use crate::message::Message;
 

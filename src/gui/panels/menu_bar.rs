@@ -8,7 +8,7 @@ use egui::{
 
 use gdcm_io::Example;
 
-use super::toasts::{is_toast_shown, toast_ui};
+use super::toasts::ToastBar;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
 use crate::gui::commands::entry::Menu;
@@ -53,9 +53,15 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
         search_ui(ui, palette, commands)
     });
     let room = rest.with_max_x(right.inner - 8.0);
-    if is_toast_shown(&state.notices) {
-        let is_wide = state.display.layout.is_wide;
-        toast_ui(ui, bar, room, is_wide, &state.notices, palette, commands);
+    let toasts = ToastBar {
+        bar,
+        room,
+        is_wide: state.display.layout.is_wide,
+        notices: &state.notices,
+        palette,
+    };
+    if toasts.is_shown() {
+        toasts.ui(ui, commands);
     } else {
         title_ui(ui, bar, room, state, palette);
     }

@@ -30,93 +30,120 @@ const EDGE: f32 = 3.0;
 /// Maximum height of the list of toasts \[pt\].
 const LIST_HEIGHT: f32 = 280.0;
 
-/// Returns whether a toast covers the name of the dataset.
-pub(super) fn is_toast_shown(notices: &Notices) -> bool {
-    notices.toasts().next().is_some()
+/// Place of the toasts in the top bar, and what they show.
+pub(super) struct ToastBar<'a> {
+    /// The whole top bar.
+    pub(super) bar: Rect,
+    /// Room between the menus and the search field.
+    pub(super) room: Rect,
+    pub(super) is_wide: bool,
+    pub(super) notices: &'a Notices,
+    pub(super) palette: &'a Palette,
 }
 
-/// Draws the newest toast in the middle of the bar, within `room`.
-pub(super) fn toast_ui(
-    ui: &mut Ui,
-    bar: Rect,
-    room: Rect,
-    is_wide: bool,
-    notices: &Notices,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let Some(newest) = notices.toasts().next() else {
-        return;
-    };
-    let more = notices.toasts().count() - 1;
-    let width = if is_wide { WIDTHS[0] } else { WIDTHS[1] };
-    let width = width.min(room.width());
-    let left = (bar.center().x - 0.5 * width)
-        .min(room.right() - width)
-        .max(room.left());
-    let top = bar.center().y - 0.5 * HEIGHT;
-    let place = Rect::from_min_size(pos2(left, top), vec2(width, HEIGHT));
-    toast_row_ui(ui, place, &newest.notice, more, notices, palette, commands);
-    let mut is_held = ui.rect_contains_pointer(place);
-    if notices.is_list_open && more > 0 {
-        is_held |= list_ui(ui, place, notices, palette, commands);
+impl ToastBar<'_> {
+    /// Returns whether a toast covers the name of the dataset.
+    pub(super) fn is_shown(&self) -> bool {
+        self.notices.toasts().next().is_some()
     }
-    if is_held {
-        commands.push(FormCommand::HoldToasts.into());
-    }
-}
 
-/// Draws a toast: the coloured edge, the sentence, the action, the count of the others, and the
-/// button that closes it.
-fn toast_row_ui(
-    ui: &mut Ui,
-    place: Rect,
-    notice: &Notice,
-    more: usize,
-    notices: &Notices,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    frame_ui(ui, place, notice, palette);
-    let inner = place
-        .shrink2(vec2(8.0, 2.0))
-        .with_min_x(place.left() + 12.0);
-    let buttons = in_line_ui(ui, inner, true, |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let close = named(
-            ui.add(Button::new("×").frame(false)),
-            Role::Button,
-            "Close message",
-        );
-        close.asks(FormCommand::DismissToast(notice.number), commands);
-        if more > 0 {
-            let text = RichText::new(format!("{more} more"))
-                .size(SMALL_SIZE)
-                .color(palette.accent);
-            let list = ui.add(Button::new(text).frame(false));
-            let list = named(
-                list,
-                Role::Button,
-                format!("{} more", counted(more, "message")),
-            );
-            list.asks(FormCommand::ListToasts(!notices.is_list_open), commands);
+    /// Draws the newest toast in the middle of the bar.
+    pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let Some(newest) = self.notices.toasts().next() else {
+            return;
+        };
+        let more = self.notices.toasts().count() - 1;
+        let place = self.place();
+        self.newest_ui(ui, &newest.notice, more, commands);
+        let mut is_held = ui.rect_contains_pointer(place);
+        if self.notices.is_list_open && more > 0 {
+            is_held |= self.list_ui(ui, commands);
         }
-        if let Some(action) = &notice.action {
-            action_ui(ui, action, palette, commands);
+        if is_held {
+            commands.push(FormCommand::HoldToasts.into());
         }
-        ui.min_rect().left()
-    });
-    let text_place = inner.with_max_x(buttons.inner - 8.0);
-    let shown = end_elided(ui, &notice.text, text_place.width(), BODY_SIZE);
-    painted_text(ui, text_place, 0.0, &shown, body(), palette.text);
-    let label = ui.interact(
-        text_place,
-        ui.scope_id().with(("toast", notice.number)),
-        Sense::hover(),
-    );
-    let label = named(label, Role::Label, &notice.text);
-    if shown != notice.text {
-        label.on_hover_text(&notice.text);
+    }
+
+    fn place(&self) -> Rect {
+        let width = if self.is_wide { WIDTHS[0] } else { WIDTHS[1] };
+        let width = width.min(self.room.width());
+        let left = (self.bar.center().x - 0.5 * width)
+            .min(self.room.right() - width)
+            .max(self.room.left());
+        let top = self.bar.center().y - 0.5 * HEIGHT;
+        Rect::from_min_size(pos2(left, top), vec2(width, HEIGHT))
+    }
+
+    /// Draws the newest toast: the coloured edge, the sentence, the action, the count of the
+    /// others, and the button that closes it.
+    fn newest_ui(&self, ui: &mut Ui, notice: &Notice, more: usize, commands: &mut Vec<Command>) {
+        let palette = self.palette;
+        let place = self.place();
+        frame_ui(ui, place, notice, palette);
+        let inner = place
+            .shrink2(vec2(8.0, 2.0))
+            .with_min_x(place.left() + 12.0);
+        let buttons = in_line_ui(ui, inner, true, |ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let close = ui.add(Button::new("×").frame(false));
+            named(close, Role::Button, "Close message")
+                .asks(FormCommand::DismissToast(notice.number), commands);
+            if more > 0 {
+                self.more_ui(ui, more, commands);
+            }
+            if let Some(action) = &notice.action {
+                action_ui(ui, action, palette, commands);
+            }
+            ui.min_rect().left()
+        });
+        let text_place = inner.with_max_x(buttons.inner - 8.0);
+        let shown = end_elided(ui, &notice.text, text_place.width(), BODY_SIZE);
+        painted_text(ui, text_place, 0.0, &shown, body(), palette.text);
+        let id = ui.scope_id().with(("toast", notice.number));
+        let label = ui.interact(text_place, id, Sense::hover());
+        let label = named(label, Role::Label, &notice.text);
+        if shown != notice.text {
+            label.on_hover_text(&notice.text);
+        }
+    }
+
+    /// Draws the button that opens the list of the other toasts.
+    fn more_ui(&self, ui: &mut Ui, more: usize, commands: &mut Vec<Command>) {
+        let text = RichText::new(format!("{more} more"))
+            .size(SMALL_SIZE)
+            .color(self.palette.accent);
+        let list = ui.add(Button::new(text).frame(false));
+        let name = format!("{} more", counted(more, "message"));
+        let is_opened = !self.notices.is_list_open;
+        named(list, Role::Button, name).asks(FormCommand::ListToasts(is_opened), commands);
+    }
+
+    /// Draws the older toasts below the newest, with whole sentences; returns whether the pointer
+    /// is on them.
+    fn list_ui(&self, ui: &Ui, commands: &mut Vec<Command>) -> bool {
+        let newest = self.place();
+        let palette = self.palette;
+        let area = Area::new(Id::unique("older toasts"))
+            .order(Order::Foreground)
+            .fixed_pos(newest.left_bottom() + vec2(0.0, 4.0));
+        let shown = area.show(ui.ctx(), |ui| {
+            let frame = Frame::new()
+                .fill(palette.raised)
+                .stroke(Stroke::new(1.0, palette.line))
+                .corner_radius(6.0)
+                .inner_margin(Margin::symmetric(0, 6));
+            frame.show(ui, |ui| {
+                ui.set_width(newest.width() - 2.0);
+                ScrollArea::vertical()
+                    .max_height(LIST_HEIGHT)
+                    .show(ui, |ui| {
+                        for toast in self.notices.toasts().skip(1) {
+                            listed_ui(ui, &toast.notice, palette, commands);
+                        }
+                    });
+            });
+        });
+        shown.response.contains_pointer()
     }
 }
 
@@ -162,38 +189,6 @@ fn action_command(action: &NoticeAction) -> Command {
         NoticeAction::OpenAnother => FileCommand::AskOpen.into(),
         NoticeAction::Compute => ComputingCommand::Compute.into(),
     }
-}
-
-/// Draws the older toasts below the newest, with whole sentences; returns whether the pointer is on
-/// them.
-fn list_ui(
-    ui: &Ui,
-    newest: Rect,
-    notices: &Notices,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) -> bool {
-    let area = Area::new(Id::unique("older toasts"))
-        .order(Order::Foreground)
-        .fixed_pos(newest.left_bottom() + vec2(0.0, 4.0));
-    let shown = area.show(ui.ctx(), |ui| {
-        let frame = Frame::new()
-            .fill(palette.raised)
-            .stroke(Stroke::new(1.0, palette.line))
-            .corner_radius(6.0)
-            .inner_margin(Margin::symmetric(0, 6));
-        frame.show(ui, |ui| {
-            ui.set_width(newest.width() - 2.0);
-            ScrollArea::vertical()
-                .max_height(LIST_HEIGHT)
-                .show(ui, |ui| {
-                    for toast in notices.toasts().skip(1) {
-                        listed_ui(ui, &toast.notice, palette, commands);
-                    }
-                });
-        });
-    });
-    shown.response.contains_pointer()
 }
 
 /// Draws an older toast: its sentence wrapped, with its buttons at the right.

@@ -3,7 +3,6 @@
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::file::FileCommand;
-use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::state::records::RecordsPage;

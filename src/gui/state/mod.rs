@@ -15,6 +15,7 @@ pub mod curve_display;
 pub mod display;
 pub mod evidence_cache;
 pub mod export_form;
+pub mod export_plan;
 pub mod forms;
 pub mod frequency_plots;
 pub mod gain_display;

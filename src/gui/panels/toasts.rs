@@ -86,15 +86,16 @@ impl ToastBar<'_> {
         let buttons = in_line_ui(ui, inner, true, |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let close = ui.add(Button::new("×").frame(false));
-            named(close, Role::Button, "Close message")
-                .asks(FormCommand::DismissToast(notice.number), commands);
+            let close = named(close, Role::Button, "Close message");
+            close.asks(FormCommand::DismissToast(notice.number), commands);
+            let mut left = close.rect.left();
             if more > 0 {
-                self.more_ui(ui, more, commands);
+                left = self.more_ui(ui, more, commands);
             }
-            if let Some(action) = &notice.action {
-                action_ui(ui, action, palette, commands);
+            match &notice.action {
+                Some(action) => action_ui(ui, action, palette, commands),
+                None => left,
             }
-            ui.min_rect().left()
         });
         let text_place = inner.with_max_x(buttons.inner - 8.0);
         let shown = end_elided(ui, &notice.text, text_place.width(), BODY_SIZE);
@@ -107,15 +108,17 @@ impl ToastBar<'_> {
         }
     }
 
-    /// Draws the button that opens the list of the other toasts.
-    fn more_ui(&self, ui: &mut Ui, more: usize, commands: &mut Vec<Command>) {
+    /// Draws the button that opens the list of the other toasts; returns its left edge.
+    fn more_ui(&self, ui: &mut Ui, more: usize, commands: &mut Vec<Command>) -> f32 {
         let text = RichText::new(format!("{more} more"))
             .size(SMALL_SIZE)
             .color(self.palette.accent);
         let list = ui.add(Button::new(text).frame(false));
         let name = format!("{} more", counted(more, "message"));
         let is_opened = !self.notices.is_list_open;
-        named(list, Role::Button, name).asks(FormCommand::ListToasts(is_opened), commands);
+        let list = named(list, Role::Button, name);
+        list.asks(FormCommand::ListToasts(is_opened), commands);
+        list.rect.left()
     }
 
     /// Draws the older toasts below the newest, with whole sentences; returns whether the pointer
@@ -164,11 +167,17 @@ fn frame_ui(ui: &Ui, place: Rect, notice: &Notice, palette: &Palette) {
     ui.painter().rect_filled(edge, 2.0, color);
 }
 
-/// Draws the button of an action.
-fn action_ui(ui: &mut Ui, action: &NoticeAction, palette: &Palette, commands: &mut Vec<Command>) {
+/// Draws the button of an action; returns its left edge.
+fn action_ui(
+    ui: &mut Ui,
+    action: &NoticeAction,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) -> f32 {
     let text = RichText::new(action_name(action)).color(palette.accent);
-    ui.add(Button::new(text).frame(false))
-        .asks(action_command(action), commands);
+    let button = ui.add(Button::new(text).frame(false));
+    button.asks(action_command(action), commands);
+    button.rect.left()
 }
 
 fn action_name(action: &NoticeAction) -> &'static str {

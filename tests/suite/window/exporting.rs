@@ -222,3 +222,40 @@ fn the_report_of_an_export_is_written_last() {
     assert_eq!(names(folder.path()), ["corrections.csv", "report.html"]);
     assert_eq!(state(&window).results.background.report, None);
 }
+
+#[test]
+fn a_report_with_records_that_lack_samples_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = super::records::late_dataset(folder.path());
+    let flight = folder.path().join("flight_0.csv");
+    let mut lines: Vec<String> = Vec::new();
+    for (index, line) in fs::read_to_string(&flight).unwrap().lines().enumerate() {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        if (200..240).contains(&index)
+            && let Some(last) = cells.last_mut()
+        {
+            *last = "NaN";
+        }
+        lines.push(cells.join(","));
+    }
+    fs::write(&flight, lines.join("\n")).unwrap();
+    let mut window = window();
+    open_by_path(&mut window, &path);
+    super::views::show(&mut window, View::Records);
+    wait_until(&mut window, "the records", |window| {
+        !state(window).records.history_records().is_empty()
+    });
+    settle(&mut window);
+    let report = folder.path().join("report.html");
+    window
+        .state_mut()
+        .dispatch(gdcm::gui::commands::output::OutputCommand::WriteReport(
+            report.clone(),
+        ));
+    wait_until(&mut window, "the report", |window| {
+        let newest = state(window).notices.newest();
+        newest.is_some_and(|notice| notice.code == "report-written")
+    });
+    assert!(report.exists());
+    assert_eq!(state(&window).results.background.report, None);
+}

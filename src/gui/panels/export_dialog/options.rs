@@ -3,7 +3,7 @@
 use egui::{Button, DragValue, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
 use gdcm_io::export::export_set::CHECKSUMS;
-use gdcm_io::export::{EXPORTERS, FormatGroup};
+use gdcm_io::export::{EXPORTERS, ExportFormat, FormatGroup};
 use gdcm_method::correction::pade::HIGHEST_PADE_ORDER;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::decisions::export_choices::ExportChoices;
@@ -23,6 +23,8 @@ use crate::gui::widgets::text_fields::{is_entered, name_text_field};
 
 /// Height of a line with a check box \[pt\].
 const ROW: f32 = 24.0;
+/// Height of the heading of a group \[pt\].
+const GROUP: f32 = 25.0;
 /// Width of the fields \[pt\].
 const FIELD: f32 = 148.0;
 /// Maximum height of the conditions \[pt\].
@@ -32,25 +34,49 @@ const CHIP: [f32; 2] = [20.0, 22.0];
 
 /// Draws the formats by purpose, each with its file extension.
 pub(super) fn formats_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
-    heading_ui(ui, "Formats", palette);
     let form = &mut state.forms.export;
-    for group in FormatGroup::ALL {
-        group_heading_ui(ui, group.name(), palette);
-        for format in EXPORTERS.iter().filter(|format| format.group == group) {
-            format_ui(
-                ui,
-                form,
-                format.name,
-                format.title,
-                format.extension,
-                palette,
-            );
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        heading_ui(ui, "Formats", palette);
+        for group in FormatGroup::ALL {
+            group_heading_ui(ui, group.name(), palette);
+            for format in EXPORTERS.iter().filter(|format| format.group == group) {
+                format_ui(ui, form, FormatRow::from_format(format), palette);
+            }
         }
-        ui.add_space(4.0);
+        group_heading_ui(ui, "Document", palette);
+        format_ui(ui, form, FormatRow::REPORT, palette);
+        format_ui(ui, form, FormatRow::CHECKSUMS, palette);
+    });
+}
+
+/// Texts of the check box of a format.
+struct FormatRow {
+    /// Name among the choices.
+    name: &'static str,
+    title: &'static str,
+    extension: &'static str,
+}
+
+impl FormatRow {
+    const REPORT: Self = Self {
+        name: REPORT,
+        title: "Report",
+        extension: "html",
+    };
+    const CHECKSUMS: Self = Self {
+        name: CHECKSUMS,
+        title: "Checksums",
+        extension: CHECKSUMS,
+    };
+
+    fn from_format(format: &ExportFormat) -> Self {
+        Self {
+            name: format.name,
+            title: format.title,
+            extension: format.extension,
+        }
     }
-    group_heading_ui(ui, "Document", palette);
-    format_ui(ui, form, REPORT, "Report", "html", palette);
-    format_ui(ui, form, CHECKSUMS, "Checksums", CHECKSUMS, palette);
 }
 
 fn heading_ui(ui: &mut Ui, text: &str, palette: &Palette) {
@@ -62,28 +88,22 @@ fn heading_ui(ui: &mut Ui, text: &str, palette: &Palette) {
 }
 
 fn group_heading_ui(ui: &mut Ui, text: &str, palette: &Palette) {
-    let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
-    painted_text(ui, line, 0.0, text, body(), palette.dim_text);
+    let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), GROUP), Sense::hover());
+    let text_line = line.with_min_y(line.top() + 4.0);
+    painted_text(ui, text_line, 0.0, text, body(), palette.dim_text);
 }
 
 /// Draws the check box of a format, with its extension at the right.
-fn format_ui(
-    ui: &mut Ui,
-    form: &mut ExportForm,
-    name: &str,
-    title: &str,
-    extension: &str,
-    palette: &Palette,
-) {
+fn format_ui(ui: &mut Ui, form: &mut ExportForm, row: FormatRow, palette: &Palette) {
     let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
-    let extension = format!(".{extension}");
+    let extension = format!(".{}", row.extension);
     in_line_ui(ui, line, false, |ui| {
-        let mut is_chosen = form.choices.formats.contains(name);
-        let response = ui.checkbox(&mut is_chosen, title);
-        let name_of_control = format!("Export {title} {extension}");
-        let response = named_switch(response, Role::CheckBox, is_chosen, name_of_control);
+        let mut is_chosen = form.choices.formats.contains(row.name);
+        let response = ui.checkbox(&mut is_chosen, row.title);
+        let name = format!("Export {} {extension}", row.title);
+        let response = named_switch(response, Role::CheckBox, is_chosen, name);
         if response.changed() {
-            form.switch_format(name);
+            form.switch_format(row.name);
         }
     });
     painted_text(

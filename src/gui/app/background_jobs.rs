@@ -10,6 +10,7 @@
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
 //! | short  | trade-off of α                         | plot beside its slider              |
+//! | short  | dry run of an export                   | list of files in the dialog         |
 //! | short  | test input, record history, simulation | time responses in visible views     |
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
@@ -177,6 +178,12 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app, job, tables| app.state.results.requirements = Some((job, tables)),
     );
     kinds.add(LaneClass::Short, cores, requirements);
+    let export_plans = JobKind::new(
+        |app| app.state.export_plan_job().into_iter().collect(),
+        GdcmApp::take_export_plan,
+    )
+    .with_report(|_, _| {});
+    kinds.add(LaneClass::Short, no_tools, export_plans);
     let test_answers = JobKind::new(
         |app| needed_jobs!(app, TestAnswers),
         |app, job, answers| app.state.results.test_answers = Some((job, answers)),

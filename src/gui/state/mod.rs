@@ -18,6 +18,8 @@ pub mod curve_display;
 pub mod display;
 pub mod evidence_cache;
 pub mod excited_input;
+pub mod export_form;
+pub mod export_plan;
 pub mod forms;
 pub mod frequency_plots;
 pub mod gain_display;

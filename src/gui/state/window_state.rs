@@ -16,7 +16,7 @@ use super::assembling::AssemblyState;
 use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
-use super::notices::{MessageBar, Notice};
+use super::notices::{MessageBar, Notices};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
 use super::settings_session::SettingsSession;
@@ -64,8 +64,8 @@ pub struct State {
     pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
-    /// Short message in the status bar.
-    pub notice: Option<Notice>,
+    /// Messages of the session, and toasts.
+    pub notices: Notices,
     /// Persistent messages, in bars below the menu.
     pub message_bars: Vec<MessageBar>,
     /// Recently opened and saved files, newest first.
@@ -110,7 +110,7 @@ impl State {
             results: Results::default(),
             file_cautions,
             differences: Vec::new(),
-            notice: None,
+            notices: Notices::default(),
             message_bars: Vec::new(),
             recent: Vec::new(),
             opening: None,

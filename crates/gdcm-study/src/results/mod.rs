@@ -15,6 +15,7 @@ pub mod coupled_model;
 pub mod coupling_remark;
 pub mod coupling_remark_search;
 pub mod couplings_assessment;
+pub mod export_note;
 pub mod fitted_couplings;
 pub mod lead_compensation;
 pub mod lead_offer;

@@ -12,8 +12,8 @@ use crate::gui::panels::menu_bar::menu_bar_ui;
 use crate::gui::panels::message_bars::message_bars_ui;
 use crate::gui::panels::sheet_frame::sheet_ui;
 use crate::gui::panels::{
-    centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, right_panel,
-    start_page, status_bar,
+    centre, conditions_panel, derivation_sheet, models_panel, rail, right_panel, start_page,
+    status_bar,
 };
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
@@ -153,14 +153,17 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let sheet = if state.display.selection.explained.is_some() {
         Sheet::Derivation
-    } else if let Some(sheet) = state.display.layout.sheet {
+    } else if let Some(sheet) = state.display.layout.sheet
+        && sheet != Sheet::Reasons
+    {
         sheet
     } else {
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
         Sheet::Derivation => derivation_sheet::derivation_sheet_ui(ui, state, palette, commands),
-        Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
+        // Drawn below the verdict.
+        Sheet::Reasons => {}
         Sheet::Models => {
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)
         }

@@ -15,9 +15,12 @@ pub enum LayoutCommand {
     ShowGroup(ViewGroup),
     /// Shows a second view beside the view in front; `None` shows the view in front alone.
     ShowBeside(Option<View>),
+    /// Shows a page of the dock, and unfolds the dock.
     ShowInDock(View),
     /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
+    /// Doubles the height of the dock (`true`), or restores its usual height.
+    EnlargeDock(bool),
     /// Restores the default layout of panels and views.
     ResetLayout,
     /// Shows the left panel in full (`true`) or as a narrow rail.
@@ -39,9 +42,7 @@ pub enum LayoutCommand {
     /// Focuses the field with this accessible name.
     FocusField(&'static str),
     /// Moves the focus to the next or to the previous window region.
-    LeaveRegion {
-        forward: bool,
-    },
+    LeaveRegion { forward: bool },
     /// Shows the first step in the guided tour.
     StartTour,
     /// Shows another step in the guided tour, or ends it.

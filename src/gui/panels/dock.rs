@@ -1,6 +1,7 @@
-//! Dock below the views: a further view, which can be folded to its head.
+//! Dock below the views: net gains and leads. It can be folded to its bar, and enlarged.
 
-use egui::{Align, Button, Frame, Layout, Margin, Panel, RichText, Role, Sense, Ui, vec2};
+use egui::containers::panel::PanelState;
+use egui::{Align, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Ui, vec2};
 
 use super::view_frame::{PADDING, clipped_ui, title_ui, tools_ui};
 use crate::gui::commands::command::Command;
@@ -14,7 +15,8 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws the view in the dock, which is folded to its bar in a low window.
+/// Draws the page of the dock, which is folded to its bar in a low window. A double click on the bar
+/// doubles its height.
 pub(super) fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -23,20 +25,23 @@ pub(super) fn dock_ui(
     commands: &mut Vec<Command>,
 ) {
     let window = ui.ctx().content_rect().height();
-    let is_open = state
-        .display
-        .layout
-        .arrangement
-        .is_dock_open(window >= LEAST_WITH_DOCK);
-    let dock = Dock { view, is_open };
+    let arrangement = &state.display.layout.arrangement;
+    let dock = Dock {
+        view: present_page(state, view),
+        is_open: arrangement.is_dock_open(window >= LEAST_WITH_DOCK),
+        is_enlarged: arrangement.is_dock_enlarged(),
+    };
     let frame = Frame::new().fill(palette.background);
     restore_panel_size(ui, "dock");
-    let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
-    let panel = if is_open {
+    let usual = usual_height(ui, window);
+    let panel = Panel::bottom(dock.panel_name()).frame(frame);
+    let panel = if dock.is_open && dock.is_enlarged {
+        panel.exact_size((2.0 * usual).min(MOST_PART * window).round())
+    } else if dock.is_open {
         panel
             .resizable(true)
-            .default_size((DOCK_PART * window).round())
-            .size_range(140.0..=0.6 * window)
+            .default_size(usual)
+            .size_range(LEAST_OPEN..=0.6 * window)
     } else {
         panel.exact_size(FOLDED)
     };
@@ -50,8 +55,8 @@ pub(super) fn dock_ui(
         };
         clipped_ui(ui, "dock content", area, padding, |ui| {
             dock_head_ui(ui, state, dock, palette, commands);
-            if is_open {
-                let draw = view_content(view).draw;
+            if dock.is_open {
+                let draw = view_content(dock.view).draw;
                 region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
             }
         });
@@ -64,12 +69,57 @@ const FOLDED: f32 = 34.0;
 const LEAST_WITH_DOCK: f32 = 680.0;
 /// Height of the dock, as a share of the window's height.
 const DOCK_PART: f32 = 0.252;
+/// Maximum height of the enlarged dock, as a share of the window's height.
+const MOST_PART: f32 = 0.66;
+/// Minimum height of the unfolded dock \[pt\].
+const LEAST_OPEN: f32 = 140.0;
+/// Height of the window without the dock that gives the Bode plots five ticks on each axis \[pt\]. In
+/// low windows the dock shrinks first.
+const REST_OF_WINDOW: f32 = 568.0;
 
-/// View in the dock, and whether the dock is unfolded.
+/// Returns the usual height of the unfolded dock, or the height to which it was dragged \[pt\].
+fn usual_height(ui: &Ui, window: f32) -> f32 {
+    match PanelState::load(ui.ctx(), ui.scope_id().with("dock")) {
+        Some(dragged) => dragged.size().y,
+        None => default_height(window),
+    }
+}
+
+/// Returns the height of the unfolded dock in a window of this height \[pt\].
+fn default_height(window: f32) -> f32 {
+    (DOCK_PART * window)
+        .min(window - REST_OF_WINDOW)
+        .max(LEAST_OPEN)
+        .round()
+}
+
+/// Returns the page, or the first page if the study has no content for it.
+fn present_page(state: &State, page: View) -> View {
+    let mut pages = View::docked(state.study.settings.phase);
+    if pages.any(|present| present == page) {
+        page
+    } else {
+        View::NetGain
+    }
+}
+
+/// Page of the dock, whether the dock is unfolded, and whether its height is doubled.
 #[derive(Clone, Copy)]
 struct Dock {
     view: View,
     is_open: bool,
+    is_enlarged: bool,
+}
+
+impl Dock {
+    /// Returns the name under which the panel keeps its height.
+    fn panel_name(self) -> &'static str {
+        match (self.is_open, self.is_enlarged) {
+            (true, true) => "enlarged dock",
+            (true, false) => "dock",
+            (false, _) => "folded dock",
+        }
+    }
 }
 
 /// Draws the dock's head: an arrow that folds it, the views it can show, and the tools.
@@ -81,6 +131,13 @@ fn dock_head_ui(
     commands: &mut Vec<Command>,
 ) {
     let width = ui.available_width();
+    let bar = Rect::from_min_size(ui.cursor().min, vec2(width, FOLDED));
+    let bar = ui.interact(bar, ui.scope_id().with("dock bar"), Sense::click());
+    if bar.double_clicked() {
+        let is_enlarged = dock.is_open && dock.is_enlarged;
+        commands.push(LayoutCommand::EnlargeDock(!is_enlarged).into());
+    }
+    named_switch(bar, Role::Button, dock.is_enlarged, "Bar of the dock");
     ui.allocate_ui_with_layout(
         vec2(width, FOLDED),
         Layout::right_to_left(Align::Center),
@@ -104,7 +161,7 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
     let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
     chevron(ui, place.center(), is_open, palette);
     let hint = if is_open {
-        "Fold the plots below"
+        "Fold the plots below; a double click on the bar doubles their height"
     } else {
         "Unfold the plots below"
     };
@@ -128,5 +185,17 @@ fn dock_tabs_ui(ui: &mut Ui, state: &State, front: View, commands: &mut Vec<Comm
         let name = format!("{} in the dock", view.name());
         named_switch(button, Role::Tab, is_front, name)
             .asks(LayoutCommand::ShowInDock(*view), commands);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dock_shrinks_before_the_plots_above() {
+        assert_eq!(default_height(900.0), 227.0);
+        assert_eq!(default_height(720.0), 152.0);
+        assert_eq!(default_height(600.0), LEAST_OPEN);
     }
 }

@@ -182,7 +182,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
         let others = View::ALL
             .into_iter()
-            .filter(|view| *view != arrangement.view())
+            .filter(|view| *view != arrangement.view() && !view.is_dock_page())
             .map(|view| {
                 (
                     format!("Show {} beside", view.name()),

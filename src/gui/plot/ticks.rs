@@ -40,7 +40,7 @@ const DECADE_LABEL_GAP: f64 = 34.0;
 const DECADE_LINE_GAP: f64 = 5.0;
 /// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
 const LEAST_LABEL_GAP: f64 = 13.0;
-/// Factor by which the labels of a low plot move together until it has two.
+/// Factor by which the labels of a low plot move together until it has enough.
 const CLOSER: f64 = 0.8;
 /// Space between two labels along a horizontal axis \[digit widths\].
 const LABEL_SPACE: f64 = 0.6;
@@ -82,6 +82,17 @@ impl Ticks {
     /// Returns the ticks and grid lines between two axis coordinates; the step size of a mark
     /// determines whether egui_plot labels it.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
+        self.marks_with_labels(bounds, units_per_point, 2)
+    }
+
+    /// Like [`Self::marks`], with the labels of a low plot moved together until there are at least
+    /// `least` of them or no more fit.
+    pub(super) fn marks_with_labels(
+        self,
+        bounds: (f64, f64),
+        units_per_point: f64,
+        least: usize,
+    ) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
             .all(f64::is_finite);
@@ -92,7 +103,7 @@ impl Ticks {
         let mut found = self.ticks_between(bounds, units_per_point, gap);
         // A single label does not show the scale, so the labels of a low plot may be closer
         // together.
-        while count_labels(&found) < 2 && gap > LEAST_LABEL_GAP {
+        while count_labels(&found) < least && gap > LEAST_LABEL_GAP {
             gap = (CLOSER * gap).max(LEAST_LABEL_GAP);
             found = self.ticks_between(bounds, units_per_point, gap);
         }
@@ -212,6 +223,25 @@ mod tests {
                 -80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0
             ]
         );
+    }
+
+    #[test]
+    fn a_low_bode_pane_has_five_labels_at_any_usual_range() {
+        for height in [121.0, 137.0, 180.0] {
+            for width in 15..80 {
+                for lower in [-60.0, -53.0, -47.0, -1.0] {
+                    let bounds = (lower, lower + f64::from(width));
+                    let per_point = f64::from(width) / height;
+                    let marks =
+                        Ticks::Decimal(VERTICAL_TICK_GAP).marks_with_labels(bounds, per_point, 5);
+                    let labels = marks.iter().filter(|mark| is_labelled(**mark, per_point));
+                    assert!(
+                        labels.count() >= 5,
+                        "{width} dB in {height} pt from {lower}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -34,6 +34,8 @@ use super::background::{Background, error_bar_progress};
 
 /// Age \[s\] from which results for older settings are marked as stale.
 const STALE_AFTER_S: f64 = 0.15;
+/// Waiting time \[s\] after which a spinner is displayed.
+const SPINS_AFTER_S: f64 = 0.3;
 /// Duration \[s\] after which background work is displayed: most jobs end before a display could be
 /// read.
 const BACKGROUND_AFTER_S: f64 = 0.5;
@@ -148,6 +150,14 @@ impl Results {
     pub fn shows_background(&self, now: f64) -> bool {
         match self.background_since {
             Some(since) => now - since > BACKGROUND_AFTER_S,
+            None => false,
+        }
+    }
+
+    /// Returns whether a spinner is displayed at `now` \[s, window clock\].
+    pub fn spins(&self, now: f64) -> bool {
+        match self.waiting_since {
+            Some(since) => self.is_waiting() && now - since > SPINS_AFTER_S,
             None => false,
         }
     }

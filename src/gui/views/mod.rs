@@ -60,6 +60,7 @@ use gdcm_study::jobs::curve_jobs::ModesJob;
 use crate::gui::commands::command::Command;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 use across::{across_header_ui, across_job, across_view_ui};
 use assessment::assessment_view_ui;
@@ -80,7 +81,7 @@ use overview::overview_view_ui;
 use poles::{poles_header_ui, poles_view_ui};
 use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
-    NOT_A_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
+    NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
 };
 use variant_analyses::variant_jobs;
 
@@ -113,6 +114,8 @@ pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
     /// Additional text in the header.
     pub title: ViewTitle,
+    /// Pages of the view, in the order of the segmented control; empty for a view without pages.
+    pub pages: fn(&State) -> Vec<PageEntry>,
     /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
     /// Width of the tools \[pt\]; the title takes the rest.
@@ -128,11 +131,20 @@ impl ViewContent {
     const PLAIN: Self = Self {
         draw: |_, _, _, _| {},
         title: ViewTitle::None,
+        pages: |_| Vec::new(),
         tools: |_, _, _, _| {},
         tools_width: 0.0,
         needs: |_| Vec::new(),
         figure_pairs: |_| Vec::new(),
     };
+}
+
+/// Page of a view, and the command that shows it.
+#[derive(Clone, Debug)]
+pub struct PageEntry {
+    pub words: PageWords,
+    pub is_shown: bool,
+    pub command: Command,
 }
 
 /// Text in a view's header.
@@ -176,6 +188,7 @@ const ACROSS: ViewContent = ViewContent {
     tools_width: 330.0,
     needs: |state| vec![Need::Across(across_job(state))],
     figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
 };
 
 const POLES: ViewContent = ViewContent {
@@ -241,8 +254,7 @@ const COMPARE: ViewContent = ViewContent {
 const REQUIREMENTS: ViewContent = ViewContent {
     draw: requirements_view_ui,
     title: ViewTitle::Words(|_| NOT_A_QUALIFICATION.to_owned()),
-    tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-    tools_width: 270.0,
+    pages: requirements_pages,
     needs: requirements_needs,
     ..ViewContent::PLAIN
 };

@@ -65,6 +65,10 @@ pub(super) fn panels_ui(
     sheets_ui(ui, centre, state, palette, commands);
 }
 
+/// Maximum height of the conditions, as a share of the left panel's height. Their height depends on
+/// the dataset alone, so that they look the same beside every view.
+const CONDITIONS_PART: f32 = 0.365;
+
 /// Draws the left panel with conditions and models, in full or as a narrow rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
@@ -103,7 +107,7 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             });
             frame.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
-                let most = 0.45 * ui.available_height();
+                let most = CONDITIONS_PART * ui.available_height();
                 ScrollArea::vertical()
                     .id_salt("conditions")
                     .max_height(most)

@@ -1,7 +1,7 @@
 //! Dock below the views: net gains and leads. It can be folded to its bar, and enlarged.
 
 use egui::containers::panel::PanelState;
-use egui::{Align, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Ui, vec2};
+use egui::{Align, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Ui, vec2};
 
 use super::view_frame::{PADDING, clipped_ui, title_ui, tools_ui};
 use crate::gui::commands::command::Command;
@@ -9,7 +9,9 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::view_content;
+use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
 use crate::gui::widgets::painted_text::chevron;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
@@ -122,7 +124,7 @@ impl Dock {
     }
 }
 
-/// Draws the dock's head: an arrow that folds it, the views it can show, and the tools.
+/// Draws the dock's head: an arrow that folds it, the pages, and the tools.
 fn dock_head_ui(
     ui: &mut Ui,
     state: &State,
@@ -149,7 +151,7 @@ fn dock_head_ui(
             let rest = ui.available_rect_before_wrap();
             in_line_ui(ui, rest, false, |ui| {
                 fold_ui(ui, dock.is_open, palette, commands);
-                dock_tabs_ui(ui, state, dock.view, commands);
+                dock_pages_ui(ui, state, dock.view, palette, commands);
                 ui.add_space(4.0);
                 title_ui(ui, state, view_content(dock.view).title, palette);
             });
@@ -170,21 +172,33 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
         .asks(LayoutCommand::OpenDock(!is_open), commands);
 }
 
-/// Draws a tab for each view that the dock can show, or a plain name if it can show only one.
-fn dock_tabs_ui(ui: &mut Ui, state: &State, front: View, commands: &mut Vec<Command>) {
+/// Draws the switch between the pages of the dock, or a plain name if there is only one.
+fn dock_pages_ui(
+    ui: &mut Ui,
+    state: &State,
+    front: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let views: Vec<View> = View::docked(state.study.settings.phase).collect();
+    if let [only] = views[..] {
+        let name = only.facts().long_name.unwrap_or(only.name());
+        ui.label(RichText::new(name).font(medium(BODY_SIZE)));
+        return;
+    }
+    let mut tabs = Vec::new();
     for view in &views {
-        let name = view.facts().long_name.unwrap_or(view.name());
-        let text = RichText::new(name).font(medium(BODY_SIZE));
-        if views.len() == 1 {
-            ui.label(text);
-            continue;
-        }
-        let is_front = *view == front;
-        let button = ui.add(Button::selectable(is_front, text));
-        let name = format!("{} in the dock", view.name());
-        named_switch(button, Role::Tab, is_front, name)
-            .asks(LayoutCommand::ShowInDock(*view), commands);
+        tabs.push(PageTab {
+            words: PageWords {
+                name: view.name(),
+                short_name: view.name(),
+                purpose: view.facts().purpose,
+            },
+            is_shown: *view == front,
+        });
+    }
+    if let Some(clicked) = page_switch_ui(ui, &tabs, palette) {
+        commands.push(LayoutCommand::ShowInDock(views[clicked]).into());
     }
 }
 

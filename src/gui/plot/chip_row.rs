@@ -1,4 +1,4 @@
-//! Lines of chips: places, appearance and accessible names of the single chips.
+//! Line of chips: places, appearance and accessible names of the single chips.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 const CHIP_HEIGHT: f32 = 22.0;
 /// Line height, including the gap below \[pt\].
-const LINE_HEIGHT: f32 = 27.0;
+pub(super) const LINE_HEIGHT: f32 = 28.0;
 /// Gap between two chips \[pt\].
 pub(super) const GAP: f32 = 5.0;
 pub(super) const SAMPLE_GAP: f32 = 6.0;
@@ -45,9 +45,8 @@ impl ChipFace<'_> {
     }
 }
 
-/// Lines of chips in an area, filled from its upper left corner.
+/// Line of chips, filled from its left end.
 pub(super) struct ChipRow {
-    area: Rect,
     /// Upper left corner of the next chip.
     corner: Pos2,
     /// Length of curve samples \[pt\].
@@ -55,18 +54,12 @@ pub(super) struct ChipRow {
 }
 
 impl ChipRow {
-    /// Starts at the upper left corner of `area`, with samples of this length \[pt\].
-    pub(super) fn new(area: Rect, sample_length: f32) -> Self {
+    /// Starts at `corner`, with samples of this length \[pt\].
+    pub(super) fn new(corner: Pos2, sample_length: f32) -> Self {
         Self {
-            area,
-            corner: area.min,
+            corner,
             sample_length,
         }
-    }
-
-    /// Returns the height of the lines up to the last chip \[pt\].
-    pub(super) fn height(&self) -> f32 {
-        self.corner.y - self.area.top() + LINE_HEIGHT
     }
 
     /// Draws a chip. With a curve sample it is a switch, pale and with a dashed outline while its
@@ -105,13 +98,8 @@ impl ChipRow {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Returns the place of the next chip, on a new line if the current line has no room.
     fn next_place(&mut self, width: f32) -> Rect {
-        let size = vec2(width, CHIP_HEIGHT);
-        if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
-            self.corner = pos2(self.area.left(), self.corner.y + LINE_HEIGHT);
-        }
-        let place = Rect::from_min_size(self.corner, size);
+        let place = Rect::from_min_size(self.corner, vec2(width, CHIP_HEIGHT));
         self.corner.x = place.right() + GAP;
         place
     }

@@ -10,6 +10,7 @@ use super::layout::Layout;
 use super::poles_display::PolesDisplay;
 use super::selection::Selection;
 use super::view::View;
+use super::view_pages::ViewPages;
 use crate::gui::plot::FigureView;
 
 /// Display state; none of it changes a result.
@@ -22,6 +23,7 @@ pub struct Display {
     pub gains: GainDisplay,
     pub poles: PolesDisplay,
     pub judging: JudgingDisplay,
+    pub pages: ViewPages,
     /// Figures of the views, kept between frames.
     pub figures: BTreeMap<View, FigureView>,
 }

@@ -22,7 +22,7 @@ use super::response_card::{card_grid_ui, is_not_reduced};
 use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::value_uncertainty::ValueUncertainty;
+use crate::gui::state::value_uncertainty::{ShownHalfWidth, ValueUncertainty};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::{entries_ui, named_switch, tooltip_left_of};
@@ -226,16 +226,18 @@ impl<'a> Cell<'a> {
             return;
         };
         let change = shown.cost[self.pair];
-        let gain_half = self.value_uncertainty.half_width(Scalar::Gain(self.pair));
+        let gain_half = self
+            .value_uncertainty
+            .shown_half_width(Scalar::Gain(self.pair));
         let delay_half = self
             .value_uncertainty
-            .half_width(shown.wanted_delay(self.pair));
+            .shown_half_width(shown.wanted_delay(self.pair));
         let middle = rect.top() + 0.5 * rect.height();
         let upper = CellValue {
             half: rect.with_max_y(middle),
             text: decimals(gain, 2),
             font: medium(BODY_SIZE),
-            bar: gain_half.map(|half| format!("±{:.0}", 100.0 * half)),
+            bar: gain_half.map(|half| half.scaled(100.0)),
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.magnitude,
                 after: change.corrected.magnitude,
@@ -246,7 +248,7 @@ impl<'a> Cell<'a> {
             half: rect.with_min_y(middle - 1.0),
             text: decimals(s_to_ms(delay_s), 0),
             font: small(),
-            bar: delay_half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            bar: delay_half.map(|half| half.scaled(s_to_ms(1.0))),
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.phase,
                 after: change.corrected.phase,
@@ -344,8 +346,8 @@ struct CellValue {
     half: Rect,
     text: String,
     font: FontId,
-    /// Half-width of the error bar: "±12".
-    bar: Option<String>,
+    /// Half-width of the error bar, in the unit of the value.
+    bar: Option<ShownHalfWidth>,
     underline: Option<CostParts>,
     /// Space reserved at the right end \[pt\].
     end_room: f32,
@@ -358,7 +360,12 @@ impl CellValue {
         let line = line.translate(vec2(0.0, -1.5));
         let value = painted_text(ui, line, 0.0, &self.text, self.font, color);
         if let Some(bar) = self.bar {
-            let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
+            let color = if bar.is_older {
+                palette.older(palette.dim_text)
+            } else {
+                palette.dim_text
+            };
+            let galley = ui.painter().layout_no_wrap(bar.text(), small(), color);
             // A three-digit half-width does not fit beside a three-digit value; both are in the
             // tooltip and in the card.
             let place = pos2(
@@ -366,7 +373,7 @@ impl CellValue {
                 line.center().y - 0.5 * galley.size().y,
             );
             if place.x > value.right() {
-                ui.painter().galley(place, galley, palette.dim_text);
+                ui.painter().galley(place, galley, color);
             }
         }
         if let Some(parts) = self.underline {

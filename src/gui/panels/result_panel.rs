@@ -18,6 +18,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::derivation_menu::QUESTION;
 use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::sheet::Sheet;
+use crate::gui::state::value_uncertainty::ShownHalfWidth;
 use crate::gui::state::window_state::State;
 use crate::gui::views::error_bars::error_bar_words;
 use crate::gui::widgets::controls::{Asks, named};
@@ -144,8 +145,8 @@ struct ChannelValue {
     text: String,
     font: FontId,
     color: Color32,
-    /// Half-width of the error bar: "±12".
-    half: Option<String>,
+    /// Half-width of the error bar, in the unit of the value.
+    half: Option<ShownHalfWidth>,
     /// Accessible name.
     name: String,
     /// Unrounded value, for the tooltip.
@@ -217,8 +218,8 @@ impl Side<'_> {
             half: self
                 .state
                 .value_uncertainty()
-                .half_width(scalar)
-                .map(|half| format!("±{:.0}", 100.0 * half)),
+                .shown_half_width(scalar)
+                .map(|half| half.scaled(100.0)),
             name: format!("Gain of {name}"),
             exact: gains[index].to_string(),
             scalar,
@@ -237,7 +238,7 @@ impl Side<'_> {
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
         let half = if is_delayed {
-            self.state.value_uncertainty().half_width(scalar)
+            self.state.value_uncertainty().shown_half_width(scalar)
         } else {
             None
         };
@@ -261,7 +262,7 @@ impl Side<'_> {
             } else {
                 self.palette.quiet_text
             },
-            half: half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            half: half.map(|half| half.scaled(s_to_ms(1.0))),
             name: format!("Delay of {name}"),
             exact,
             scalar,
@@ -280,15 +281,18 @@ impl Side<'_> {
             ..
         } = value;
         let place = painted_upto(ui, row, value.end, &text, value.font, value.color);
-        if let Some(half) = &half {
-            painted_text(
-                ui,
-                row,
-                place.right() - row.left() + 3.0,
-                half,
-                small(),
-                self.palette.dim_text,
-            );
+        let mut spoken = String::new();
+        if let Some(half) = half {
+            let color = if half.is_older {
+                self.palette.older(self.palette.dim_text)
+            } else {
+                self.palette.dim_text
+            };
+            let at = place.right() - row.left() + 3.0;
+            painted_text(ui, row, at, &half.text(), small(), color);
+            if !half.is_older {
+                spoken = half.text();
+            }
         }
         let area = row
             .with_min_x(place.left() - 4.0)
@@ -298,7 +302,7 @@ impl Side<'_> {
         let response = named(
             response,
             Role::Button,
-            format!("{name}: {text} {}", half.unwrap_or_default()).trim_end(),
+            format!("{name}: {text} {spoken}").trim_end(),
         );
         let mut hint = exact;
         if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {

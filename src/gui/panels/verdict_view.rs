@@ -31,13 +31,15 @@ const STEPS: f32 = 28.0;
 /// Padding at the left, where the edge is coloured, and at the right \[pt\].
 const PAD_LEFT: f32 = 16.0;
 const PAD_RIGHT: f32 = 12.0;
+/// Opacity of steps on older results.
+const OLDER: f32 = 0.6;
 /// Gap between two steps \[pt\].
 const GAP: f32 = 8.0;
 
 /// Verdict in the window, with its age.
 pub(super) struct ShownVerdict {
     pub(super) verdict: Verdict,
-    /// Whether the verdict belongs to older settings. It is dimmed, and its steps are disabled.
+    /// Whether the verdict belongs to older settings. Its steps are dimmed and have no effect.
     pub(super) is_older: bool,
     /// Whether the spinner in the heading turns.
     pub(super) spins: bool,
@@ -109,11 +111,14 @@ pub(super) fn verdict_ui(
         row_ui(ui, place, row, verdict.is_met(), palette);
     }
     ui.scope(|ui| {
-        if shown.is_older {
-            ui.disable();
-        }
         let line = StepsLine::new(verdict);
-        line.ui(ui, places.steps, palette, commands);
+        if shown.is_older {
+            // The steps keep the focus but have no effect: others may be recommended in a moment.
+            ui.multiply_opacity(OLDER);
+            line.ui(ui, places.steps, palette, &mut Vec::new());
+        } else {
+            line.ui(ui, places.steps, palette, commands);
+        }
     });
 }
 
@@ -339,9 +344,13 @@ fn primary_ui(
     let label = RichText::new(&step.label)
         .font(medium(BODY_SIZE))
         .color(palette.on_accent());
-    let button = Button::new(label).fill(palette.accent);
-    ui.put(place, button.min_size(place.size()))
-        .asks(step.command.clone(), commands);
+    // The identifier does not depend on the step, so that the next step inherits the focus.
+    let builder = UiBuilder::new().id_salt("primary").max_rect(place);
+    ui.scope_builder(builder, |ui| {
+        let button = Button::new(label).fill(palette.accent);
+        ui.put(place, button.min_size(place.size()))
+            .asks(step.command.clone(), commands);
+    });
 }
 
 /// Draws a step as a link.

@@ -11,7 +11,7 @@ use super::bode_scene::BodeScene;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::drawn_pane::DrawnPane;
 use super::limits_form::LimitsForm;
-use super::steady_range::{AxisUpdate, rounded_out, steady_range};
+use super::steady_range::{AxisUpdate, changed_range, labelled_range};
 use super::value_unit::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
@@ -190,7 +190,10 @@ impl BodeView {
             {
                 let wanted = values.with_margin(FIT_MARGIN, all.quantity.least_height(pane));
                 let shown = self.values[index].range();
-                self.values[index].fit(steady_range(shown, wanted, update));
+                if let Some(changed) = changed_range(shown, wanted, update) {
+                    let scale = all.quantity.unit(pane).scale();
+                    self.values[index].fit(labelled_range(changed, scale));
+                }
             }
         }
     }
@@ -338,7 +341,8 @@ impl BodeView {
         for pane in PANES {
             if let Some(values) = fitted_values(scene.curves, pane, band) {
                 let least = scene.quantity.least_height(pane);
-                let fitted = rounded_out(values.with_margin(FIT_MARGIN, least));
+                let scale = scene.quantity.unit(pane).scale();
+                let fitted = labelled_range(values.with_margin(FIT_MARGIN, least), scale);
                 self.values[pane as usize].fit(fitted);
             }
         }

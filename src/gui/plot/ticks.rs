@@ -40,6 +40,8 @@ const DECADE_LABEL_GAP: f64 = 34.0;
 const DECADE_LINE_GAP: f64 = 5.0;
 /// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
 const LEAST_LABEL_GAP: f64 = 13.0;
+/// Minimum distance between labels that move together until there are more than two \[pt\].
+const LOW_LABEL_GAP: f64 = 17.0;
 /// Factor by which the labels of a low plot move together until it has enough.
 const CLOSER: f64 = 0.8;
 /// Space between two labels along a horizontal axis \[digit widths\].
@@ -103,8 +105,13 @@ impl Ticks {
         let mut found = self.ticks_between(bounds, units_per_point, gap);
         // A single label does not show the scale, so the labels of a low plot may be closer
         // together.
-        while count_labels(&found) < least && gap > LEAST_LABEL_GAP {
-            gap = (CLOSER * gap).max(LEAST_LABEL_GAP);
+        let floor = if least > 2 {
+            LOW_LABEL_GAP
+        } else {
+            LEAST_LABEL_GAP
+        };
+        while count_labels(&found) < least && gap > floor {
+            gap = (CLOSER * gap).max(floor);
             found = self.ticks_between(bounds, units_per_point, gap);
         }
         let mut marks = Vec::with_capacity(found.len());
@@ -199,6 +206,7 @@ pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Ve
 
 #[cfg(test)]
 mod tests {
+    use super::super::steady_range::labelled_range;
     use super::*;
 
     /// Returns whether a mark has a label on an axis with `units_per_point`.
@@ -226,19 +234,22 @@ mod tests {
     }
 
     #[test]
-    fn a_low_bode_pane_has_five_labels_at_any_usual_range() {
-        for height in [121.0, 137.0, 180.0] {
-            for width in 15..80 {
-                for lower in [-60.0, -53.0, -47.0, -1.0] {
-                    let bounds = (lower, lower + f64::from(width));
-                    let per_point = f64::from(width) / height;
-                    let marks =
-                        Ticks::Decimal(VERTICAL_TICK_GAP).marks_with_labels(bounds, per_point, 5);
-                    let labels = marks.iter().filter(|mark| is_labelled(**mark, per_point));
-                    assert!(
-                        labels.count() >= 5,
-                        "{width} dB in {height} pt from {lower}"
-                    );
+    fn a_low_bode_pane_has_five_labels_at_any_range_that_was_fitted() {
+        for height in [137.0, 160.0, 200.0] {
+            for width in 3..400 {
+                for lower in [-361.0, -53.0, -47.0, -1.0] {
+                    for (ticks, scale) in [
+                        (Ticks::Decimal(VERTICAL_TICK_GAP), Scale::Linear),
+                        (Ticks::Degrees, Scale::Degrees),
+                    ] {
+                        let range = Range::new(lower, lower + f64::from(width));
+                        let range = labelled_range(range, scale);
+                        let per_point = range.width() / height;
+                        let bounds = (range.min, range.max);
+                        let marks = ticks.marks_with_labels(bounds, per_point, 5);
+                        let labels = marks.iter().filter(|mark| is_labelled(**mark, per_point));
+                        assert!(labels.count() >= 5, "{range:?} {scale:?} in {height} pt");
+                    }
                 }
             }
         }

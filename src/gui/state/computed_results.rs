@@ -172,3 +172,22 @@ impl Results {
         self.stopped || is_late
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spinner_appears_only_after_a_while_and_not_after_a_stop() {
+        let mut results = Results {
+            requested: 1,
+            waiting_since: Some(10.0),
+            ..Results::default()
+        };
+        assert!(!results.spins(10.29) && results.spins(10.31));
+        results.stopped = true;
+        assert!(!results.spins(11.0));
+        results = Results::default();
+        assert!(!results.spins(11.0), "nothing is awaited");
+    }
+}

@@ -252,8 +252,8 @@ impl State {
         Some(uncertainty)
     }
 
-    /// Returns the uncertainty of the values in the displayed condition; empty until it is
-    /// computed, or if it belongs to older settings.
+    /// Returns the uncertainty of the values in the displayed condition; until it is computed, only
+    /// that for older settings of the same dataset.
     pub fn value_uncertainty(&self) -> ValueUncertainty<'_> {
         let uncertainty = if self.others_are_older() {
             None
@@ -263,6 +263,17 @@ impl State {
         ValueUncertainty {
             condition: self.condition().id(),
             uncertainty: uncertainty.map(AsRef::as_ref),
+            older: self.older_uncertainty(),
+        }
+    }
+
+    /// Returns the last computed uncertainty, if it belongs to the displayed dataset.
+    fn older_uncertainty(&self) -> Option<&Uncertainty> {
+        let (job, uncertainty) = self.results.uncertainty.as_ref()?;
+        if self.is_shown_dataset(&job.analysis.study.dataset) {
+            Some(uncertainty)
+        } else {
+            None
         }
     }
 

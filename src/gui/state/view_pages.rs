@@ -100,7 +100,7 @@ impl ViewPage {
             ],
         };
         let short_name = match self {
-            Self::Overview(true) => "and phase",
+            Self::Overview(true) => "With phase",
             _ => name,
         };
         PageWords {

@@ -7,6 +7,7 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{Button, ComboBox, Response, Role, TextWrapMode, Ui, WidgetInfo};
 
 use super::controls::{hint_ui, named, named_switch};
+use super::painted_text::chevron_down;
 use super::palette::{BODY_SIZE, Palette, body, medium};
 
 /// Draws a small drop-down list of choices (value, text, tooltip); stores the selected value in
@@ -64,10 +65,14 @@ impl PageOption<'_> {
             }
         }
         let text = Self::closed_text_of(self.label, current, palette);
+        let arrow = palette.dim_text;
         let shown = ComboBox::from_id_salt(self.name)
             .selected_text(text)
             .width(0.0)
             .wrap_mode(TextWrapMode::Extend)
+            .icon(move |ui, place, _, _| {
+                chevron_down(ui, place.center(), arrow);
+            })
             .show_ui(ui, |ui| {
                 for (choice, text, hint) in choices {
                     ui.selectable_value(value, *choice, *text)

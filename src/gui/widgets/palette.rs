@@ -201,6 +201,11 @@ impl Palette {
         self.towards_text(curve, 0.3)
     }
 
+    /// Returns the colour of a value that is being computed again.
+    pub fn older(&self, color: Color32) -> Color32 {
+        color.gamma_multiply(0.55)
+    }
+
     /// Returns the colour of text on the accent colour.
     pub fn on_accent(&self) -> Color32 {
         if self.is_dark {

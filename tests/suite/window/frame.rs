@@ -7,6 +7,7 @@ use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::sheet::Sheet;
 use gdcm::gui::state::view::{View, ViewGroup};
 use gdcm::gui::state::view_pages::{CouplingsPage, EvidencePage, PolesPage};
+use gdcm_method::uncertainty::Scalar;
 use gdcm_plot::figure::Range;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
@@ -130,6 +131,29 @@ fn error_bars_appear_without_moving_the_axes() {
         .unwrap()
         .frame();
     assert_eq!(now, frame);
+}
+
+#[test]
+fn error_bars_of_values_stay_until_the_new_ones_are_computed() {
+    let mut window = few_window();
+    wait_for_bars(&mut window);
+    let bar = |window: &Window| {
+        let pair = state(window).display.selection.pair;
+        state(window)
+            .value_uncertainty()
+            .shown_half_width(Scalar::Gain(pair))
+            .expect("there is always a bar")
+    };
+    let before = bar(&window);
+    assert!(!before.is_older);
+    window.state_mut().dispatch(setting::ALPHA_GAIN.to(3.0));
+    window.run_steps(1);
+    let mut was_older = false;
+    while state(&window).uncertainty().is_none() || state(&window).results.is_behind() {
+        was_older |= bar(&window).is_older;
+        window.run_steps(1);
+    }
+    assert!(was_older && !bar(&window).is_older);
 }
 
 fn bode_ranges(window: &Window) -> [Range; 2] {

@@ -41,7 +41,7 @@ const DECADE_LINE_GAP: f64 = 5.0;
 /// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
 const LEAST_LABEL_GAP: f64 = 13.0;
 /// Minimum distance between labels that move together until there are more than two \[pt\].
-const LOW_LABEL_GAP: f64 = 17.0;
+const LOW_LABEL_GAP: f64 = 15.0;
 /// Factor by which the labels of a low plot move together until it has enough.
 const CLOSER: f64 = 0.8;
 /// Space between two labels along a horizontal axis \[digit widths\].

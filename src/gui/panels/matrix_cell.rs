@@ -19,10 +19,11 @@ use gdcm_words::caution::undefined_text;
 
 use super::derivation_sheet::question_menu_ui;
 use super::response_card::{card_grid_ui, is_not_reduced};
+use super::result_panel::OLDER;
 use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::value_uncertainty::{ShownHalfWidth, ValueUncertainty};
+use crate::gui::state::value_uncertainty::ValueUncertainty;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::{entries_ui, named_switch, tooltip_left_of};
@@ -81,7 +82,7 @@ impl<'a> Cell<'a> {
             in_conflict,
             shown: state.shown(),
             state,
-            value_uncertainty: state.value_uncertainty(),
+            value_uncertainty: state.painted_uncertainty(),
         }
     }
 
@@ -226,18 +227,24 @@ impl<'a> Cell<'a> {
             return;
         };
         let change = shown.cost[self.pair];
-        let gain_half = self
-            .value_uncertainty
-            .shown_half_width(Scalar::Gain(self.pair));
+        let gain_half = self.value_uncertainty.half_width(Scalar::Gain(self.pair));
         let delay_half = self
             .value_uncertainty
-            .shown_half_width(shown.wanted_delay(self.pair));
+            .half_width(shown.wanted_delay(self.pair));
+        let gain_bar = gain_half.map(|half| format!("±{:.0}", 100.0 * half));
         let middle = rect.top() + 0.5 * rect.height();
+        let bar_color = if self.state.older_uncertainty().is_some() {
+            palette.dim_text.gamma_multiply(OLDER)
+        } else {
+            palette.dim_text
+        };
         let upper = CellValue {
             half: rect.with_max_y(middle),
             text: decimals(gain, 2),
             font: medium(BODY_SIZE),
-            bar: gain_half.map(|half| half.scaled(100.0)),
+            // Under the pointer, the box that holds the response takes the place of the error bar.
+            bar: if is_pointed { None } else { gain_bar },
+            bar_color,
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.magnitude,
                 after: change.corrected.magnitude,
@@ -248,7 +255,8 @@ impl<'a> Cell<'a> {
             half: rect.with_min_y(middle - 1.0),
             text: decimals(s_to_ms(delay_s), 0),
             font: small(),
-            bar: delay_half.map(|half| half.scaled(s_to_ms(1.0))),
+            bar: delay_half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            bar_color,
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.phase,
                 after: change.corrected.phase,
@@ -346,8 +354,10 @@ struct CellValue {
     half: Rect,
     text: String,
     font: FontId,
-    /// Half-width of the error bar, in the unit of the value.
-    bar: Option<ShownHalfWidth>,
+    /// Half-width of the error bar: "±12".
+    bar: Option<String>,
+    /// Colour of the half-width.
+    bar_color: Color32,
     underline: Option<CostParts>,
     /// Space reserved at the right end \[pt\].
     end_room: f32,
@@ -360,12 +370,7 @@ impl CellValue {
         let line = line.translate(vec2(0.0, -1.5));
         let value = painted_text(ui, line, 0.0, &self.text, self.font, color);
         if let Some(bar) = self.bar {
-            let color = if bar.is_older {
-                palette.older(palette.dim_text)
-            } else {
-                palette.dim_text
-            };
-            let galley = ui.painter().layout_no_wrap(bar.text(), small(), color);
+            let galley = ui.painter().layout_no_wrap(bar, small(), self.bar_color);
             // A three-digit half-width does not fit beside a three-digit value; both are in the
             // tooltip and in the card.
             let place = pos2(
@@ -373,7 +378,7 @@ impl CellValue {
                 line.center().y - 0.5 * galley.size().y,
             );
             if place.x > value.right() {
-                ui.painter().galley(place, galley, color);
+                ui.painter().galley(place, galley, self.bar_color);
             }
         }
         if let Some(parts) = self.underline {

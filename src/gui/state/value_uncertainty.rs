@@ -10,32 +10,6 @@ pub struct ValueUncertainty<'a> {
     pub condition: ConditionId,
     /// `None` while it is not available; see `State::value_uncertainty`.
     pub uncertainty: Option<&'a Uncertainty>,
-    /// Uncertainty for older settings, shown dimmed until the newer one is available.
-    pub older: Option<&'a Uncertainty>,
-}
-
-/// Half-width of an error bar for display.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShownHalfWidth {
-    /// A ratio, or \[s\] for delays.
-    pub value: f64,
-    /// Whether it belongs to older settings.
-    pub is_older: bool,
-}
-
-impl ShownHalfWidth {
-    /// Returns the half-width in another unit, `factor` of which are 1.
-    pub fn scaled(self, factor: f64) -> Self {
-        Self {
-            value: factor * self.value,
-            ..self
-        }
-    }
-
-    /// Returns "±12".
-    pub fn text(self) -> String {
-        format!("±{:.0}", self.value)
-    }
 }
 
 impl<'a> ValueUncertainty<'a> {
@@ -49,23 +23,6 @@ impl<'a> ValueUncertainty<'a> {
     pub fn half_width(&self, scalar: Scalar) -> Option<f64> {
         let (bar, level) = self.error_bar(scalar)?;
         bar.half_width(level)
-    }
-
-    /// Returns the half-width of a value's error bar; until it is computed, that for older settings.
-    pub fn shown_half_width(&self, scalar: Scalar) -> Option<ShownHalfWidth> {
-        if self.uncertainty.is_some() {
-            let value = self.half_width(scalar)?;
-            return Some(ShownHalfWidth {
-                value,
-                is_older: false,
-            });
-        }
-        let older = self.older?;
-        let value = older.bar(self.condition, scalar)?.half_width(older.level)?;
-        Some(ShownHalfWidth {
-            value,
-            is_older: true,
-        })
     }
 
     /// Returns the confidence level, common to all error bars.

@@ -158,7 +158,7 @@ impl Chips<'_> {
                 event: None,
             };
         }
-        let mut row = ChipRow::new(area.min, self.sample());
+        let mut row = ChipRow::new(area, self.sample());
         let mut event = None;
         let switches = self.switches();
         let fitting = self.fitting(ui, &switches, area.width());

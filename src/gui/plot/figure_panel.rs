@@ -8,7 +8,7 @@ use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Panel, Range};
 
-use super::figure_marks::{DrawnMarks, MarkScene, RING};
+use super::figure_marks::{DrawnMarks, MarkScene, RING, has_bars};
 use super::figure_scene::FigureScene;
 use super::figure_zoom::{navigated_ranges, whole_ranges};
 use super::nearest_dot::{PointedMark, nearest_dot};
@@ -117,6 +117,7 @@ impl PlacedPanel<'_> {
             selected: self.scene.selected.as_ref(),
             emphasized: self.emphasized,
             pointed_at: pointed.as_ref().map(|pointed| pointed.at),
+            bars_opacity: self.bars_opacity(ui),
             palette: self.palette,
         };
         marks.paint(ui, &mut view.marks);
@@ -131,6 +132,19 @@ impl PlacedPanel<'_> {
             }
         }
         PlacedResponse { response, pointed }
+    }
+
+    /// Returns the opacity of the error bars, which grows after they have been computed.
+    fn bars_opacity(&self, ui: &Ui) -> f32 {
+        /// Duration of the fade \[s\].
+        const FADE_S: f32 = 0.25;
+        if !has_bars(self.panel()) {
+            ui.ctx()
+                .animate_bool_with_time(self.id.with("bars"), false, 0.0);
+            return 1.0;
+        }
+        ui.ctx()
+            .animate_bool_with_time(self.id.with("bars"), true, FADE_S)
     }
 
     fn panel(&self) -> &Panel {

@@ -1,8 +1,12 @@
 //! Figure on the screen: its plots side by side, the mark under the pointer, and clicks.
 
+use std::collections::BTreeMap;
+
 use egui::{CursorIcon, FontId, Pos2, Rect, Response, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
+use gdcm_plot::figure::axis::Scale;
+use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Figure, Range};
 
@@ -12,6 +16,7 @@ use super::figure_scene::{FigureEvent, FigureScene};
 use super::nearest_dot::PointedMark;
 use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
+use super::steady_range::{AxisUpdate, steady_range};
 use super::tiles::{TiledArea, Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
@@ -29,7 +34,19 @@ pub struct FigureView {
     /// Subject of the figure; a change of subject fits all plots.
     subject: String,
     plots: Vec<PlotView>,
+    /// Ranges of the axes that are fitted to the marks.
+    held: BTreeMap<HeldAxis, Range>,
     question_menu: QuestionMenu,
+}
+
+/// Axis whose range is held between frames.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct HeldAxis {
+    /// Title of the plot; empty for an axis that all plots share.
+    plot: String,
+    /// Index of the panel in the plot, 0 for a shared axis.
+    panel: usize,
+    is_vertical: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -42,8 +59,52 @@ struct PlotView {
 impl FigureView {
     /// Requests that all plots be fitted in the next frame.
     pub fn request_fit(&mut self) {
+        self.held.clear();
         for plot in &mut self.plots {
             plot.first.ranges = None;
+        }
+    }
+
+    /// Replaces the fitted ranges of a figure by those shown before, as long as the marks fit into
+    /// them. Logarithmic axes and axes with names keep their own ranges.
+    pub fn hold_axes(&mut self, figure: &mut Figure, update: AxisUpdate) {
+        let shared = figure.shared;
+        let mut held = BTreeMap::new();
+        for plot in &mut figure.plots {
+            for (number, panel) in plot.panels.iter_mut().enumerate() {
+                for along in [Along::X, Along::Y] {
+                    let is_vertical = along == Along::Y;
+                    let is_shared = if is_vertical { shared.y } else { shared.x };
+                    let wanted = panel.shown(along);
+                    let axis = if is_vertical {
+                        &mut panel.y
+                    } else {
+                        &mut panel.x
+                    };
+                    if axis.scale == Scale::Logarithmic || axis.names.is_some() {
+                        continue;
+                    }
+                    let key = HeldAxis {
+                        plot: if is_shared {
+                            String::new()
+                        } else {
+                            plot.title.clone()
+                        },
+                        panel: if is_shared { 0 } else { number },
+                        is_vertical,
+                    };
+                    let range = match self.held.get(&key) {
+                        Some(shown) => steady_range(*shown, wanted, update),
+                        None => wanted,
+                    };
+                    axis.range = Some(range);
+                    held.insert(key, range);
+                }
+            }
+        }
+        // Without plots, results are being computed for the first time or anew: the ranges stay.
+        if !figure.plots.is_empty() {
+            self.held = held;
         }
     }
 

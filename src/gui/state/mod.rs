@@ -45,5 +45,6 @@ pub mod shown_results;
 pub mod value_uncertainty;
 pub mod view;
 pub mod view_arrangement;
+pub mod view_pages;
 pub mod wanted_dataset;
 pub mod window_state;

@@ -33,6 +33,7 @@ pub mod records;
 pub mod records_page;
 pub mod requirements_page;
 pub mod selection;
+pub mod settings_changes;
 pub mod settings_session;
 pub mod sheet;
 pub mod shown_results;

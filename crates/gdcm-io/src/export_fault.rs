@@ -1,5 +1,7 @@
 //! Reasons why an export is impossible.
 
+use std::io;
+
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::quoted;
@@ -47,6 +49,12 @@ pub enum ExportFault {
         couplings to none"
     )]
     NoCouplings { why: String },
+    /// The study requests physics parameters, but they are unavailable.
+    #[error(
+        "the study requests physics parameters, but they are unavailable: {why}; correct this, or \
+        set the physics parameters to off"
+    )]
+    NoPhysics { why: String },
     /// A condition has no result of its own.
     #[error("condition {condition}: {why}")]
     NoResult { condition: ConditionId, why: String },
@@ -74,9 +82,18 @@ pub enum ExportFault {
         /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
         words: String,
     },
+    #[error("the contents of the file cannot be written: {reason}")]
+    Contents { reason: String },
 }
 
 impl ExportFault {
+    /// Returns the fault of contents that cannot be written.
+    pub(crate) fn contents(error: &io::Error) -> Self {
+        Self::Contents {
+            reason: error.to_string(),
+        }
+    }
+
     /// Returns the stable code by which scripts and tests distinguish the reasons.
     pub fn code(&self) -> &'static str {
         match self {
@@ -87,11 +104,13 @@ impl ExportFault {
             Self::Variables(fault) => fault.code(),
             Self::Schedule(error) => error.code(),
             Self::NoCouplings { .. } => "no-couplings",
+            Self::NoPhysics { .. } => "no-physics",
             Self::NoResult { .. } => "no-result",
             Self::NoCondition { .. } => "unknown-condition",
             Self::NoModel { .. } => "unknown-model",
             Self::NoMatrices { .. } => "no-matrices",
             Self::Model { .. } => "corrected-model",
+            Self::Contents { .. } => "export-contents",
         }
     }
 

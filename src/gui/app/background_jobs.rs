@@ -10,6 +10,7 @@
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
 //! | short  | trade-off of α                         | plot beside its slider              |
+//! | short  | dry run of an export                   | list of files in the dialog         |
 //! | short  | test input, record history, simulation | time responses in visible views     |
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
@@ -37,6 +38,7 @@ use super::wanted_jobs::{
 };
 use crate::executor::Pool;
 use crate::gui::state::background::Background;
+use crate::gui::state::view::View;
 use crate::gui::views::need::Need;
 
 /// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
@@ -176,6 +178,12 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app, job, tables| app.state.results.requirements = Some((job, tables)),
     );
     kinds.add(LaneClass::Short, cores, requirements);
+    let export_plans = JobKind::new(
+        |app| app.state.export_plan_job().into_iter().collect(),
+        GdcmApp::take_export_plan,
+    )
+    .with_report(|_, _| {});
+    kinds.add(LaneClass::Short, no_tools, export_plans);
     let test_answers = JobKind::new(
         |app| needed_jobs!(app, TestAnswers),
         |app, job, answers| app.state.results.test_answers = Some((job, answers)),
@@ -208,6 +216,12 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     )
     .with_report(|queue, background| background.couplings = queue.progress());
     kinds.add(LaneClass::Long, engines.sharing(), couplings);
+    let physics = JobKind::new(
+        |app| needed_jobs!(app, Physics),
+        |app, job, assessed| app.state.results.physics = Some((job, assessed)),
+    )
+    .with_report(|queue, background| background.physics = queue.progress());
+    kinds.add(LaneClass::Long, engines.sharing(), physics);
     let time_histories = JobKind::new(
         |app| needed_jobs!(app, TimeHistories),
         |app, job, histories| app.state.results.time_histories = Some((job, histories)),
@@ -232,7 +246,8 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         GdcmApp::identified,
     )
     .with_report(|queue, background| background.identification = queue.progress())
-    .with_withdrawal(GdcmApp::stop_identifying);
+    .with_withdrawal(GdcmApp::stop_identifying)
+    .with_own_stop(|app| app.state.shows_view(View::Records));
     kinds.add(LaneClass::Long, cores, identifications);
 }
 
@@ -275,7 +290,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops every job.
+    /// Stops every job, except those with a *Stop* of their own in a view in front.
     pub(super) fn stop_jobs(&mut self) {
         let kinds = Rc::clone(&self.work.jobs.kinds);
         for kind in kinds.iter() {

@@ -9,7 +9,8 @@ use crate::gui::state::across_display::{AcrossConditions, AcrossPage};
 use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
-use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::physics_display::PhysicsPage;
+use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::widgets::palette::PlotStyle;
 
 /// Changes the content of a view; no result depends on it.
@@ -41,8 +42,12 @@ pub enum DisplayCommand {
     ShowAcrossPage(AcrossPage),
     /// Changes the assessed quantity or its representation.
     Assess(AssessmentDisplay),
-    /// Shows a page of the Requirements view.
-    ShowRequirements(RequirementsPage),
+    /// Selects a physics parameter by name.
+    ShowParameter(String),
+    /// Shows a page of the Physics view.
+    ShowPhysics(PhysicsPage),
+    /// Changes the selected requirement, its details, or the order of the grid.
+    ShowRequirements(RequirementsDisplay),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.
     ShowTest(bool),
     SetFrequencyUnit(FrequencyUnit),

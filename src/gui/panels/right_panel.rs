@@ -17,6 +17,7 @@ use super::{matrix_panel, response_card, result_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
+use crate::gui::views::view_content;
 use crate::gui::widgets::controls::{Asks, named_switch};
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::escape_key::take_escape;
@@ -65,6 +66,10 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
         });
         ui.add_space(8.0);
         ui.set_max_width(width);
+        let view = state.display.layout.arrangement.view();
+        if let Some(side_ui) = view_content(view).side {
+            return side_ui(ui, state, palette, commands);
+        }
         let is_folded = window < LEAST_WITH_RESULT;
         region_ui(ui, Region::Result, |ui| {
             result_panel::result_ui(ui, state, is_folded, palette, commands)

@@ -137,7 +137,7 @@ pub(super) fn tools_ui(
 ) {
     // Skip the front view: its figure button is in the view bar.
     if view != state.display.layout.arrangement.view() {
-        figure_button_ui(ui, state, view, commands);
+        figure_button_ui(ui, view, commands);
     }
     (view_content(view).tools)(ui, state, palette, commands);
     if view.facts().is_of_all_conditions && state.others_are_older() {
@@ -183,8 +183,16 @@ fn title_words(state: &State, title: ViewTitle) -> TitleWords {
             heading: format!("Condition {id}"),
             context: flight_state.clone(),
         },
+        ViewTitle::NameAndCondition(name) => TitleWords {
+            heading: name.to_owned(),
+            context: format!("condition {id}, {flight_state}"),
+        },
         ViewTitle::Words(words) => TitleWords {
             heading: String::new(),
+            context: words(state),
+        },
+        ViewTitle::Named(name, words) => TitleWords {
+            heading: name.to_owned(),
             context: words(state),
         },
         ViewTitle::None => TitleWords {

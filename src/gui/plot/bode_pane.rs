@@ -161,7 +161,13 @@ impl<'a> PaneScene<'a> {
         if let Some(optima) = scene.optima {
             self.add_band(plot, optima, &bounds, self.palette.corrected);
         }
-        let image = drawn.image_of_many(plot.ctx(), scene.curves, &transform, self.palette);
+        let image = drawn.image_of_many(
+            plot.ctx(),
+            scene.curves,
+            &transform,
+            self.looks,
+            self.palette,
+        );
         self.add_curves(plot, &drawn.curves, image);
         self.veil_outside(plot);
         self.add_cursors(plot);

@@ -44,7 +44,6 @@ mod curve_layer;
 mod curve_menu;
 pub mod curve_style;
 pub mod derivation_menu;
-pub mod dragged_range;
 mod drawn_box;
 pub mod drawn_curves;
 mod drawn_pane;

@@ -1,10 +1,12 @@
 //! State of the frequency plots, kept between frames.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::error::ErrorCache;
 use gdcm_plot::figure::responses::{AirspeedCache, ResponseCache};
+use gdcm_study::stages::condition_curves::ConditionCurves;
 
 use super::across_display::{AcrossDisplay, AcrossFit};
 use crate::gui::plot::overview_scene::OverviewView;
@@ -39,6 +41,15 @@ pub struct FrequencyPlots {
 }
 
 impl FrequencyPlots {
+    /// Drops the shapes of responses that do not belong to these curves, with the curves of other
+    /// conditions that they keep in memory.
+    pub fn keep_shapes_of(&mut self, curves: Option<&Arc<ConditionCurves>>) {
+        match curves {
+            Some(curves) => self.shapes.retain(|_, cache| cache.is_from(curves)),
+            None => self.shapes.clear(),
+        }
+    }
+
     /// Requests that all axes be fitted to their curves in the next frame.
     pub fn fit(&mut self) {
         self.bode.request_fit();

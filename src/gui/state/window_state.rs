@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::Example;
+use gdcm_io::file_caution::FileCaution;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::Study;
 use gdcm_study::decisions::dataset_differences::Difference;
@@ -15,10 +16,11 @@ use super::assembling::AssemblyState;
 use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
-use super::notices::{MessageBar, Notice};
+use super::notices::{MessageBar, Notices};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
 use super::settings_session::SettingsSession;
+use super::view::View;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,11 +61,11 @@ pub struct State {
     pub display: Display,
     pub results: Results,
     /// Cautions from reading the dataset file.
-    pub file_cautions: Vec<String>,
+    pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
-    /// Short message in the status bar.
-    pub notice: Option<Notice>,
+    /// Messages of the session, and toasts.
+    pub notices: Notices,
     /// Persistent messages, in bars below the menu.
     pub message_bars: Vec<MessageBar>,
     /// Recently opened and saved files, newest first.
@@ -82,7 +84,7 @@ pub struct State {
 
 impl State {
     /// Creates the state for a window that shows `study` for the first time.
-    pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
+    pub fn new(study: Study, study_name: String, file_cautions: Vec<FileCaution>) -> Self {
         let pair = study
             .dataset
             .measuring_pairs()
@@ -108,7 +110,7 @@ impl State {
             results: Results::default(),
             file_cautions,
             differences: Vec::new(),
-            notice: None,
+            notices: Notices::default(),
             message_bars: Vec::new(),
             recent: Vec::new(),
             opening: None,
@@ -117,6 +119,11 @@ impl State {
             records: RecordsState::default(),
             assembling: None,
         }
+    }
+
+    /// Returns whether a view is shown, in front or beside it.
+    pub fn shows_view(&self, view: View) -> bool {
+        !self.on_start_page && self.display.layout.arrangement.is_shown(view)
     }
 
     /// Returns the window title: the study, marked if unsaved, and the dataset.

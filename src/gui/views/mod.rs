@@ -38,11 +38,18 @@ pub mod net_gain;
 mod net_gain_header;
 pub mod net_gain_pairs;
 pub mod overview;
+pub mod physics;
 pub mod poles;
 pub mod records;
-pub mod requirement_histories;
+mod requirement_cards;
+mod requirement_details;
+mod requirement_edits;
+mod requirement_grid;
+mod requirement_histories;
 pub mod requirement_history_jobs;
-pub mod requirement_limits;
+mod requirement_limits;
+mod requirement_modes;
+pub mod requirement_selection;
 mod requirement_tables;
 pub mod requirements;
 mod scatter_bars;
@@ -82,10 +89,13 @@ use net_gain::net_gain_view_ui;
 use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
+use physics::{physics_header_ui, physics_job, physics_pages, physics_view_ui};
 use poles::{poles_header_ui, poles_view_ui};
-use records::{records_header_ui, records_view_ui, simulation_jobs};
+use records::{
+    records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
+};
 use requirements::{
-    NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
+    requirements_needs, requirements_tools_ui, requirements_view_ui, requirements_words,
 };
 use schedule_cost::{schedule_cost_view_ui, schedule_cost_words};
 use variant_analyses::variant_jobs;
@@ -101,6 +111,7 @@ pub fn view_content(view: View) -> ViewContent {
         View::Overview => OVERVIEW,
         View::Across => ACROSS,
         View::Poles => POLES,
+        View::Physics => PHYSICS,
         View::Couplings => COUPLINGS,
         View::Records => RECORDS,
         View::Channels => CHANNELS,
@@ -113,6 +124,9 @@ pub fn view_content(view: View) -> ViewContent {
         View::ScheduleCost => SCHEDULE_COST,
     }
 }
+
+/// Draws the right panel below the verdict.
+pub type SideUi = fn(&mut Ui, &State, &Palette, &mut Vec<Command>);
 
 /// Content of a view.
 #[derive(Clone, Copy)]
@@ -128,6 +142,8 @@ pub struct ViewContent {
     pub tools_width: f32,
     /// Computations needed in addition to the analysis of the current settings.
     pub needs: fn(&State) -> Vec<Need>,
+    /// Content of the right panel below the verdict; `None` for the result and the constraint matrix.
+    pub side: Option<SideUi>,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
@@ -141,6 +157,7 @@ impl ViewContent {
         tools: |_, _, _, _| {},
         tools_width: 0.0,
         needs: |_| Vec::new(),
+        side: None,
         figure_pairs: |_| Vec::new(),
     };
 }
@@ -162,7 +179,11 @@ pub enum ViewTitle {
     ResponseAndCondition,
     /// The response in focus without the condition, for views of all conditions.
     ResponseOnly,
+    /// This name of the view, and the condition.
+    NameAndCondition(&'static str),
     Words(fn(&State) -> String),
+    /// A name, and further words, which are cut first.
+    Named(&'static str, fn(&State) -> String),
 }
 
 const BODE: ViewContent = ViewContent {
@@ -207,6 +228,16 @@ const POLES: ViewContent = ViewContent {
     ..ViewContent::PLAIN
 };
 
+const PHYSICS: ViewContent = ViewContent {
+    draw: physics_view_ui,
+    title: ViewTitle::Words(|_| "common to all conditions".to_owned()),
+    pages: physics_pages,
+    tools: physics_header_ui,
+    tools_width: 240.0,
+    needs: |state| vec![Need::Physics(physics_job(state))],
+    ..ViewContent::PLAIN
+};
+
 const COUPLINGS: ViewContent = ViewContent {
     draw: couplings_view_ui,
     title: ViewTitle::Condition,
@@ -218,9 +249,11 @@ const COUPLINGS: ViewContent = ViewContent {
 
 const RECORDS: ViewContent = ViewContent {
     draw: records_view_ui,
-    title: ViewTitle::Condition,
+    title: ViewTitle::NameAndCondition("Records"),
     tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
     tools_width: 380.0,
+    pages: records_pages,
+    side: Some(records_side_ui),
     needs: |state| {
         simulation_jobs(state)
             .into_iter()
@@ -260,8 +293,9 @@ const COMPARE: ViewContent = ViewContent {
 
 const REQUIREMENTS: ViewContent = ViewContent {
     draw: requirements_view_ui,
-    title: ViewTitle::Words(|_| NOT_A_QUALIFICATION.to_owned()),
-    pages: requirements_pages,
+    title: ViewTitle::Named("Requirements", requirements_words),
+    tools: requirements_tools_ui,
+    tools_width: 290.0,
     needs: requirements_needs,
     ..ViewContent::PLAIN
 };

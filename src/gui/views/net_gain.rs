@@ -21,7 +21,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::panel_layout::restore_panel_size;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
+use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
 /// Draws the net gain of each displayed response over airspeed.
 pub fn net_gain_view_ui(
@@ -106,9 +106,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
         ];
         for table in tables.into_iter().flatten() {
             ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-            let mut unsorted = Sorting::default();
-            let look = TableLook::PLAIN;
-            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
+            table_block_ui(ui, &table, &TableLook::PLAIN, palette, commands);
         }
     });
     state.display.gains.evidence = cached;

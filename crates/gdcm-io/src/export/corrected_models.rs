@@ -11,13 +11,16 @@ use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Origin;
+use gdcm_study::results::export_note::FileSummary;
 
 use self::matlab::models_variable;
 use self::metrics::matrices;
 use self::numpy::model_arrays;
+use super::export_notes::model_notes;
 use super::exported_model::ExportedModel;
+use super::file_head::variables_head;
 use super::requested_models::{contents_of_models, exported_models};
-use super::{ExportFormat, Exported};
+use super::{Export, ExportFormat, Exported, FormatGroup};
 use crate::export_fault::ExportFault;
 use crate::files::model_collection::{
     ModelWithContents, bare_draft, labels, write_models_with_contents,
@@ -25,32 +28,80 @@ use crate::files::model_collection::{
 use crate::formats::mat;
 use crate::formats::npy::write_npz;
 
+const OPTIONS: &[&str] = &["--condition", "--model", "--correction", "--pade"];
+
 /// Export of corrected models; the file extension selects the format.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
+    stem: "models",
+    group: FormatGroup::Models,
+    title: "Corrected, state space",
     words: "Corrected models in state-space form",
-    options: &["--condition", "--model", "--correction", "--pade"],
+    options: OPTIONS,
     check_path: |path| ModelsFormat::from_path(path).map(drop),
     contents: |analysis, request| contents_of_models(analysis, request),
-    export: |export| {
-        let models = exported_models(export.analysis, export.request)?;
-        let dataset = &export.analysis.study.dataset;
-        let remarks = models.iter().map(ExportedModel::words).collect();
-        let exported = match ModelsFormat::from_path(export.path)? {
-            // Packed, because matrices with delays are mostly zeros.
-            ModelsFormat::Mat => {
-                Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?)
-            }
-            ModelsFormat::Npz => Exported::bytes(write_npz(&model_arrays(&models, dataset))?),
-            ModelsFormat::Json => {
-                let models = models_with_contents(&models, dataset);
-                Exported::new(move |file| write_models_with_contents(&models, file))
-            }
-        };
-        Ok(exported.with(remarks))
-    },
+    export: export_models,
 };
+
+/// Export of corrected models for NumPy.
+pub(super) const NUMPY: ExportFormat = ExportFormat {
+    name: "state-space-npz",
+    extension: "npz",
+    words: "Corrected models in state-space form, for NumPy",
+    check_path: |path| check_models_format(path, ModelsFormat::Npz),
+    ..STATE_SPACE
+};
+
+/// Export of corrected models in the format `gdcm-models`.
+pub(super) const JSON: ExportFormat = ExportFormat {
+    name: "state-space-json",
+    extension: "json",
+    words: "Corrected models in state-space form, JSON",
+    check_path: |path| check_models_format(path, ModelsFormat::Json),
+    ..STATE_SPACE
+};
+
+fn check_models_format(path: &Path, expected: ModelsFormat) -> Result<(), ExportFault> {
+    if ModelsFormat::from_path(path)? == expected {
+        Ok(())
+    } else {
+        Err(ExportFault::ModelsFormat)
+    }
+}
+
+fn export_models<'e>(export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+    let models = exported_models(export.analysis, export.request)?;
+    let dataset = &export.analysis.study.dataset;
+    let remarks = models.iter().map(ExportedModel::words).collect();
+    let notes = model_notes(export, &models);
+    let added_states = models
+        .iter()
+        .map(|model| model.delay_states + model.lead_states);
+    let summary = FileSummary::Models {
+        models: models.len(),
+        added_states: added_states.max().unwrap_or_default(),
+    };
+    let exported = match ModelsFormat::from_path(export.path)? {
+        ModelsFormat::Mat => {
+            let variables = [models_variable(&models, dataset)];
+            // Packed, because matrices with delays are mostly zeros.
+            Exported::bytes(summary, mat::write_packed(&variables)?)
+                .with_head(variables_head(&variables))
+        }
+        ModelsFormat::Npz => {
+            let variables = model_arrays(&models, dataset);
+            Exported::bytes(summary, write_npz(&variables)?).with_head(variables_head(&variables))
+        }
+        ModelsFormat::Json => {
+            let models = models_with_contents(&models, dataset);
+            Exported::new(summary, move |file| {
+                write_models_with_contents(&models, file)
+            })
+        }
+    };
+    Ok(exported.with(remarks).with_notes(notes))
+}
 
 /// File format for corrected models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,8 +168,12 @@ mod tests {
     use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics};
     use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+    use gdcm_study::decisions::physics_settings::ParameterDecision;
     use gdcm_study::decisions::setting;
-    use gdcm_study::{AssessedCorrection, CouplingCorrection, Engine, PhaseCorrection, Study};
+    use gdcm_study::{
+        AssessedCorrection, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection,
+        Study,
+    };
 
     use super::metrics::array;
     use super::numpy::row_of_texts;
@@ -228,6 +283,52 @@ mod tests {
             .unwrap();
         let values = models.iter().map(|model| model.airspeed_kt).collect();
         assert_eq!(airspeeds.value, matrix(1, models.len(), values));
+    }
+
+    #[test]
+    fn exported_matrices_are_those_at_the_values_of_the_physics_parameters() {
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/data/reference/physics-dataset.json.gz"
+        );
+        let dataset = crate::load_dataset(std::path::Path::new(path))
+            .unwrap()
+            .dataset;
+        let mut study = Study::new(dataset.clone());
+        for edit in [
+            setting::PHASE.to(PhaseCorrection::None),
+            setting::POINTS.to(40_usize),
+            setting::PHYSICS.to(PhysicsCorrection::ByHand),
+            Edit::DecideParameter {
+                name: "Ixx".to_owned(),
+                decision: ParameterDecision::Value(Some(5.0)),
+            },
+        ] {
+            study.apply(&edit).unwrap();
+        }
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let own = ExportRequest {
+            correction: AssessedCorrection::Own,
+            ..ExportRequest::default()
+        };
+        for model in exported_models(&analysis, &own).unwrap() {
+            let condition = dataset.condition(model.condition).unwrap();
+            let run = condition
+                .moved_models()
+                .iter()
+                .find(|moved| moved.run().is_some_and(|run| run.name == "Ixx"))
+                .unwrap();
+            // A run at the value applied has the exported A; gains change B and C alone.
+            let expected = run.model.state_space().unwrap().a();
+            let nominal = condition.bundle(BundleKind::Physics)[condition.nominal()]
+                .state_space()
+                .unwrap()
+                .a();
+            let error = (model.model.a() - expected).norm();
+            assert!(error <= 1e-12 * expected.norm(), "{error}");
+            assert!((nominal - expected).norm() > 1e-6 * expected.norm());
+            assert_eq!(model.contents.physics, ["Ixx +5 %"]);
+        }
     }
 
     #[test]

@@ -197,8 +197,9 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
 }
 
 /// Removes labels and brackets from net-gain plots for the screen, where labels appear under the
-/// pointer. Kept are the label of the condition `selected` and, if `shows_differences` is set, the
-/// brackets of significant differences with the labels of the dots at their ends.
+/// pointer. Kept are the label of the condition `selected`, whose dot has a ring, and, if
+/// `shows_differences` is set, the brackets of significant differences with the labels of the dots
+/// at their ends.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
         panel.marks.retain(|mark| match mark {
@@ -210,6 +211,7 @@ pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) 
             let Mark::Dots(group) = mark else {
                 continue;
             };
+            group.ringed = Some(selected.clone());
             for dot in &mut group.dots {
                 if dot.id.as_ref() != Some(selected) && !ends.contains(&[dot.x, dot.y]) {
                     dot.label.clear();

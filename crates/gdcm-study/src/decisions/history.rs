@@ -1,10 +1,20 @@
 //! Undo and redo of decisions.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use gdcm_model::dataset::Condition;
+
 use super::edit::Edit;
 use super::study::Study;
 
 /// Maximum number of undo steps; a snapshot takes a few kilobytes, because models are shared.
 const MOST_STEPS: usize = 500;
+/// Maximum size of the models that only the undo steps keep in memory \[bytes\]. Reversed signs,
+/// adopted models and reloaded files leave the former models in the steps before.
+const MOST_BYTES: usize = 48 << 20;
+/// Number of datasets of any size that the undo steps may keep in memory.
+const LEAST_DATASETS: usize = 4;
 
 /// Change that a step of the history undoes or redoes. `C` describes a change of state outside the
 /// study.
@@ -149,7 +159,52 @@ impl<B: Default, C> History<B, C> {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
+        let has_other_models = match self.past.last() {
+            Some(last) => !Arc::ptr_eq(&last.study.dataset, &step.study.dataset),
+            None => false,
+        };
         self.past.push(step);
+        if has_other_models {
+            self.limit_models();
+        }
+    }
+
+    /// Removes the oldest steps until the models of all steps take at most [`MOST_BYTES`], or the
+    /// size of [`LEAST_DATASETS`] datasets like the last one if these are larger.
+    fn limit_models(&mut self) {
+        let mut most_bytes = MOST_BYTES;
+        if let Some(last) = self.past.last() {
+            let mut bytes = 0;
+            for condition in last.study.dataset.conditions() {
+                bytes += condition.model_bytes();
+            }
+            most_bytes = most_bytes.max(LEAST_DATASETS * bytes);
+        }
+        while self.past.len() > 1 && self.model_bytes() > most_bytes {
+            let oldest = Arc::clone(&self.past[0].study.dataset);
+            let of_oldest = self
+                .past
+                .iter()
+                .take_while(|step| Arc::ptr_eq(&step.study.dataset, &oldest))
+                .count();
+            self.past.drain(..of_oldest.min(self.past.len() - 1));
+        }
+    }
+
+    /// Returns the size of the models of all steps, each condition counted once \[bytes\].
+    pub fn model_bytes(&self) -> usize {
+        let mut counted: BTreeSet<*const Condition> = BTreeSet::new();
+        let mut bytes = 0;
+        for step in self.past.iter().chain(&self.future).chain(&self.lost) {
+            for dataset in step.study.datasets() {
+                for condition in dataset.conditions() {
+                    if counted.insert(Arc::as_ptr(condition)) {
+                        bytes += condition.model_bytes();
+                    }
+                }
+            }
+        }
+        bytes
     }
 
     /// Closes the last decision: no later decision continues it.
@@ -242,13 +297,52 @@ impl<B: Default, C> History<B, C> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
-
     use super::super::setting::{ALPHA_DELAY, ALPHA_GAIN};
     use super::*;
+    use crate::decisions::signs::{SignRole, turned};
     use crate::reference_tests::reference_dataset;
+    use gdcm_method::correction::Channel;
+    use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    #[test]
+    fn the_models_of_undo_steps_take_a_limited_space() {
+        let dataset = Arc::new(reference_dataset());
+        let mut bytes = 0;
+        for condition in dataset.conditions() {
+            bytes += condition.model_bytes();
+        }
+        assert!(bytes > 1 << 20, "the models count: {bytes}");
+        let signs = BTreeMap::from([(Channel::Input(0), SignRole::All)]);
+        let mut history: History = History::default();
+        let steps = 2 * MOST_BYTES / bytes;
+        for _ in 0..steps {
+            let other = turned(&dataset, &signs).unwrap();
+            history.record(Study::new(other), &Edit::ConstrainOnAxis);
+            history.seal();
+        }
+        assert!(history.model_bytes() <= MOST_BYTES.max(LEAST_DATASETS * bytes));
+        assert!(history.past.len() >= LEAST_DATASETS);
+        assert!(
+            history.past.len() < steps,
+            "{} of {steps}",
+            history.past.len()
+        );
+        let now = Study::new(dataset);
+        assert!(history.undo(&now, |beside| beside).is_some());
+    }
+
+    #[test]
+    fn steps_with_the_same_models_are_limited_in_number_only() {
+        let study = Study::new(Arc::new(reference_dataset()));
+        let mut history: History = History::default();
+        for _ in 0..MOST_STEPS + 10 {
+            history.record(study.clone(), &Edit::ConstrainOnAxis);
+            history.seal();
+        }
+        assert_eq!(history.past.len(), MOST_STEPS);
+    }
 
     struct Editor {
         study: Study,

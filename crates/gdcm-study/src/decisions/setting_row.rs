@@ -11,6 +11,7 @@ use gdcm_model::number_format::{number, six_digits};
 use gdcm_model::response::LeadOrder;
 
 use super::edit_refusal::EditRefusal;
+use super::physics_settings::PhysicsCorrection;
 use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 use super::study::Study;
 
@@ -154,6 +155,10 @@ impl Choice for PhaseCorrection {
 
 impl Choice for CouplingCorrection {
     const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
+}
+
+impl Choice for PhysicsCorrection {
+    const ALL: &'static [Self] = &[Self::Off, Self::Named, Self::All, Self::ByHand];
 }
 
 impl Choice for DelayFrom {
@@ -386,6 +391,30 @@ impl Setting {
             Kind::Flag { .. } => String::new(),
             Kind::Choice { words, .. } => option_words(words).join("|"),
         }
+    }
+
+    /// Returns the option with its arguments for a value, such that [`Self::read`] returns the value;
+    /// `None` for a flag that is not set, which no option expresses.
+    pub fn option_words(&self, value: Value) -> Option<Vec<String>> {
+        let arguments = match (self.kind, value) {
+            (Kind::Flag { .. }, Value::Flag(true)) => Vec::new(),
+            (Kind::Flag { .. }, _) => return None,
+            (_, Value::Number(value)) => vec![value.to_string()],
+            (_, Value::Range(ends)) => ends.map(|end| end.to_string()).to_vec(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                vec![words.get(index)?[0].to_owned()]
+            }
+            (Kind::Optional { nothing, .. }, _) => vec![nothing[0].to_owned()],
+            (Kind::Range { nothing, .. }, _) => vec![nothing?[0].to_owned()],
+            _ => return None,
+        };
+        // The argument of an option that may stand alone is joined to it.
+        if let ([argument], true) = (&arguments[..], self.bare.is_some()) {
+            return Some(vec![format!("{}={argument}", self.option)]);
+        }
+        let mut words = vec![self.option.to_owned()];
+        words.extend(arguments);
+        Some(words)
     }
 
     /// Parses the value from the command line; a flag without argument is set.

@@ -110,6 +110,11 @@ impl AcrossJob {
             Some(analysis) => analysis.fitted_couplings().cloned(),
             None => None,
         };
+        // Corrections apply to the moved physics models (M18.5).
+        let dataset = match (role, analysis) {
+            (AcrossRole::Corrected, Some(analysis)) => analysis.moved_dataset(),
+            _ => dataset,
+        };
         Self {
             dataset: Arc::clone(dataset).into(),
             models,

@@ -57,6 +57,9 @@ impl Job for ModesJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
+    /// Dataset with the moved physics models, to which corrections apply (M18.5); the same dataset
+    /// if none is moved.
+    pub moved: Shared<Dataset>,
     /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
     /// The couplings of the corrected physics models; `None` without couplings.
@@ -77,8 +80,8 @@ pub struct AcrossCurves {
 pub struct AcrossModel {
     pub model: ModelId,
     pub response: Arc<FrequencyResponse>,
-    /// Response of a physics model with the couplings; `None` without couplings, and for an
-    /// identified model.
+    /// Response of a physics model to which corrections apply: moved, and with the couplings;
+    /// `None` if that changes nothing, and for an identified model.
     pub coupled: Option<Arc<FrequencyResponse>>,
 }
 
@@ -110,13 +113,13 @@ impl AcrossJob {
             Some(analysis) => analysis.fitted_couplings().cloned(),
             None => None,
         };
-        // Corrections apply to the moved physics models (M18.5).
-        let dataset = match (role, analysis) {
-            (AcrossRole::Corrected, Some(analysis)) => analysis.moved_dataset(),
-            _ => dataset,
+        let moved = match analysis {
+            Some(analysis) => analysis.moved_dataset(),
+            None => dataset,
         };
         Self {
             dataset: Arc::clone(dataset).into(),
+            moved: Arc::clone(moved).into(),
             models,
             couplings,
             grid,
@@ -128,12 +131,19 @@ impl AcrossJob {
         let condition = self.dataset.condition(id.condition)?;
         let model = condition.model(id.bundle, &id.name)?;
         let response = PreparedModel::new(&model.dynamics).response(grid);
+        let is_moved = !Arc::ptr_eq(&self.dataset, &self.moved);
         let mut coupled = None;
-        if let Some(fitted) = &self.couplings
-            && id.bundle == BundleKind::Physics
-        {
-            let airspeed_kt = condition.flight_state().airspeed_kt;
-            coupled = Some(Arc::new(fitted.matrices().response(&response, airspeed_kt)));
+        if id.bundle == BundleKind::Physics && (is_moved || self.couplings.is_some()) {
+            let moved = self
+                .moved
+                .condition(id.condition)?
+                .model(id.bundle, &id.name)?;
+            let mut corrected = PreparedModel::new(&moved.dynamics).response(grid);
+            if let Some(fitted) = &self.couplings {
+                let airspeed_kt = condition.flight_state().airspeed_kt;
+                corrected = fitted.matrices().response(&corrected, airspeed_kt);
+            }
+            coupled = Some(Arc::new(corrected));
         }
         Some(AcrossModel {
             model: id.clone(),

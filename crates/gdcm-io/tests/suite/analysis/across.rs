@@ -21,7 +21,7 @@ fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
     let models = vec![ids[0].clone(), missing, ids[1].clone()];
     let dataset = Arc::new(dataset);
     let job = AcrossJob {
-        moved: Arc::clone(&dataset).into(),
+        moved_dataset: Arc::clone(&dataset).into(),
         dataset: dataset.into(),
         models,
         couplings: None,

@@ -1,7 +1,5 @@
 //! Responses of the same model in every condition.
 
-use std::sync::Arc;
-
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{Band, BundleKind, ModelId};
 use gdcm_model::progress::Unobserved;
@@ -19,9 +17,8 @@ fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
     let missing = ModelId::new(ids[0].condition, BundleKind::Physics, "no such model");
     let band = Band::new(0.5, 12.0).unwrap();
     let models = vec![ids[0].clone(), missing, ids[1].clone()];
-    let dataset = Arc::new(dataset);
     let job = AcrossJob {
-        moved_dataset: Arc::clone(&dataset).into(),
+        moved_dataset: dataset.clone().into(),
         dataset: dataset.into(),
         models,
         couplings: None,

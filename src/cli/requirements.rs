@@ -9,7 +9,7 @@ use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_model::number_format::counted;
+use gdcm_model::number_format::{NO_VALUE, counted};
 use gdcm_study::Study;
 use gdcm_study::results::missing_finding::MissingFinding;
 use gdcm_study::results::required_modes::KnownPoles;
@@ -273,5 +273,5 @@ fn history_section(histories: &TimeHistories) -> String {
 fn leaves_tolerances(row: &[String]) -> bool {
     row[3..]
         .iter()
-        .any(|share| !matches!(share.as_str(), "100.0" | "-"))
+        .any(|share| !matches!(share.as_str(), "100.0" | NO_VALUE))
 }

@@ -123,6 +123,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ),
             ("lead_price", &[]),
             ("leads", &["remark", "lead_price"]),
+            ("export", &["lead_price", "schedule"]),
             ("couplings", &["coupling_remark", "table"]),
             ("physics", &["couplings", "table"]),
             ("suggested_runs", &[]),

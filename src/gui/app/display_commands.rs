@@ -24,7 +24,16 @@ impl GdcmApp {
             DisplayCommand::ShowBars(shown) => display.gains.hide_bars = !shown,
             DisplayCommand::Overlay(variant) => display.judging.overlaid = variant,
             DisplayCommand::ShowEvidence(shown) => display.gains.show_evidence = shown,
-            DisplayCommand::ShowAcross(role) => display.frequency.across_role = role,
+            DisplayCommand::ShowAcross(role, is_shown) => {
+                display.frequency.across_display.show(role, is_shown);
+            }
+            DisplayCommand::ShowAcrossAlone(role) => {
+                display.frequency.across_display.roles = vec![role];
+            }
+            DisplayCommand::ShowAcrossConditions(conditions) => {
+                display.frequency.across_display.conditions = conditions;
+            }
+            DisplayCommand::ShowAcrossPage(page) => display.frequency.across_display.page = page,
             DisplayCommand::Assess(figures) => display.judging.assessed = figures,
             DisplayCommand::ShowParameter(name) => display.physics.selected = Some(name),
             DisplayCommand::ShowPhysics(page) => display.physics.page = page,

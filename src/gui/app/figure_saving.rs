@@ -1,6 +1,6 @@
 //! Copies and saves the figures and the tables of the views.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::csv_text::{csv_text, save_tables};
@@ -49,10 +49,7 @@ impl GdcmApp {
         let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
         self.state.forms.figure = Some(view);
         let path = self.state.forms.typed_in(FormKind::SaveFigure);
-        *path = Path::new(path.trim())
-            .with_file_name(name)
-            .display()
-            .to_string();
+        *path = self.files.proposed_path(path, &name);
         self.state.forms.shown = Some(FormKind::SaveFigure);
     }
 
@@ -77,7 +74,12 @@ impl GdcmApp {
         );
         let message = Message::new("saved", text);
         let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
-        self.notify_written(written.map(|()| message), FormKind::SaveFigure, again);
+        self.notify_file(
+            written.map(|()| message),
+            &path,
+            FormKind::SaveFigure,
+            again,
+        );
     }
 
     /// Returns the figure of a view; reports an error if the view has none yet.
@@ -109,7 +111,9 @@ impl GdcmApp {
             .filter(|letter| letter.is_alphanumeric() || *letter == ' ')
             .collect();
         self.state.forms.table = Some(table);
-        *self.state.forms.typed_in(FormKind::SaveTable) = format!("{}.csv", name.replace(' ', "-"));
+        let name = format!("{}.csv", name.replace(' ', "-"));
+        let path = self.state.forms.typed_in(FormKind::SaveTable);
+        *path = self.files.proposed_path(path, &name);
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 

@@ -5,6 +5,7 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_study::AcrossRole;
 
+use crate::gui::state::across_display::{AcrossConditions, AcrossPage};
 use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
@@ -31,8 +32,14 @@ pub enum DisplayCommand {
     Overlay(Option<String>),
     /// Shows or hides the evidence for the schedule beside the net gains.
     ShowEvidence(bool),
-    /// Selects the model that is drawn for every condition.
-    ShowAcross(AcrossRole),
+    /// Shows or hides the models of a role in the plots across conditions.
+    ShowAcross(AcrossRole, bool),
+    /// Shows only the models of this role in the plots across conditions.
+    ShowAcrossAlone(AcrossRole),
+    /// Selects the conditions in the plots across conditions.
+    ShowAcrossConditions(AcrossConditions),
+    /// Selects the page of the plots across conditions.
+    ShowAcrossPage(AcrossPage),
     /// Changes the assessed quantity or its representation.
     Assess(AssessmentDisplay),
     /// Selects a physics parameter by name.

@@ -5,6 +5,7 @@ use egui::{Align, AsIdSalt, Frame, Label, Layout, Margin, Rect, RichText, Ui, Ui
 use crate::gui::commands::command::Command;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::views::across::across_context;
 use crate::gui::views::figure_button::figure_button_ui;
 use crate::gui::views::{PageEntry, ViewTitle, view_content};
 use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
@@ -176,11 +177,15 @@ fn title_words(state: &State, title: ViewTitle) -> TitleWords {
         },
         ViewTitle::ResponseOnly => TitleWords {
             heading: response,
-            context: String::new(),
+            context: across_context(state),
         },
         ViewTitle::Condition => TitleWords {
             heading: format!("Condition {id}"),
             context: flight_state.clone(),
+        },
+        ViewTitle::NameAndCondition(name) => TitleWords {
+            heading: name.to_owned(),
+            context: format!("condition {id}, {flight_state}"),
         },
         ViewTitle::Words(words) => TitleWords {
             heading: String::new(),

@@ -23,6 +23,9 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 const TITLE_HEIGHT: f32 = 18.0;
 /// Width of the vertical axis \[pt\].
 pub(super) const VALUE_AXIS_WIDTH: f32 = 38.0;
+/// Width of the vertical axes of stacked panels, wide enough for any label, so that the panels have
+/// the same edges \[pt\].
+const STACKED_AXIS_WIDTH: f32 = 52.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between panels \[pt\].
 const PANEL_GAP: f32 = 4.0;
@@ -210,7 +213,12 @@ impl PlacedPanel<'_> {
         } else {
             TICK_GAP
         };
-        let mut axis = PanelAxis::new(Ticks::Decimal(gap), VALUE_AXIS_WIDTH);
+        let width = if self.scene.is_stacked {
+            STACKED_AXIS_WIDTH
+        } else {
+            VALUE_AXIS_WIDTH
+        };
+        let mut axis = PanelAxis::new(Ticks::Decimal(gap), width);
         axis.is_drawn = has_values;
         if !self.scene.figure.shared.y {
             axis.label = label_within(ui, &self.panel().y.label, room, self.palette);

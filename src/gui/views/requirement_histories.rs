@@ -18,6 +18,7 @@ use gdcm_words::requirement_grid::limit_description;
 
 use super::requirement_cards::role_color;
 use super::requirement_edits::requirement_edit;
+use super::requirement_grid::FULL_WIDTH;
 use super::requirement_history_jobs::{compared_record, over_time, record_job};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -154,7 +155,10 @@ pub(super) fn time_detail_ui(
                 }
                 return;
             };
-            shares_ui(ui, quantity, palette);
+            // In a narrow window, the numbers beside the card include the shares.
+            if ui.ctx().content_rect().width() >= FULL_WIDTH {
+                shares_ui(ui, quantity, palette);
+            }
             quantity_figure(&history, quantity, state.dataset(), input)
         }
         Some(Ok(OverTime::Test(answers))) => {

@@ -1,6 +1,6 @@
 //! File dialogs of the desktop, each in a thread, and what follows the engineer's choice.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gdcm_io::Existing;
 
@@ -32,7 +32,13 @@ impl GdcmApp {
         self.is_dialog_open = true;
         // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
         // a choice.
-        let ask = move || caught(|| show_dialog(purpose, &file_name)).unwrap_or_default();
+        let folder = match purpose {
+            DialogPurpose::ExportFolder => Some(self.state.forms.export.folder_path()),
+            _ => self.files.proposed_folder(),
+        };
+        let ask = move || {
+            caught(|| show_dialog(purpose, &file_name, folder.as_deref())).unwrap_or_default()
+        };
         self.in_thread("the dialog", ask, move |app, chosen| {
             app.is_dialog_open = false;
             let mut chosen = chosen.unwrap_or_default();
@@ -61,7 +67,7 @@ impl GdcmApp {
                 self.save_as(path, existing);
             }
             DialogPurpose::ExportFolder => {
-                *self.state.forms.typed_in(FormKind::Export) = path.display().to_string()
+                self.state.forms.export.folder = path.display().to_string()
             }
             DialogPurpose::ModelFolder => {
                 self.carry_out_assembling(AssemblingCommand::Add(vec![path]))
@@ -93,9 +99,20 @@ impl GdcmApp {
     }
 }
 
-/// Shows a desktop file dialog; returns the chosen paths, at most one except for record files.
-fn show_dialog(purpose: DialogPurpose, file_name: &str) -> Vec<PathBuf> {
-    let dialog = rfd::FileDialog::new();
+/// Shows a desktop file dialog, which begins in `folder` if that exists; returns the chosen paths,
+/// at most one except for record files.
+fn show_dialog(purpose: DialogPurpose, file_name: &str, folder: Option<&Path>) -> Vec<PathBuf> {
+    let mut dialog = rfd::FileDialog::new();
+    if let Some(folder) = folder
+        && folder.is_dir()
+    {
+        dialog = dialog.set_directory(folder);
+    }
+    // A save dialog takes the name alone; the folder is set above.
+    let file_name = match Path::new(file_name).file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => file_name.to_owned(),
+    };
     let chosen = match purpose {
         DialogPurpose::Open => dialog
             .set_title("Open a dataset or a study")

@@ -108,8 +108,8 @@ impl GdcmApp {
                 self.open(origin.path.clone(), None);
                 self.files.made_of_records = Some(origin);
             }
-            Err(error) => self.notify_written(
-                Err(error),
+            Err(error) => self.notify_not_written(
+                error,
                 FormKind::RecordDataset,
                 RecordsCommand::MakeDataset.into(),
             ),

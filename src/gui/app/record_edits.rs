@@ -90,7 +90,7 @@ impl GdcmApp {
     pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsBefore) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, change, before);
-        self.state.notice = None;
+        self.state.notices.follow_decision();
     }
 }
 

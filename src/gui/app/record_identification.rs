@@ -11,6 +11,7 @@ use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
+use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::message::Message;
 
 impl GdcmApp {
@@ -97,7 +98,8 @@ impl GdcmApp {
             };
             let names = names.join(", ");
             let text = format!("adopted {models} in {conditions} {names}");
-            self.notify_done(Message::new("models-adopted", text));
+            let message = Message::new("models-adopted", text);
+            self.notify_done_with(Activity::Other, message, Some(NoticeAction::Undo));
         }
     }
 

@@ -18,7 +18,6 @@ use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::record_change::RecordChange;
 use crate::gui::state::records::RecordsFold;
-use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::message::Message;
 
@@ -32,8 +31,8 @@ struct ReadingStart {
 }
 
 impl GdcmApp {
-    /// Reads the records of the displayed condition once a view that needs them is shown. The view
-    /// *Records* lists all conditions, so it needs their records too; they are read afterwards.
+    /// Reads the records of the displayed condition once a view that needs them is shown, then
+    /// those of the other conditions.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
@@ -72,16 +71,12 @@ impl GdcmApp {
     }
 
     /// Returns the conditions whose own records are to be read next: the displayed one, then all
-    /// others if the view *Records* is shown.
+    /// others, which the views *Records* and *Requirements* show too.
     fn unread_conditions(&self) -> Vec<ConditionId> {
         let known = &self.state.records.conditions;
         let shown = self.state.condition().id();
         if !known.contains_key(&shown) {
             return vec![shown];
-        }
-        let arrangement = &self.state.display.layout.arrangement;
-        if !arrangement.is_shown(View::Records) {
-            return Vec::new();
         }
         let mut unread = Vec::new();
         for id in self.state.study.dataset.ids() {
@@ -93,11 +88,8 @@ impl GdcmApp {
     }
 
     fn shows_records(&self) -> bool {
-        let display = &self.state.display;
-        let arrangement = &display.layout.arrangement;
-        let is_compared = display.judging.requirements_page == RequirementsPage::Histories;
-        arrangement.is_shown(View::Records)
-            || arrangement.is_shown(View::Requirements) && is_compared
+        let arrangement = &self.state.display.layout.arrangement;
+        arrangement.is_shown(View::Records) || arrangement.is_shown(View::Requirements)
     }
 
     /// Returns the source of the conditions' own records.

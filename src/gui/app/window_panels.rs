@@ -13,7 +13,7 @@ use crate::gui::panels::message_bars::message_bars_ui;
 use crate::gui::panels::sheet_frame::sheet_ui;
 use crate::gui::panels::{
     centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, record_conditions,
-    right_panel, start_page, status_bar,
+    right_panel, settings_panel, start_page, status_bar,
 };
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
@@ -88,6 +88,9 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
                     rail::rail_ui(ui, state, palette, commands);
                 });
         });
+        if state.display.layout.settings_open {
+            settings_sheet_ui(ui, state, palette, commands);
+        }
         return;
     }
     restore_panel_size(ui, "conditions and models");
@@ -119,7 +122,9 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
                         }
                     });
                 ui.separator();
-                if has_records {
+                if state.display.layout.settings_open {
+                    settings_panel::settings_ui(ui, state, palette, commands);
+                } else if has_records {
                     records_panel_ui(ui, state, palette, commands);
                 } else {
                     models_panel::models_ui(ui, state, palette, commands);
@@ -127,6 +132,24 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             });
         });
     });
+}
+
+/// Draws the settings beside the rail. They take their room from the views, which are laid out once
+/// when the settings are opened, so that no value is covered while a slider is dragged.
+fn settings_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let frame = Frame::new().fill(palette.panel).inner_margin(Margin {
+        left: 12,
+        right: 12,
+        top: 4,
+        bottom: 0,
+    });
+    Panel::left("settings beside the rail")
+        .frame(frame)
+        .resizable(false)
+        .exact_size(272.0)
+        .show(ui, |ui| {
+            settings_panel::settings_ui(ui, state, palette, commands)
+        });
 }
 
 /// Draws the right panel: verdict, result, matrix, and export.

@@ -1,11 +1,10 @@
-//! Forms that ask for a path: to open, save or export.
+//! Forms that ask for a path: to open or save.
 
 use std::path::PathBuf;
 
-use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
 use gdcm_plot::figure::ColumnWidth;
 
-use super::form_parts::{Form, contents_ui};
+use super::form_parts::Form;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::output::OutputCommand;
@@ -28,7 +27,7 @@ struct PathWords {
 }
 
 /// Every form that asks for a path and for at most one choice.
-const PATHS: [PathWords; 11] = [
+const PATHS: [PathWords; 10] = [
     PathWords {
         kind: FormKind::Open,
         title: "Open a dataset or a study",
@@ -112,15 +111,6 @@ const PATHS: [PathWords; 11] = [
         explanation: "For other studies and for gdcm requirements --tolerances",
         submit: "Save tolerances",
     },
-    PathWords {
-        kind: FormKind::ExportAs,
-        title: "Export as…",
-        field: "Path of the export",
-        hint: "path of the file",
-        explanation: "Models in state-space form can be saved as .mat, .json or .npz. \
-            The command gdcm export offers more choices.",
-        submit: "Export file",
-    },
 ];
 
 /// Draws a form that asks for a path, and in some forms for a choice; draws nothing if the form
@@ -132,13 +122,9 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
     form.title(&title(words, &state.forms));
     let mut path = std::mem::take(state.forms.typed_in(kind));
     let entered = form.text_ui(words.field, &mut path, words.hint);
-    match kind {
-        FormKind::SaveFigure => {
-            let widths = ColumnWidth::BOTH.map(|width| (width, width.words()));
-            form.choices_ui(&mut state.forms.figure_width, widths);
-        }
-        FormKind::ExportAs => export_format_ui(form, state, &mut path),
-        _ => {}
+    if kind == FormKind::SaveFigure {
+        let widths = ColumnWidth::BOTH.map(|width| (width, width.words()));
+        form.choices_ui(&mut state.forms.figure_width, widths);
     }
     let forms = &mut state.forms;
     let explanation = match &forms.lost_dataset {
@@ -149,11 +135,10 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
         form.explain(explanation);
         form.ui.add_space(4.0);
     }
-    let waits = kind == FormKind::ExportAs && state.results.is_behind();
     form.line(|form| {
         let command = path_command(kind, forms, path.trim().into());
         form.submit_ui(words.submit, !path.trim().is_empty(), entered, command);
-        form.cancel_ui(waits);
+        form.cancel_ui(false);
     });
     *forms.typed_in(kind) = path;
 }
@@ -167,25 +152,6 @@ fn title(words: &PathWords, forms: &Forms) -> String {
         (FormKind::SaveFigure, _, Some(view)) => format!("{} of {}", words.title, view.name()),
         _ => words.title.to_owned(),
     }
-}
-
-/// Draws the export formats and the planned contents. The path's extension follows the format until
-/// the name is edited.
-fn export_format_ui(form: &mut Form<'_, '_>, state: &mut State, path: &mut String) {
-    let chosen = &mut state.forms.export_format;
-    let before = *chosen;
-    let formats = EXPORTERS
-        .into_iter()
-        .map(|exporter| (exporter, exporter.words));
-    form.choices_ui(chosen, formats);
-    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension)) {
-        *path = format!("{stem}.{}", chosen.extension);
-    }
-    let request = ExportRequest {
-        format: *chosen,
-        ..ExportRequest::default()
-    };
-    contents_ui(form, state, |analysis| export_contents(analysis, &request));
 }
 
 /// Returns the command that a form submits; `None` if the table, the view or the study to act on is
@@ -212,7 +178,6 @@ fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command>
             Command::File(FileCommand::ReadRequirementTable(table, path))
         }
         FormKind::WriteTolerances => Command::File(FileCommand::WriteTolerances(path)),
-        FormKind::ExportAs => Command::Output(OutputCommand::ExportAs(forms.export_format, path)),
         _ => return None,
     })
 }

@@ -1,4 +1,4 @@
-//! Status bar at the foot of the window: computation status, notices, remarks on the data.
+//! Status bar at the foot of the window: computation status, remarks on the data.
 
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
@@ -8,9 +8,7 @@ use gdcm_words::assessment::not_assessed_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
-use crate::gui::commands::form::FormCommand;
 use crate::gui::state::background::{Background, Steps, error_bar_progress};
-use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
@@ -18,7 +16,7 @@ use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws the computation status on the left. On the right: the description of the element under the
-/// pointer, else the newest notice, else a remark on the data.
+/// pointer, else a remark on the data. Messages are toasts in the top bar.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
@@ -26,25 +24,14 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             if let Some(pointed) = &state.display.selection.pointed_words {
                 let text = RichText::new(pointed).size(SMALL_SIZE);
                 ui.add(Label::new(text).truncate());
-            } else if let Some(notice) = &state.notice {
-                notice_ui(ui, notice, palette, commands);
+            } else if state.is_setting_dragged() {
+                let words = "error bars update when the slider rests";
+                ui.add(Label::new(palette.small(words)).truncate());
             } else {
                 ui.add(Label::new(palette.small(data_remark(state))).truncate());
             }
         });
     });
-}
-
-fn notice_ui(ui: &mut Ui, notice: &Notice, palette: &Palette, commands: &mut Vec<Command>) {
-    small_button_ui(ui, "Dismiss", FormCommand::DismissNotice.into(), commands);
-    let color = if notice.kind == NoticeKind::Done {
-        palette.text
-    } else {
-        palette.warning
-    };
-    let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
-    ui.add(Label::new(text).truncate())
-        .on_hover_text(&notice.text);
 }
 
 fn small_button_ui(ui: &mut Ui, text: &str, command: Command, commands: &mut Vec<Command>) {
@@ -108,11 +95,17 @@ impl Status {
             return Self::colored(text, palette.warning);
         }
         if !state.results.is_stale(now) {
-            // The text is not green: green would suggest that gains and phases are matched.
+            // The text is not green: green would suggest that gains and phases are matched. The dot
+            // is green only if no other work is under way.
+            let dot = if words_beside(state, now).is_some() {
+                palette.accent
+            } else {
+                palette.good
+            };
             return Self {
                 text: "up to date".to_owned(),
                 color: palette.dim_text,
-                dot: palette.good,
+                dot,
             };
         }
         let text = match state.results.background.analysis {
@@ -239,7 +232,23 @@ fn data_remark(state: &State) -> String {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_io::embedded_example;
+    use gdcm_study::Study;
+
     use super::*;
+
+    #[test]
+    fn the_dot_is_green_only_while_nothing_is_computed() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let mut state = State::new(study, "study".to_owned(), Vec::new());
+        let palette = Palette::dark();
+        assert_eq!(Status::new(&state, 9.0, &palette).dot, palette.good);
+        state.results.background.views = 1;
+        state.results.background_since = Some(0.0);
+        let status = Status::new(&state, 9.0, &palette);
+        assert_eq!(status.dot, palette.accent);
+        assert_eq!(status.color, palette.dim_text);
+    }
 
     #[test]
     fn the_progress_of_a_couplings_assessment_is_reported() {

@@ -149,6 +149,16 @@ impl RecordsState {
         histories
     }
 
+    /// Returns the held-out records in use, of the conditions that have some.
+    pub fn held_out_records(&self) -> Vec<HistoryRecords> {
+        let mut histories = self.history_records();
+        for history in &mut histories {
+            history.records.retain(|record| record.held_out);
+        }
+        histories.retain(|history| !history.records.is_empty());
+        histories
+    }
+
     /// Adds an identification job; it replaces a waiting or running job for the same condition.
     pub fn request_job(&mut self, job: IdentifyJob) {
         let before = self.running.len();

@@ -3,7 +3,6 @@
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::file::FileCommand;
-use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::state::records::RecordsPage;
@@ -86,13 +85,10 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     );
 
     // Exports corrected models for the other program.
-    let path = folder.path().join("corrected.mat");
-    window.state_mut().dispatch(FormCommand::ShowForm(Some(
-        gdcm::gui::state::forms::FormKind::ExportAs,
-    )));
-    window.run_steps(2);
-    let notice = exported(&mut window, &path);
-    assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
+    let path = folder.path().join("corrected_models.mat");
+    open_export(&mut window, folder.path(), "corrected_", &["state-space"]);
+    press_export(&mut window);
+    assert_notice(&window, NoticeKind::Done, "exported", &["1 file"]);
     assert!(
         std::fs::metadata(&path).unwrap().len() > 10_000,
         "models of two conditions"

@@ -7,15 +7,12 @@ use nalgebra::Complex;
 use gdcm_method::couplings::Unknown;
 use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
 use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_model::number_format::counted;
-use gdcm_model::number_format::with_minus_sign;
+use gdcm_model::number_format::{conjugate_pair, counted, with_minus_sign};
 use gdcm_model::units::{number, signed, telling};
 use gdcm_study::results::coupling_remark::{
     CostSource, CouplingRemark, FeedbackMeaning, OffAxisBenefit,
 };
 use gdcm_study::results::couplings_assessment::{NoPoles, UnstablePole};
-
-use crate::complex_pair::pole_text;
 
 /// Returns a remark on couplings in a sentence: "LAT receives 4.7 % of LON, equivalent to a
 /// swashplate phase of 2.7°."
@@ -321,9 +318,9 @@ fn unstable_place(condition: ConditionId, poles: &[&UnstablePole]) -> String {
     format!("condition {condition}{models} at {frequencies} rad/s")
 }
 
-/// Formats a pole: "−0.300 ± j1.20 rad/s".
+/// Formats a pole: "−0.30 ± j1.20 rad/s".
 fn pole_words(pole: Complex<f64>) -> String {
-    format!("{} rad/s", pole_text(pole, [3, 2]))
+    format!("{} rad/s", conjugate_pair(pole.re, pole.im, 2))
 }
 
 #[cfg(test)]

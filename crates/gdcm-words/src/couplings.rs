@@ -1,17 +1,15 @@
 //! Tables of the values of couplings, their costs and their poles (M16.5).
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Channel, Dataset};
-use gdcm_model::number_format::counted;
-use gdcm_model::number_format::with_minus_sign;
+use gdcm_model::number_format::{NO_VALUE, conjugate_pair, counted, with_minus_sign};
 use gdcm_model::units::{number, telling};
 use gdcm_study::results::couplings_assessment::{
     AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment,
 };
 
-use crate::complex_pair::pole_text;
 use crate::table::Table;
 
 /// Returns the heading: "mixing and feedback fitted to 11 conditions; the normal equations of the
@@ -52,7 +50,7 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
 pub(crate) fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     let cell = |cost: Option<f64>| match cost {
         Some(cost) => format!("{cost:.1}"),
-        None => "-".to_owned(),
+        None => NO_VALUE.to_owned(),
     };
     [
         name.to_owned(),
@@ -159,20 +157,20 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
         });
         for shift in shifts {
             let before = match shift.before {
-                Some(before) => pole_text(before, [3, 3]),
-                None => "-".to_owned(),
+                Some(before) => pole_cell(before),
+                None => NO_VALUE.to_owned(),
             };
             let distance = match shift.distance_rad_s() {
                 Some(distance_rad_s) => telling(distance_rad_s, 3),
-                None => "-".to_owned(),
+                None => NO_VALUE.to_owned(),
             };
-            table.row([
-                id.to_string(),
-                before,
-                pole_text(shift.after, [3, 3]),
-                distance,
-            ]);
+            table.row([id.to_string(), before, pole_cell(shift.after), distance]);
         }
     }
     table
+}
+
+/// Formats a pole in a table: "−0.300 ± j1.200".
+fn pole_cell(pole: Complex<f64>) -> String {
+    conjugate_pair(pole.re, pole.im, 3)
 }

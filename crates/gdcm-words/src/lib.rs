@@ -10,10 +10,10 @@
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
 //! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
-//! [`decision_differences`] and [`dataset_differences`]; [`identification_caution`] for identified
-//! models; [`flight_plan`] for further flights, [`suggested_runs`] for further runs of the physics
-//! model. Poles: [`complex_pair`]. Settings: [`setting_words`]. Tables: [`table`],
-//! [`requirements`], [`requirements_overview`],
+//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files;
+//! [`identification_caution`] for identified models; [`flight_plan`] for further flights,
+//! [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`]. Tables:
+//! [`table`], [`requirements`], [`requirement_grid`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -29,7 +29,6 @@
 pub mod assessment;
 pub mod caution;
 pub mod channel_time_skew;
-pub mod complex_pair;
 pub mod conflict_text;
 pub mod convention_doubt;
 pub mod coupling_remark;
@@ -38,6 +37,7 @@ pub mod dataset_differences;
 pub mod decision_differences;
 pub mod derivation;
 pub mod edit;
+pub mod export;
 pub mod flight_plan;
 pub mod identification_caution;
 pub mod lead_price;
@@ -45,8 +45,8 @@ pub mod leads;
 pub mod missing_results;
 pub mod physics;
 pub mod remark;
+pub mod requirement_grid;
 pub mod requirements;
-pub mod requirements_overview;
 pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;

@@ -69,6 +69,11 @@ impl ChipRow {
         self.corner.y - self.area.top() + LINE_HEIGHT
     }
 
+    /// Returns the right end of the last chip.
+    pub(in crate::gui) fn line_end(&self) -> f32 {
+        self.corner.x - GAP
+    }
+
     /// Draws a chip. With a curve sample it is a switch, pale and with a dashed outline while its
     /// curves are hidden; without a sample it is a button on the ground of selected rows.
     pub fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {

@@ -15,10 +15,17 @@ pub enum RecordChange {
     },
     /// The columns of a record, and of similar records of all conditions.
     Columns { record: String },
-    /// Units of the dataset for columns without units.
+    /// The assumed units were confirmed.
     DatasetUnits,
     /// Records were added to their conditions.
     Add { records: usize },
+    /// Added records without a condition were assigned to one.
+    Assign {
+        records: usize,
+        condition: ConditionId,
+    },
+    /// An added record without a condition was removed.
+    Discard { record: String },
 }
 
 /// A change of the records of a condition.
@@ -69,8 +76,15 @@ impl RecordChange {
                 format!("{} (condition {condition})", change.name())
             }
             Self::Columns { record } => format!("columns of {record}"),
-            Self::DatasetUnits => "units of the dataset's channels".to_owned(),
+            Self::DatasetUnits => "confirm the assumed units".to_owned(),
             Self::Add { records } => format!("add {}", counted(*records, "record")),
+            Self::Assign { records, condition } => {
+                format!(
+                    "assign {} to condition {condition}",
+                    counted(*records, "record")
+                )
+            }
+            Self::Discard { record } => format!("remove {record}"),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::views::{give, show};
 use super::*;
 
 /// Opens a window of this size \[pt\] with this number of pixels per point.
-fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
+pub(super) fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
     let builder = Harness::builder()
         .with_size(size)
         .with_pixels_per_point(pixels_per_point);
@@ -19,7 +19,7 @@ fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
     window
 }
 
-const SMALL: egui::Vec2 = vec2(1280.0, 720.0);
+pub(super) const SMALL: egui::Vec2 = vec2(1280.0, 720.0);
 
 /// Asserts that verdict, result, matrix, settings line and export are completely visible.
 fn assert_answered(window: &Window, view: View) {

@@ -13,6 +13,11 @@ use crate::gui::state::excited_input::Excitation;
 /// Returns the index of the input in focus if the displayed record excites it, otherwise of the input
 /// that it excites most, compared with the other records.
 pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
+    displayed_excited_input(ui, page).unwrap_or(page.state.display.selection.pair.input)
+}
+
+/// Like [`displayed_input`]; `None` if no input moves.
+pub(super) fn displayed_excited_input(ui: &Ui, page: Page<'_>) -> Option<usize> {
     let records = page.records;
     let mut flights: Vec<Arc<FlightRecord>> = Vec::new();
     let mut displayed = None;
@@ -32,8 +37,6 @@ pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
         Excitation::compare_records(&flights)
     });
     let focus = page.state.display.selection.pair.input;
-    let excitation = displayed.and_then(|displayed| excitations.get(displayed));
-    excitation
-        .and_then(|excitation| excitation.input(focus))
-        .unwrap_or(focus)
+    let excitation = excitations.get(displayed?)?;
+    excitation.input(focus)
 }

@@ -69,7 +69,8 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         }
         Some((job, Ok(found))) => {
             let models = counted(1 + found.bundle.len(), "model");
-            let words = if records.changed {
+            let is_outdated = state.is_fit_outdated(condition);
+            let words = if is_outdated {
                 "outdated".to_owned()
             } else {
                 match job.news().duration_s {
@@ -77,7 +78,7 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
                     None => models,
                 }
             };
-            let color = if records.changed {
+            let color = if is_outdated {
                 palette.warning
             } else {
                 palette.dim_text

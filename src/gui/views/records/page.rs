@@ -31,7 +31,7 @@ impl<'a> Page<'a> {
 
     /// Returns the identification; `None` if records or settings have changed since.
     pub(super) fn current_identification(self) -> Option<&'a Arc<Identification>> {
-        if self.records.changed {
+        if self.state.is_fit_outdated(self.state.condition().id()) {
             return None;
         }
         self.records.identification()

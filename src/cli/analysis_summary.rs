@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use gdcm_io::LoadedDataset;
-use gdcm_io::files::corrections_file::RESULT_FILES;
+use gdcm_io::files::corrections_file::{PHYSICS_FILE, RESULT_FILES};
 use gdcm_io::report::assessment_sentence;
 use gdcm_method::correction::delta::GainSource;
 use gdcm_model::dataset::Dataset;
@@ -21,6 +21,7 @@ use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplin
 use super::condition_summary::condition_section;
 use super::evidence_summary::evidence_section;
 use super::leave_one_out::nominal_choice;
+use super::physics_summary::physics_section;
 use super::printed_lines::{detail, indented, line};
 use super::schedule_summary::schedule_section;
 use super::shared_cautions::cautions_section;
@@ -35,6 +36,7 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
         text += "\n";
         text += &condition_section(analysis, condition);
     }
+    text += &physics_section(analysis);
     text += &couplings_section(analysis);
     text += "\n";
     text += &cautions_section(analysis);
@@ -42,7 +44,11 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text += &assessment_lines(analysis);
     text += &held_out_line(analysis);
     text += &evidence_section(analysis);
-    let files = format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out));
+    let mut names = RESULT_FILES.to_vec();
+    if analysis.applied_physics().is_some() {
+        names.push(PHYSICS_FILE);
+    }
+    let files = format!("{} in {}", names.join(", "), sanitized_path(out));
     text + &line("Written", &files)
 }
 

@@ -34,6 +34,8 @@ mod leave_one_out;
 mod misspelling;
 mod model_arguments;
 mod option_values;
+mod parameter_values;
+mod physics_summary;
 mod plan;
 mod plan_arguments;
 mod printed_lines;

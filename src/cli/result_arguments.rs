@@ -66,9 +66,9 @@ pub struct FigureArguments {
     /// Frequencies in Hz instead of rad/s.
     #[arg(long)]
     pub hertz: bool,
-    /// Model of each condition in the figure airspeeds: nominal, representative, corrected or identified.
-    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
-    pub model: AcrossRole,
+    /// Models of each condition in the figure airspeeds, separated by commas: identified, scheduled, corrected, representative or nominal.
+    #[arg(long, value_name = "MODELS", value_delimiter = ',', default_value = "identified,scheduled", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
+    pub model: Vec<AcrossRole>,
     /// Response, OUTPUT/INPUT, whose zeros are added to the figure poles: zeros of the nominal model and of the representatives.
     #[arg(long, value_name = "PAIR", value_parser = pair_list)]
     pub zeros: Option<PairList>,

@@ -27,7 +27,7 @@ pub(super) struct StudyAnalysis {
 }
 
 /// Analyses a study; if requested, the suggested outliers are first rejected. With error bars, the
-/// couplings are assessed too. Conditions without a result are reported on standard error.
+/// couplings and the physics parameters are assessed too. Conditions without a result are reported on standard error.
 ///
 /// # Errors
 /// No condition has a result.
@@ -46,6 +46,8 @@ pub(super) fn analyze_study(
         analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
         let assessed = engine.assess_couplings(&study, study.settings.couplings, &progress)?;
         analysis.coupling_assessment = assessed.and_then(Result::ok);
+        let assessed = engine.assess_physics(&study, study.settings.physics, &progress)?;
+        analysis.physics_assessment = assessed.and_then(Result::ok);
     }
     drop(progress);
     report_failed_conditions(&analysis)?;

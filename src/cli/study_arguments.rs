@@ -11,6 +11,7 @@ use gdcm_words::setting_words::setting_words;
 
 use super::channel_values::{ChannelSign, channel_sign};
 use super::option_values::{PairList, Rejection, pair_list, rejection};
+use super::parameter_values::{ParameterValue, parameter_value};
 
 /// How a study is opened whose dataset has moved or changed.
 #[derive(Debug, Args)]
@@ -121,6 +122,10 @@ pub struct StudyArguments {
     /// CHANNEL=-1:all; CHANNEL=1 restores them. May be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
     pub sign: Vec<ChannelSign>,
+    /// Change of a physics parameter set by hand, in its unit: NAME=CHANGE[UNIT] (Ixx=+4%). Without --physics, the physics
+    /// models are moved by these values alone. May be repeated.
+    #[arg(long, value_name = "NAME=CHANGE", value_parser = parameter_value, allow_hyphen_values = true)]
+    pub parameter: Vec<ParameterValue>,
     /// Outputs whose attitude the stick commands, separated by commas: only the phase determines their bandwidth (ADS-33E-PRF).
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub attitude_command: Vec<String>,

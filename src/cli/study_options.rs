@@ -9,6 +9,7 @@ use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
+use gdcm_study::decisions::setting;
 use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
@@ -16,6 +17,7 @@ use super::condition_messages::listed_conditions;
 use super::dataset_lookup::pairs_of;
 use super::failure::Failure;
 use super::option_values::{PairName, Rejection};
+use super::parameter_values::apply_parameters;
 use super::study_arguments::{GivenSetting, StudyArguments};
 use super::terminal::caution;
 use super::{existing, open};
@@ -43,8 +45,8 @@ impl CommandStudy {
                 (Study::new(loaded.dataset.clone()), loaded)
             }
         };
-        for words in &loaded.cautions {
-            caution("dataset-file", &format!("{}: {words}", loaded.origin));
+        for found in &loaded.cautions {
+            caution(found.code(), &format!("{}: {found}", loaded.origin));
         }
         apply_options(&mut study, arguments)?;
         let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]
@@ -78,6 +80,12 @@ fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fa
             .map_err(|reason| Failure::option(option, sanitized(&reason)))?;
         apply(study, option, &setting.to(value))?;
     }
+    let is_physics_given = arguments
+        .settings
+        .given
+        .iter()
+        .any(|given| *given.setting == setting::PHYSICS);
+    apply_parameters(study, &arguments.parameter, is_physics_given)?;
     apply_signs(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut {

@@ -18,6 +18,7 @@ mod file_cycles;
 mod made_up;
 mod messages;
 mod outputs;
+mod physics;
 mod planning;
 mod records;
 mod report;

@@ -125,6 +125,8 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("leads", &["remark", "lead_price"]),
             ("export", &["lead_price", "schedule"]),
             ("couplings", &["coupling_remark", "table"]),
+            ("physics", &["couplings", "table"]),
+            ("suggested_runs", &[]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
             ("flight_plan", &["table"]),
@@ -133,7 +135,10 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 "requirements",
                 &["missing_results", "table", "time_histories"],
             ),
-            ("requirements_overview", &["table", "time_histories"]),
+            (
+                "requirement_grid",
+                &["missing_results", "table", "time_histories"],
+            ),
             (
                 "derivation",
                 &["assessment", "uncertainty", "leads", "solution_details"],

@@ -49,6 +49,12 @@ pub enum ExportFault {
         couplings to none"
     )]
     NoCouplings { why: String },
+    /// The study requests physics parameters, but they are unavailable.
+    #[error(
+        "the study requests physics parameters, but they are unavailable: {why}; correct this, or \
+        set the physics parameters to off"
+    )]
+    NoPhysics { why: String },
     /// A condition has no result of its own.
     #[error("condition {condition}: {why}")]
     NoResult { condition: ConditionId, why: String },
@@ -98,6 +104,7 @@ impl ExportFault {
             Self::Variables(fault) => fault.code(),
             Self::Schedule(error) => error.code(),
             Self::NoCouplings { .. } => "no-couplings",
+            Self::NoPhysics { .. } => "no-physics",
             Self::NoResult { .. } => "no-result",
             Self::NoCondition { .. } => "unknown-condition",
             Self::NoModel { .. } => "unknown-model",

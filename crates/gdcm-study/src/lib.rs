@@ -47,6 +47,7 @@ pub mod shared;
 pub mod stages;
 
 pub use decisions::edit::Edit;
+pub use decisions::physics_settings::PhysicsCorrection;
 pub use decisions::settings::{CouplingCorrection, PhaseCorrection};
 pub use decisions::study::Study;
 pub use execution::Execution;

@@ -1,6 +1,7 @@
 //! Sentences about cautions, and about conditions without a result.
 
 use gdcm_model::dataset::{Dataset, Pair};
+use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{Caution, GainOutOfRange, NotFinite, USUAL_GAINS, Undefined};
@@ -80,6 +81,29 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             not name them: check that their order is the same as in the dataset ({})",
             first_names(models)
         ),
+        Caution::ParametersNotApplied(omission) => format!(
+            "the physics models are not moved by the physics parameters: {}",
+            omission
+        ),
+        Caution::ModelsNotMoved(models) => {
+            let names: Vec<&str> = models.iter().map(|model| model.model.as_str()).collect();
+            let why = match models.first() {
+                Some(model) => model.why.to_string(),
+                None => String::new(),
+            };
+            format!(
+                "{} not moved by the physics parameters ({}): {why}",
+                counted(models.len(), "physics model"),
+                names.join(", ")
+            )
+        }
+        Caution::ParametersBend(bends) => {
+            let names: Vec<&str> = bends.iter().map(|bend| bend.name.as_str()).collect();
+            format!(
+                "the effect of {} bends at the value applied; give a second run at that value",
+                names.join(", ")
+            )
+        }
         Caution::UnusualGain { pair, gain } => format!(
             "{}: delta gain G = {} is outside the usual range {} to {}; if it is not physically \
             meaningful, exclude this response from the objective (\"ignored\" in a study file)",

@@ -5,8 +5,10 @@ use std::fmt;
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
+use gdcm_model::units::number;
 use gdcm_study::Study;
 use gdcm_study::decisions::choices::BundleChoice;
+use gdcm_study::decisions::physics_settings::PhysicsSettings;
 use gdcm_study::decisions::setting::SETTINGS;
 
 /// A decision that differs between two studies.
@@ -66,6 +68,7 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
         &study.settings.ignored
     }));
     differences.extend(sign_differences(before, after));
+    differences.extend(parameter_differences(before, after));
     for condition in before.dataset.conditions() {
         differences.extend(condition_differences(before, after, condition.id()));
     }
@@ -117,6 +120,55 @@ fn sign_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
         }
     }
     differences
+}
+
+/// Lists the differences of decisions about physics parameters (M18).
+fn parameter_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
+    let [was, is] = [before, after].map(|study| &study.settings.physics_parameters);
+    let mut names: BTreeSet<&String> = BTreeSet::new();
+    for settings in [was, is] {
+        names.extend(settings.by_hand.keys());
+        names.extend(&settings.off);
+        names.extend(settings.plausible_sd.keys());
+    }
+    let mut differences = Vec::new();
+    for name in names {
+        let [before, after] = [was, is].map(|settings| parameter_words(settings, name));
+        if before != after {
+            differences.push(DecisionDifference::new(name.clone(), before, after));
+        }
+    }
+    if was.gain_sd != is.gain_sd || was.delay_sd_s != is.delay_sd_s || was.points != is.points {
+        let [before, after] = [was, is].map(|settings| {
+            format!(
+                "gains ± {}, delays ± {} ms, {} frequencies",
+                number(settings.gain_sd),
+                number(1e3 * settings.delay_sd_s),
+                settings.points
+            )
+        });
+        differences.push(DecisionDifference::new(
+            "fit of physics parameters",
+            before,
+            after,
+        ));
+    }
+    differences
+}
+
+/// Describes the decisions about a parameter: "off", "held at 5, plausible ± 10".
+fn parameter_words(settings: &PhysicsSettings, name: &str) -> String {
+    let mut words = vec![match settings.by_hand.get(name) {
+        Some(change) => format!("held at {}", number(*change)),
+        None => "fitted".to_owned(),
+    }];
+    if settings.off.contains(name) {
+        words = vec!["off".to_owned()];
+    }
+    if let Some(plausible_sd) = settings.plausible_sd.get(name) {
+        words.push(format!("plausible ± {}", number(*plausible_sd)));
+    }
+    words.join(", ")
 }
 
 fn sign_words(study: &Study, channel: Channel) -> String {

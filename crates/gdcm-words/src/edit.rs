@@ -3,6 +3,7 @@
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_study::Edit;
 use gdcm_study::decisions::dataset_differences::CarriedDecision;
+use gdcm_study::decisions::physics_settings::ParameterDecision;
 use gdcm_study::decisions::requirement_settings::{OutputRequirement, RequirementPart};
 use gdcm_study::decisions::settings::ResponseMark;
 
@@ -62,6 +63,13 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
         Edit::SetRequirements(part, _) => {
             format!("requirements: {}", requirement_part_text(*part))
         }
+        Edit::DecideParameter { name, decision } => match decision {
+            ParameterDecision::Value(Some(_)) => format!("set {name} by hand"),
+            ParameterDecision::Value(None) => format!("fit {name}"),
+            ParameterDecision::On(true) => format!("switch {name} on"),
+            ParameterDecision::On(false) => format!("switch {name} off"),
+            ParameterDecision::PlausibleSd(_) => format!("plausible change of {name}"),
+        },
         Edit::KeepVariant { name } => format!("keep variant {name}"),
         Edit::TakeVariant { name } => format!("take variant {name}"),
         Edit::RemoveVariant { name } => format!("remove variant {name}"),
@@ -79,7 +87,7 @@ fn requirement_part_text(part: RequirementPart) -> &'static str {
         RequirementPart::Levels => "levels",
         RequirementPart::Tolerances => "tolerances",
         RequirementPart::ModeTolerances => "tolerances of modes",
-        RequirementPart::OverviewLimits => "limits of the overview",
+        RequirementPart::OverviewLimits => "limits of bandwidth and summary",
         RequirementPart::TestShape => "shape of the test input",
         RequirementPart::TestSize => "size of the test input",
         RequirementPart::TestDuration => "duration of the test input",

@@ -9,9 +9,11 @@
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
-//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
-//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files; [`flight_plan`] for further flights.
-//! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
+//! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
+//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files;
+//! [`identification_caution`] for identified models; [`flight_plan`] for further flights,
+//! [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`]. Tables:
+//! [`table`], [`requirements`], [`requirement_grid`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -37,16 +39,19 @@ pub mod derivation;
 pub mod edit;
 pub mod export;
 pub mod flight_plan;
+pub mod identification_caution;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
+pub mod physics;
 pub mod remark;
+pub mod requirement_grid;
 pub mod requirements;
-pub mod requirements_overview;
 pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;
 pub mod solution_details;
+pub mod suggested_runs;
 pub mod table;
 pub mod time_histories;
 pub mod uncertainty;

@@ -36,7 +36,7 @@ const NO_WORDS: SettingWords = SettingWords {
     meanings: &[],
 };
 
-static SETTING_WORDS: [SettingWords; 29] = [
+static SETTING_WORDS: [SettingWords; 30] = [
     SettingWords {
         key: "alpha_gain",
         caption: "α gains",
@@ -116,6 +116,20 @@ static SETTING_WORDS: [SettingWords; 29] = [
             "Each input receives constant shares of the other inputs (M16)",
             "Each input receives constant shares of the other inputs and of the outputs, \
                 which also moves the modes (M16)",
+        ],
+        ..NO_WORDS
+    },
+    SettingWords {
+        key: "physics",
+        caption: "Physics",
+        label: "Physics parameters",
+        help: "Named parameters of the physics model, moved before every other correction: none, those that \
+    the diagnosis names, all, or values set by hand (M18)",
+        meanings: &[
+            "The physics models are those of the file",
+            "The parameters that the diagnosis names, fitted again with the others off (M18)",
+            "All parameters that are on, at the fitted values (M18)",
+            "The values set by hand; nothing is fitted (M18)",
         ],
         ..NO_WORDS
     },

@@ -15,14 +15,14 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::view::View;
-use crate::gui::views::figure_button::tables_in_place;
+use crate::gui::views::figure_button::tables_of_view;
 use crate::gui::views::figures::{figure_name, figure_of};
 use crate::message::Message;
 
 impl GdcmApp {
     /// Copies the values shown by a view to the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
-        let tables = match tables_in_place(&self.state, view) {
+        let tables = match tables_of_view(&self.state, view) {
             Some(tables) => tables,
             None => match self.figure_of(view) {
                 Some(figure) => figure.tables(),
@@ -46,12 +46,6 @@ impl GdcmApp {
 
     /// Asks where to save a view; proposes the folder in which the previous figure was saved.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
-        // Tables are saved as CSV, whatever the figure format.
-        let format = if tables_in_place(&self.state, view).is_some() {
-            FigureFormat::Csv
-        } else {
-            format
-        };
         let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
         self.state.forms.figure = Some(view);
         let path = self.state.forms.typed_in(FormKind::SaveFigure);
@@ -62,19 +56,11 @@ impl GdcmApp {
     /// Saves a view; asks before overwriting.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
         let path = self.files.at_home(path);
-        let written = match tables_in_place(&self.state, view) {
+        let written = match tables_of_view(&self.state, view) {
             Some(tables) if matches!(figure_format(&path), Ok(FigureFormat::Csv)) => {
                 save_tables(&tables, &path, self.outputs())
             }
-            Some(_) => {
-                let found = sanitized_path(&path);
-                let text = format!(
-                    "{} shows tables here: expected a name that ends in .csv, found {found}",
-                    view.name()
-                );
-                return self.notify_error(Message::new("tables-as-csv", text));
-            }
-            None => {
+            _ => {
                 let Some(figure) = self.figure_of(view) else {
                     return;
                 };

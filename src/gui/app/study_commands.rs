@@ -14,7 +14,11 @@ impl GdcmApp {
     pub(super) fn carry_out_study(&mut self, command: StudyCommand) {
         match command {
             StudyCommand::Edit(edit) => self.decide(&edit),
-            StudyCommand::EndEdit => self.state.history.seal(),
+            StudyCommand::DragEdit => self.set_setting_dragged(true),
+            StudyCommand::EndEdit => {
+                self.set_setting_dragged(false);
+                self.state.history.seal();
+            }
             // A step may also contain an edit of flight records, which are not part of the study:
             // `exchange` restores them.
             StudyCommand::Undo => self.restore_study(|history, study, records| {
@@ -24,6 +28,12 @@ impl GdcmApp {
                 history.redo(study, |before| records.exchange(before))
             }),
             StudyCommand::Forget(edit) => self.restore_study(|history, _, _| history.forget(&edit)),
+        }
+    }
+
+    fn set_setting_dragged(&mut self, is_dragged: bool) {
+        if let Some(session) = &mut self.state.settings_session {
+            session.is_dragged = is_dragged;
         }
     }
 

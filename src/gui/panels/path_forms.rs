@@ -8,6 +8,7 @@ use super::form_parts::Form;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, Forms, RequirementTable};
 use crate::gui::state::window_state::State;
 
@@ -26,7 +27,7 @@ struct PathWords {
 }
 
 /// Every form that asks for a path and for at most one choice.
-const PATHS: [PathWords; 9] = [
+const PATHS: [PathWords; 10] = [
     PathWords {
         kind: FormKind::Open,
         title: "Open a dataset or a study",
@@ -50,6 +51,15 @@ const PATHS: [PathWords; 9] = [
         hint: "path of a .gdcm-study.json file",
         explanation: "",
         submit: "Save file",
+    },
+    PathWords {
+        kind: FormKind::AddRecords,
+        title: "Add flight records",
+        field: "Path of records",
+        hint: "path of a file, a folder or an archive",
+        explanation: "CSV, text, .mat, .npz, .zip and logs. Each record goes to the condition in the \
+            name of its file or folder.",
+        submit: "Add these records",
     },
     PathWords {
         kind: FormKind::SaveTable,
@@ -154,6 +164,7 @@ fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command>
             path,
         )),
         FormKind::Save => Command::File(FileCommand::SaveStudyAs(path)),
+        FormKind::AddRecords => Command::Records(RecordsCommand::Add(vec![path])),
         FormKind::SaveTable => {
             Command::Output(OutputCommand::SaveTable(forms.table.clone()?, path))
         }

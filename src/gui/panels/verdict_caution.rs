@@ -22,6 +22,13 @@ pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Messag
     {
         return Some(caution.message.clone());
     }
+    if state
+        .analysis()
+        .is_some_and(|analysis| analysis.asked_physics().is_err())
+    {
+        let text = "Physics parameters could not be applied";
+        return Some(Message::new("no-physics", text));
+    }
     lead_caution(shown)
         .or(couplings.map(|caution| caution.message))
         .or_else(|| schedule_caution(state, shown))

@@ -10,18 +10,21 @@
 
 use std::sync::Arc;
 
+use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::analysis_jobs::{
-    AssessmentJob, CouplingsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
+    AssessmentJob, CouplingsJob, PhysicsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
 };
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
+use gdcm_study::jobs::trade_off_job::{TradeOff, TradeOffJob};
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
+use gdcm_study::results::physics_assessment::AssessedPhysics;
 use gdcm_study::results::record_history::{NoRecordHistory, RecordHistory};
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::test_input_responses::TestAnswers;
@@ -66,11 +69,15 @@ pub struct Results {
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
     /// Responses across conditions, with their job; see `State::across`.
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
+    /// Trade-off of α in the displayed condition, with its job; see `State::trade_off`.
+    pub trade_off: Option<(TradeOffJob, Result<Arc<TradeOff>, ProblemError>)>,
     /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
     /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
     /// `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
+    /// Diagnosis and benefit of the physics parameters, with the job; see `State::physics`.
+    pub physics: Option<(PhysicsJob, Option<AssessedPhysics>)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Responses to the test input, with their job; see `State::test_answers`.
@@ -80,7 +87,7 @@ pub struct Results {
         RecordHistoryJob,
         Result<Arc<RecordHistory>, NoRecordHistory>,
     )>,
-    /// Models' responses to all records, with their job; see `State::time_histories`.
+    /// Models' responses to the held-out records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Comparisons of models with a record in the time domain, or the reasons for their absence.

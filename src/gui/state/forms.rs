@@ -39,6 +39,8 @@ pub enum FormKind {
     Models,
     /// Channels and path for a dataset made from records.
     RecordDataset,
+    /// Path of flight records to add.
+    AddRecords,
     /// Path and printed width of a figure.
     SaveFigure,
     /// Path of the report.

@@ -56,6 +56,8 @@ pub enum View {
     Across,
     /// Poles and modes of every model in the condition.
     Poles,
+    /// Named physics parameters: which would have to move, and by how much (M18).
+    Physics,
     /// Input mixing and output feedback (M16).
     Couplings,
     /// Channel gains over airspeed (Figures 3 and 4).
@@ -73,21 +75,26 @@ pub enum View {
     /// Phase change by delay or lead in each channel, and the gain that leads add above the band,
     /// up to ten times the band.
     Leads,
+    /// Net gain of the response in focus over airspeed, and J before the correction, at each optimum
+    /// and under the schedule.
+    ScheduleCost,
     /// Flight records in the condition, and models identified from them.
     Records,
 }
 
 impl View {
     /// Every view, in menu order.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
         Self::Across,
         Self::Poles,
+        Self::Physics,
         Self::Couplings,
         Self::Records,
         Self::NetGain,
+        Self::ScheduleCost,
         Self::Channels,
         Self::Leads,
         Self::Evidence,
@@ -164,9 +171,11 @@ impl View {
             Self::Overview => OVERVIEW,
             Self::Across => ACROSS,
             Self::Poles => POLES,
+            Self::Physics => PHYSICS,
             Self::Couplings => COUPLINGS,
             Self::Records => RECORDS,
             Self::NetGain => NET_GAIN,
+            Self::ScheduleCost => SCHEDULE_COST,
             Self::Channels => CHANNELS,
             Self::Leads => LEADS,
             Self::Evidence => EVIDENCE,
@@ -214,6 +223,17 @@ const POLES: ViewFacts = ViewFacts {
     ..ViewFacts::PLAIN
 };
 
+const PHYSICS: ViewFacts = ViewFacts {
+    name: "Physics",
+    purpose: "Named physics parameters: which would have to move so that the physics models meet \
+                    flight, and by how much",
+    group: ViewGroup::Models,
+    takes_dock: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Physics),
+    ..ViewFacts::PLAIN
+};
+
 const COUPLINGS: ViewFacts = ViewFacts {
     name: "Couplings",
     purpose: "Input mixing and output feedback, their benefit, and their effect on the loop",
@@ -240,6 +260,17 @@ const NET_GAIN: ViewFacts = ViewFacts {
     long_name: Some("Net gain over airspeed"),
     is_of_all_conditions: true,
     figure: Some(FigureKind::NetGain),
+    ..ViewFacts::PLAIN
+};
+
+const SCHEDULE_COST: ViewFacts = ViewFacts {
+    name: "Schedule cost",
+    purpose: "Net gain of the response in focus over airspeed, and its J before the correction, \
+              at the optimum of each condition and under the schedule",
+    group: ViewGroup::Schedule,
+    is_docked: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::ScheduleCost),
     ..ViewFacts::PLAIN
 };
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::Example;
+use gdcm_io::file_caution::FileCaution;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::Study;
 use gdcm_study::decisions::dataset_differences::Difference;
@@ -18,6 +19,8 @@ use super::forms::Forms;
 use super::notices::{MessageBar, Notices};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
+use super::settings_session::SettingsSession;
+use super::view::View;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +52,8 @@ pub struct State {
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: UndoHistory,
+    /// Session of the settings panel, while it is open.
+    pub settings_session: Option<SettingsSession>,
     /// File name of the study, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.
@@ -56,7 +61,7 @@ pub struct State {
     pub display: Display,
     pub results: Results,
     /// Cautions from reading the dataset file.
-    pub file_cautions: Vec<String>,
+    pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
     /// Messages of the session, and toasts.
@@ -79,7 +84,7 @@ pub struct State {
 
 impl State {
     /// Creates the state for a window that shows `study` for the first time.
-    pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
+    pub fn new(study: Study, study_name: String, file_cautions: Vec<FileCaution>) -> Self {
         let pair = study
             .dataset
             .measuring_pairs()
@@ -98,6 +103,7 @@ impl State {
             example: None,
             on_start_page: false,
             history: History::default(),
+            settings_session: None,
             study_name,
             unsaved: false,
             display,
@@ -113,6 +119,11 @@ impl State {
             records: RecordsState::default(),
             assembling: None,
         }
+    }
+
+    /// Returns whether a view is shown, in front or beside it.
+    pub fn shows_view(&self, view: View) -> bool {
+        !self.on_start_page && self.display.layout.arrangement.is_shown(view)
     }
 
     /// Returns the window title: the study, marked if unsaved, and the dataset.

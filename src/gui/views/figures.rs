@@ -6,6 +6,7 @@ use std::sync::Arc;
 use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
 use super::frequency_curves::{bode_options, condition_source};
@@ -43,7 +44,10 @@ pub fn figure_name(state: &State, view: View) -> String {
             parts.push(state.condition().id().to_string());
         }
     }
-    if matches!(view, View::Bode | View::Error | View::Across | View::Leads) {
+    if matches!(
+        view,
+        View::Bode | View::Error | View::Across | View::Leads | View::ScheduleCost
+    ) {
         let (output, input) = state.dataset().channel_names(state.display.selection.pair);
         parts.push(input);
         parts.push(output);
@@ -75,6 +79,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         values,
         ..bode_options(state)
     };
+    let across_display = &display.frequency.across_display;
     let assessed = Some(state.assessment_choice());
     let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
@@ -87,9 +92,12 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         measure,
         across,
         assessed,
-        across_role: display.frequency.across_role,
+        across_roles: across_display.roles.clone(),
+        across_conditions: across_display.conditions.of_study(&state.study),
         bode,
         couplings,
+        physics: shown_physics(state, kind),
+        parameter: display.physics.selected.clone(),
         requirements,
         over_time,
         ..usual
@@ -99,6 +107,15 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
 /// Returns the assessed couplings, once available.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
+}
+
+/// Returns the diagnosis of the physics parameters for a figure; `None` for other figures, or until
+/// it is available.
+fn shown_physics(state: &State, kind: FigureKind) -> Option<Arc<PhysicsAssessment>> {
+    if kind != FigureKind::Physics {
+        return None;
+    }
+    state.physics()?.as_ref()?.as_ref().ok().cloned()
 }
 
 /// Returns the requirements for a figure; `None` for other figures, or until they are available.

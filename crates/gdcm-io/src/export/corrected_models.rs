@@ -168,8 +168,12 @@ mod tests {
     use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics};
     use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+    use gdcm_study::decisions::physics_settings::ParameterDecision;
     use gdcm_study::decisions::setting;
-    use gdcm_study::{AssessedCorrection, CouplingCorrection, Engine, PhaseCorrection, Study};
+    use gdcm_study::{
+        AssessedCorrection, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection,
+        Study,
+    };
 
     use super::metrics::array;
     use super::numpy::row_of_texts;
@@ -279,6 +283,52 @@ mod tests {
             .unwrap();
         let values = models.iter().map(|model| model.airspeed_kt).collect();
         assert_eq!(airspeeds.value, matrix(1, models.len(), values));
+    }
+
+    #[test]
+    fn exported_matrices_are_those_at_the_values_of_the_physics_parameters() {
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/data/reference/physics-dataset.json.gz"
+        );
+        let dataset = crate::load_dataset(std::path::Path::new(path))
+            .unwrap()
+            .dataset;
+        let mut study = Study::new(dataset.clone());
+        for edit in [
+            setting::PHASE.to(PhaseCorrection::None),
+            setting::POINTS.to(40_usize),
+            setting::PHYSICS.to(PhysicsCorrection::ByHand),
+            Edit::DecideParameter {
+                name: "Ixx".to_owned(),
+                decision: ParameterDecision::Value(Some(5.0)),
+            },
+        ] {
+            study.apply(&edit).unwrap();
+        }
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let own = ExportRequest {
+            correction: AssessedCorrection::Own,
+            ..ExportRequest::default()
+        };
+        for model in exported_models(&analysis, &own).unwrap() {
+            let condition = dataset.condition(model.condition).unwrap();
+            let run = condition
+                .moved_models()
+                .iter()
+                .find(|moved| moved.run().is_some_and(|run| run.name == "Ixx"))
+                .unwrap();
+            // A run at the value applied has the exported A; gains change B and C alone.
+            let expected = run.model.state_space().unwrap().a();
+            let nominal = condition.bundle(BundleKind::Physics)[condition.nominal()]
+                .state_space()
+                .unwrap()
+                .a();
+            let error = (model.model.a() - expected).norm();
+            assert!(error <= 1e-12 * expected.norm(), "{error}");
+            assert!((nominal - expected).norm() > 1e-6 * expected.norm());
+            assert_eq!(model.contents.physics, ["Ixx +5 %"]);
+        }
     }
 
     #[test]

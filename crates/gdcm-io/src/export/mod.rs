@@ -243,6 +243,11 @@ impl<'e> Export<'e> {
             Ok(schedule) => schedule,
             Err(error) => return Err(ExportFault::Schedule(*error)),
         };
+        analysis
+            .asked_physics()
+            .map_err(|failure| ExportFault::NoPhysics {
+                why: failure.to_string(),
+            })?;
         let couplings = analysis
             .asked_couplings()
             .map_err(|error| ExportFault::NoCouplings {

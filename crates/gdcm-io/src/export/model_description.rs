@@ -22,7 +22,15 @@ impl ExportedModel {
             self.delay_words(),
             self.left_out_words(),
             self.couplings
-        )
+        ) + &self.physics_words()
+    }
+
+    /// Describes the changes of the physics parameters in the model; empty without any.
+    fn physics_words(&self) -> String {
+        if self.contents.physics.is_empty() {
+            return String::new();
+        }
+        format!("; physics model with {}", self.contents.physics.join(", "))
     }
 
     /// Describes the omitted delays of the condition's own correction, and their phase lag at the

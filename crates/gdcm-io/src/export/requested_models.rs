@@ -25,6 +25,13 @@ pub(super) fn exported_models(
         .map_err(|error| ExportFault::NoCouplings {
             why: error.words(&dataset.names_of_channels().0),
         })?;
+    analysis
+        .asked_physics()
+        .map_err(|failure| ExportFault::NoPhysics {
+            why: failure.to_string(),
+        })?;
+    // The models as compared and corrected: moved by the physics parameters, where there are any.
+    let dataset = analysis.moved_dataset();
     let chosen = request.chosen(analysis);
     for &id in &chosen {
         if dataset.condition(id).is_none() {

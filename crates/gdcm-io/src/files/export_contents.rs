@@ -7,6 +7,7 @@ use gdcm_method::schedule::{Schedule, ScheduleError};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
+use gdcm_words::physics::applied_value_list;
 use gdcm_words::schedule::delayed_channel_text;
 
 /// Source of a part of an exported correction.
@@ -62,6 +63,8 @@ pub enum LeftOutPart {
     Delay(DelayedChannel),
     /// The scheduled lead filters.
     Leads,
+    /// Physics parameters that the study requests but that are unavailable, with the reason.
+    Physics(String),
     /// Couplings that the study requests but that are unavailable, with the reason.
     Couplings(String),
 }
@@ -72,6 +75,7 @@ impl LeftOutPart {
         match self {
             Self::Delay(_) => "delay-not-scheduled",
             Self::Leads => "leads-left-out",
+            Self::Physics(_) => "physics-left-out",
             Self::Couplings(_) => "couplings-left-out",
         }
     }
@@ -83,6 +87,9 @@ impl LeftOutPart {
                 format!("{} (not scheduled)", delayed_channel_text(delayed, dataset))
             }
             Self::Leads => "the lead filters of the schedule".to_owned(),
+            Self::Physics(why) => {
+                format!("the physics parameters requested by the study: {why}")
+            }
             Self::Couplings(why) => format!("the couplings requested by the study: {why}"),
         }
     }
@@ -96,6 +103,9 @@ pub struct ExportContents {
     pub leads: PartSource,
     /// Mixing and feedback, identical for all conditions.
     pub couplings: PartSource,
+    /// Changes of the physics parameters, in words ("Ixx +4 %"); empty if the physics models are
+    /// those of the dataset. The other parts are computed for the moved models.
+    pub physics: Vec<String>,
     pub left_out: Vec<LeftOutPart>,
 }
 
@@ -119,6 +129,7 @@ impl ExportContents {
             delays: own.delays.beside(scheduled.delays),
             leads: own.leads.beside(scheduled.leads),
             couplings: own.couplings,
+            physics: own.physics,
             left_out,
         }
     }
@@ -143,7 +154,9 @@ impl ExportContents {
     ) -> Result<Self, ScheduleError> {
         let others;
         let schedule = match (correction, conditions) {
-            (AssessedCorrection::Own, _) => return Ok(Self::of_own(analysis)),
+            (AssessedCorrection::Own, _) => {
+                return Ok(Self::of_own(analysis).for_conditions(analysis, conditions));
+            }
             (AssessedCorrection::ScheduleOfOthers, [condition]) => {
                 others = analysis.schedule_without(*condition)?;
                 &others
@@ -168,11 +181,24 @@ impl ExportContents {
             contents.leads = PartSource::None;
             contents.left_out.push(LeftOutPart::Leads);
         }
-        Ok(contents)
+        Ok(contents.for_conditions(analysis, conditions))
+    }
+
+    /// Returns the contents without the physics parameters if they move no model of these
+    /// conditions.
+    fn for_conditions(mut self, analysis: &Analysis, conditions: &[ConditionId]) -> Self {
+        let is_moved = match analysis.applied_physics() {
+            Some(applied) => conditions.iter().any(|id| applied.moved(*id).is_some()),
+            None => false,
+        };
+        if !is_moved {
+            self.physics.clear();
+        }
+        self
     }
 
     fn of_none(analysis: &Analysis) -> Self {
-        let (couplings, left_out) = match analysis.asked_couplings() {
+        let (couplings, mut left_out) = match analysis.asked_couplings() {
             Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
             Err(error) => {
                 let (inputs, _) = analysis.study.dataset.names_of_channels();
@@ -180,11 +206,20 @@ impl ExportContents {
                 (PartSource::None, vec![LeftOutPart::Couplings(why)])
             }
         };
+        let physics = match analysis.asked_physics() {
+            Ok(Some(applied)) => applied_value_list(applied),
+            Ok(None) => Vec::new(),
+            Err(failure) => {
+                left_out.push(LeftOutPart::Physics(failure.to_string()));
+                Vec::new()
+            }
+        };
         Self {
             gains: PartSource::None,
             delays: PartSource::None,
             leads: PartSource::None,
             couplings,
+            physics,
             left_out,
         }
     }
@@ -243,6 +278,12 @@ impl ExportContents {
     /// Returns lines for a report: "contains: …", then "left out: …" for each omitted part.
     pub fn lines(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = vec![format!("contains: {}", self.words())];
+        if !self.physics.is_empty() {
+            lines.push(format!(
+                "for physics models with {}",
+                self.physics.join(", ")
+            ));
+        }
         for words in self.left_out_words(dataset) {
             lines.push(format!("left out: {words}"));
         }
@@ -251,12 +292,16 @@ impl ExportContents {
 
     /// Returns the JSON object that files hold under the key `contains`.
     pub fn json(&self, dataset: &Dataset) -> Value {
-        json!({
+        let mut contents = json!({
             "gains": self.gains.word(),
             "delays": self.delays.word(),
             "leads": self.leads.word(),
             "couplings": self.couplings.word(),
             "left_out": self.left_out_words(dataset),
-        })
+        });
+        if !self.physics.is_empty() {
+            contents["physics"] = json!(self.physics);
+        }
+        contents
     }
 }

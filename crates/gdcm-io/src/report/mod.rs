@@ -9,6 +9,7 @@ mod couplings;
 mod limits;
 mod models_left_out;
 mod page;
+mod physics;
 mod provenance;
 mod requirements;
 mod schedule;
@@ -27,6 +28,7 @@ use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Analysis, Engine};
 
 use self::page::Page;
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
@@ -45,7 +47,7 @@ pub struct ReportSource {
     /// SHA-256 of the dataset file, in hexadecimal.
     pub sha256: String,
     /// Irregularities found when the dataset file was read.
-    pub cautions: Vec<String>,
+    pub cautions: Vec<FileCaution>,
 }
 
 impl ReportSource {
@@ -75,8 +77,8 @@ pub struct ReportSubject<'a> {
     pub known: &'a KnownPoles,
 }
 
-/// Returns the report on an analysis as HTML. Error bars and the assessment of the couplings are
-/// computed first if the analysis lacks them, because several sections show them; `engine` also
+/// Returns the report on an analysis as HTML. Error bars and the assessments of couplings and
+/// physics parameters are computed first if the analysis lacks them, because several sections show them; `engine` also
 /// computes the responses that are plotted. Each condition is a progress step.
 ///
 /// # Errors
@@ -88,12 +90,14 @@ pub fn report(
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
     let with_bars = uncertainty::with_bars(subject.analysis, engine, progress)?;
-    let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
+    let with_couplings = couplings::with_couplings(with_bars, engine, progress)?;
+    let analysis = &physics::with_physics(with_couplings, engine, progress)?;
     let mut page = Page::default();
     summary::add_summary(&mut page, analysis);
     settings::add_settings(&mut page, &analysis.study);
     provenance::add_files(&mut page, &analysis.study, source);
     models_left_out::add_models_left_out(&mut page, analysis);
+    physics::add_physics(&mut page, analysis);
     couplings::add_couplings(&mut page, analysis);
     conditions::add_conditions(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);

@@ -24,17 +24,7 @@ impl CouplingMatrices {
         airspeed_kt: f64,
         pade: Pade,
     ) -> Result<Vec<PoleShift>, PoleShiftError> {
-        let before = modes(physics)?;
-        let after = modes(&self.model(physics, airspeed_kt, pade)?)?;
-        let tracks = mode_tracks(&[&before, &after], 1);
-        let shifts = tracks
-            .into_iter()
-            .map(|track| PoleShift {
-                before: track.modes[0].map(|mode| before[mode].pole),
-                after: after[track.reference].pole,
-            })
-            .collect();
-        Ok(shifts)
+        PoleShift::between(physics, &self.model(physics, airspeed_kt, pade)?)
     }
 }
 
@@ -55,6 +45,27 @@ pub enum PoleShiftError {
     Model(#[from] CoupledModelError),
     #[error(transparent)]
     Modes(#[from] ModesError),
+}
+
+impl PoleShift {
+    /// Returns the poles of `after` in ascending `|lambda|`, matched to those of `before` so that the
+    /// sum of distances is minimal.
+    ///
+    /// # Errors
+    /// [`PoleShiftError::Modes`] if the eigenvalues are unavailable.
+    pub fn between(before: &StateSpace, after: &StateSpace) -> Result<Vec<Self>, PoleShiftError> {
+        let before = modes(before)?;
+        let after = modes(after)?;
+        let tracks = mode_tracks(&[&before, &after], 1);
+        let mut shifts = Vec::with_capacity(tracks.len());
+        for track in tracks {
+            shifts.push(Self {
+                before: track.modes[0].map(|mode| before[mode].pole),
+                after: after[track.reference].pole,
+            });
+        }
+        Ok(shifts)
+    }
 }
 
 impl PoleShiftError {

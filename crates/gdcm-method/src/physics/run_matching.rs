@@ -263,9 +263,9 @@ fn check_states(
     Ok(())
 }
 
-/// Returns the physics model with the perturbation of a run: the nominal model if it has it,
+/// Returns the physics model with the perturbation of a run or a rerun: the nominal model if it has it,
 /// otherwise the first.
-fn base_of<'a>(condition: &'a Condition, run: &Model) -> Option<&'a Model> {
+pub fn base_of<'a>(condition: &'a Condition, run: &Model) -> Option<&'a Model> {
     let bundle = condition.bundle(BundleKind::Physics);
     let nominal = &bundle[condition.nominal()];
     std::iter::once(nominal)

@@ -213,6 +213,16 @@ impl Condition {
             .with_moved_models(self.moved.clone())
     }
 
+    /// Returns the condition with other physics models.
+    ///
+    /// # Errors
+    /// The errors of [`Condition::new`] and [`Condition::with_moved_models`].
+    pub fn with_physics(&self, models: Vec<Model>) -> Result<Self, ConditionError> {
+        Self::new(self.flight_state.clone(), models, self.bundles[1].clone())?
+            .with_records(self.records.clone())?
+            .with_moved_models(self.moved.clone())
+    }
+
     /// Returns the flight records in file order; empty where the dataset lists none.
     pub fn records(&self) -> &[ConditionRecord] {
         &self.records
@@ -251,6 +261,20 @@ impl Condition {
     /// Returns the named model in a bundle; `None` if there is no such model.
     pub fn model(&self, kind: BundleKind, name: &str) -> Option<&Model> {
         Some(&self.bundle(kind)[self.position(kind, name)?])
+    }
+
+    /// Returns the size of the numbers of all models in memory \[bytes\].
+    pub fn model_bytes(&self) -> usize {
+        let mut bytes = 0;
+        for kind in BundleKind::BOTH {
+            for model in self.bundle(kind) {
+                bytes += model.dynamics.bytes();
+            }
+        }
+        for moved in &self.moved {
+            bytes += moved.model.dynamics.bytes();
+        }
+        bytes
     }
 
     /// Returns the index of the nominal model in the physics bundle.

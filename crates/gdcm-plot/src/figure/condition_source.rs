@@ -13,7 +13,9 @@ use gdcm_model::response::GainDelay;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::stages::condition_curves::ConditionCurves;
-use gdcm_study::{ConditionAnalysis, CouplingCorrection, PhaseCorrection, Study};
+use gdcm_study::{
+    ConditionAnalysis, CouplingCorrection, PhaseCorrection, PhysicsCorrection, Study,
+};
 
 use super::bode_curve::BodeCurve;
 pub use super::bode_curve::CurveId;
@@ -336,8 +338,12 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
         CouplingCorrection::Mixing => " Physics models include a mixing of the inputs.",
         CouplingCorrection::MixingAndFeedback => " Physics models include mixing and feedback.",
     };
+    let physics = match settings.physics {
+        PhysicsCorrection::Off => String::new(),
+        applied => format!(" Physics models moved by {}.", applied.name()),
+    };
     format!(
-        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{couplings}",
+        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{physics}{couplings}",
         dataset.name(),
         settings.points,
         compact(settings.alpha_gain),

@@ -97,13 +97,12 @@ impl ConditionSource<'_> {
             }
         }
         for corrected in self.corrected_models(pair, options) {
-            let shape = match &corrected.result.coupled {
-                Some(_) => {
-                    let curves = self.curves;
-                    let coupled = curves.with_couplings(corrected.result, corrected.model);
-                    cache.shape(&coupled)
-                }
-                None => cache.model_shape(corrected.model),
+            let shape = if corrected.result.has_changed_physics() {
+                let curves = self.curves;
+                let coupled = curves.with_couplings(corrected.result, corrected.model);
+                cache.shape(&coupled)
+            } else {
+                cache.model_shape(corrected.model)
             };
             if let Some(shape) = shape {
                 let error = shape.drawn(corrected.correction, &cache.omega, options.phase_error);

@@ -3,25 +3,29 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channel;
-use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::test_input_responses::TestAnswers;
 
+use super::airspeeds::airspeeds_figure;
 use super::assessment::{assessment_figure, evidence_figure, usual_choice};
-use super::bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
+use super::bode::{BodeOptions, bode_figure, overview_figure};
 use super::condition_source::ConditionSource;
 use super::error::error_figure;
 use super::figure::Figure;
 use super::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use super::leads::leads_figure;
+use super::physics::physics_figure;
 use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
 use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
+use super::schedule_cost::schedule_cost_figure;
 
 /// Kinds of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -47,14 +51,19 @@ pub enum FigureKind {
     Leads,
     /// Effect of couplings on the loop that they close, and on the poles in a condition.
     Couplings,
+    /// A physics parameter in every condition, and the misfit that remains as parameters are added.
+    Physics,
     /// Phase delay over bandwidth of attitude responses, or model responses over time.
     Requirements,
-    /// A response in every condition, coloured by airspeed.
+    /// A response in every condition, coloured by airspeed, with the error of the schedule.
     Airspeeds,
+    /// Net gain of a response over airspeed, and its J before and after the correction and under
+    /// the schedule.
+    ScheduleCost,
 }
 
 impl FigureKind {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -65,8 +74,10 @@ impl FigureKind {
         Self::Poles,
         Self::Leads,
         Self::Couplings,
+        Self::Physics,
         Self::Requirements,
         Self::Airspeeds,
+        Self::ScheduleCost,
     ];
 
     /// Returns the name used in commands and file names.
@@ -82,8 +93,10 @@ impl FigureKind {
             Self::Poles => "poles",
             Self::Leads => "leads",
             Self::Couplings => "couplings",
+            Self::Physics => "physics",
             Self::Requirements => "requirements",
             Self::Airspeeds => "airspeeds",
+            Self::ScheduleCost => "schedule-cost",
         }
     }
 
@@ -94,7 +107,7 @@ impl FigureKind {
 
     /// Returns whether the figure shows error bars if these are available.
     pub fn takes_bars(self) -> bool {
-        matches!(self, Self::NetGain | Self::Channels)
+        matches!(self, Self::NetGain | Self::Channels | Self::ScheduleCost)
     }
 
     /// Returns whether the figure shows a single condition.
@@ -128,10 +141,16 @@ pub struct FigureRequest {
     pub across: Across,
     /// Choice for [`FigureKind::Assessment`]; [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
-    /// Role of the model drawn for each condition in [`FigureKind::Airspeeds`].
-    pub across_role: AcrossRole,
+    /// Roles of the models drawn for each condition in [`FigureKind::Airspeeds`]; if empty,
+    /// [`AcrossRole::SHOWN_AT_FIRST`].
+    pub across_roles: Vec<AcrossRole>,
+    /// Conditions in [`FigureKind::Airspeeds`]; if empty, all.
+    pub across_conditions: Vec<ConditionId>,
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
+    pub physics: Option<Arc<PhysicsAssessment>>,
+    /// Name of the parameter in [`FigureKind::Physics`]; the first of the ranking if `None`.
+    pub parameter: Option<String>,
     pub requirements: Option<Arc<Requirements>>,
     /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
     pub over_time: Option<OverTime>,
@@ -178,10 +197,27 @@ impl FigureRequest {
                 let shown = condition.map(|source| source.curves.condition.id());
                 couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit)
             }
-            FigureKind::Airspeeds => {
-                airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode)
+            FigureKind::Physics => self.physics_figure(analysis?),
+            FigureKind::Airspeeds => self.airspeeds_figure(analysis?),
+            FigureKind::ScheduleCost => {
+                let analysis = analysis?;
+                let uncertainty = analysis.uncertainty.as_deref();
+                schedule_cost_figure(analysis, uncertainty, *self.pairs.first()?)
             }
         }
+    }
+
+    fn airspeeds_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        let roles = if self.across_roles.is_empty() {
+            &AcrossRole::SHOWN_AT_FIRST[..]
+        } else {
+            &self.across_roles
+        };
+        let mut conditions = self.across_conditions.clone();
+        if conditions.is_empty() {
+            conditions.extend(analysis.study.dataset.ids());
+        }
+        airspeeds_figure(analysis, &self.pairs, roles, &conditions, &self.bode)
     }
 
     fn channels_figure(&self, analysis: &Analysis) -> Option<Figure> {
@@ -194,6 +230,14 @@ impl FigureRequest {
                 across: self.across,
             },
         ))
+    }
+
+    /// Plots a physics parameter in every condition, and the misfit that remains.
+    fn physics_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        let assessment = self.physics.as_deref()?;
+        let findings = assessment.applied.findings.as_deref()?;
+        let shown = findings.selected(self.parameter.as_deref())?;
+        physics_figure(findings, &analysis.study.dataset, assessment.level, shown)
     }
 
     /// Computes and plots modes and zeros of all models.

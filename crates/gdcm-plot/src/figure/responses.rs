@@ -9,7 +9,7 @@ use gdcm_model::response::response_shape::{ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
 use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
 
-pub use super::airspeed_response::{AirspeedCache, AirspeedResponse};
+pub use super::airspeed_response::{AirspeedCache, AirspeedCurves, AirspeedResponse, line_of};
 pub use super::bode_curve::{BodeCurve, LogFrequencies, Pane};
 pub use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 pub use super::uncertainty_band::{BodeBand, uncertainty_bands};
@@ -53,14 +53,13 @@ impl ConditionSource<'_> {
         }
         for corrected in self.corrected_models(pair, options) {
             let correction = corrected.correction;
-            let shape = match &corrected.result.coupled {
-                None => cache.physics[corrected.model].corrected(&cache.omega, correction),
-                Some(_) => {
-                    let curves = self.curves;
-                    let coupled = curves.with_couplings(corrected.result, corrected.model);
-                    let shape = cache.aligned_shape(&coupled, pair);
-                    shape.corrected(&cache.omega, correction)
-                }
+            let shape = if corrected.result.has_changed_physics() {
+                let curves = self.curves;
+                let coupled = curves.with_couplings(corrected.result, corrected.model);
+                let shape = cache.aligned_shape(&coupled, pair);
+                shape.corrected(&cache.omega, correction)
+            } else {
+                cache.physics[corrected.model].corrected(&cache.omega, correction)
             };
             drawn.push(presentation.curve(corrected.curve, &shape));
         }
@@ -150,6 +149,15 @@ pub struct ResponseCache {
 }
 
 impl ResponseCache {
+    /// Returns whether the shapes were computed from these curves. A cache keeps its curves in
+    /// memory.
+    pub fn is_from(&self, curves: &Arc<ConditionCurves>) -> bool {
+        match &self.source {
+            Some(source) => Arc::ptr_eq(&source.curves, curves),
+            None => false,
+        }
+    }
+
     /// Computes the shapes of a response. Phases are aligned with the reference up to the limit of
     /// the displayed band. The curves of identified models end there, because they carry no
     /// information beyond.

@@ -8,6 +8,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair, PairTable};
 use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
 use super::edit_refusal::{EditRefusal, check_length};
+use super::physics_settings::ParameterDecision;
 use super::requirement_settings::{RequirementPart, RequirementSettings};
 use super::setting_row::{Setting, Value};
 use super::signs::SignRole;
@@ -72,6 +73,11 @@ pub enum Edit {
     /// Changes the requirement settings, which are common to all variants: the changed part, and
     /// the complete settings.
     SetRequirements(RequirementPart, Arc<RequirementSettings>),
+    /// A decision about a physics parameter, by name (M18).
+    DecideParameter {
+        name: String,
+        decision: ParameterDecision,
+    },
     /// Stores the present decisions under a name.
     KeepVariant {
         name: String,
@@ -114,6 +120,13 @@ impl Edit {
             (Edit::SetRequirements(later, _), Edit::SetRequirements(earlier, _)) => {
                 later == earlier
             }
+            (
+                Edit::DecideParameter { name, decision },
+                Edit::DecideParameter {
+                    name: earlier_name,
+                    decision: earlier,
+                },
+            ) => name == earlier_name && decision.is_same_kind(earlier),
             _ => false,
         }
     }
@@ -150,6 +163,12 @@ impl Study {
             Edit::TakeModels(taken) => self.take_models(taken)?,
             Edit::ReturnModels { condition } => self.return_models(*condition)?,
             Edit::SetRequirements(_, settings) => self.requirements = Arc::clone(settings),
+            Edit::DecideParameter { name, decision } => {
+                let dataset = Arc::clone(&self.dataset);
+                self.settings
+                    .physics_parameters
+                    .decide(&dataset, name, *decision)?;
+            }
             Edit::KeepVariant { name } => self.keep_variant(name)?,
             Edit::TakeVariant { name } => self.take_variant(name)?,
             Edit::RemoveVariant { name } => self.remove_variant(name)?,

@@ -53,6 +53,11 @@ pub enum EditRefusal {
         expected: String,
         found: f64,
     },
+    #[error(
+        "physics parameter \"{name}\": the dataset has no run of it; runs are physics models with \
+        \"parameter\""
+    )]
+    NoParameter { name: String },
     /// The limits of the band are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
@@ -85,6 +90,7 @@ impl EditRefusal {
             Self::VariantExists { .. } => "variant-exists",
             Self::NoVariant { .. } => "unknown-variant",
             Self::OutOfRange { .. } => "out-of-range",
+            Self::NoParameter { .. } => "unknown-parameter",
             Self::Band(error) => error.code(),
             Self::NotAValue { .. } => "not-a-value",
             Self::NoCondition { .. } => "unknown-condition",

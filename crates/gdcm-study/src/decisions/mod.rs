@@ -10,6 +10,7 @@ pub mod edit_refusal;
 pub mod export_choices;
 pub mod history;
 pub mod named_decisions;
+pub mod physics_settings;
 pub mod requirement_settings;
 pub mod setting;
 pub mod setting_row;

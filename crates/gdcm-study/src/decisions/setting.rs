@@ -11,6 +11,7 @@ use gdcm_model::dataset::{Band, limits};
 use gdcm_model::response::LeadOrder;
 
 use super::edit_refusal::EditRefusal;
+use super::physics_settings::PhysicsCorrection;
 use super::setting_row::{Choice, Control, Digits, Kind, Place, Setting, Unit};
 use super::settings::{
     CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
@@ -113,7 +114,7 @@ pub static DELAY_FROM: Setting = Setting {
         set: |settings, index| settings.delay_from = DelayFrom::ALL[index],
     },
     control: Control {
-        place: Place::Beside,
+        place: Place::Line,
         applies: |study| study.settings.phase == PhaseCorrection::Delay,
         ..DEFAULT_CONTROL
     },
@@ -203,6 +204,37 @@ pub static COUPLINGS: Setting = Setting {
     },
     ..DEFAULT
 };
+
+/// Physics parameters that move the physics models: none, the named ones, all, or values set by hand
+/// (M18.5).
+pub static PHYSICS: Setting = Setting {
+    name: "physics parameters",
+    key: "physics",
+    option: "--physics",
+    kind: Kind::Choice {
+        words: &[
+            ["off", "off"],
+            ["named", "the named ones"],
+            ["all", "all"],
+            ["by-hand", "set by hand"],
+        ],
+        get: |settings| settings.physics.index(),
+        set: |settings, index| settings.physics = PhysicsCorrection::ALL[index],
+    },
+    control: Control {
+        place: Place::Top,
+        applies: has_runs,
+        ..DEFAULT_CONTROL
+    },
+    ..DEFAULT
+};
+
+fn has_runs(study: &Study) -> bool {
+    let conditions = study.dataset.conditions();
+    conditions
+        .iter()
+        .any(|condition| !condition.moved_models().is_empty())
+}
 
 /// Comparison band \[rad/s\].
 pub static BAND: Setting = Setting {
@@ -655,7 +687,7 @@ pub static SECOND_VARIABLE: Setting = Setting {
 };
 
 /// Every setting except the constrained and ignored responses, in display order.
-pub static SETTINGS: [&Setting; 29] = [
+pub static SETTINGS: [&Setting; 30] = [
     &ALPHA_GAIN,
     &ALPHA_DELAY,
     &PHASE,
@@ -663,6 +695,7 @@ pub static SETTINGS: [&Setting; 29] = [
     &LEAD_ORDER,
     &LEAD_POLE,
     &LEAD_LIMIT,
+    &PHYSICS,
     &COUPLINGS,
     &BAND,
     &POINTS,

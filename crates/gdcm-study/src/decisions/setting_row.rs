@@ -11,6 +11,7 @@ use gdcm_model::number_format::{number, six_digits};
 use gdcm_model::response::LeadOrder;
 
 use super::edit_refusal::EditRefusal;
+use super::physics_settings::PhysicsCorrection;
 use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 use super::study::Study;
 
@@ -154,6 +155,10 @@ impl Choice for PhaseCorrection {
 
 impl Choice for CouplingCorrection {
     const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
+}
+
+impl Choice for PhysicsCorrection {
+    const ALL: &'static [Self] = &[Self::Off, Self::Named, Self::All, Self::ByHand];
 }
 
 impl Choice for DelayFrom {

@@ -16,6 +16,8 @@ use gdcm_model::dataset::limits::MOST_PAIRS;
 use gdcm_model::dataset::{Band, Dataset, PairTable};
 use gdcm_model::whole_number::whole;
 
+use super::physics_settings::{PhysicsCorrection, PhysicsSettings};
+
 /// Default of the maximum mismatch around a loop that counts as consistent \[dB\].
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 
@@ -155,6 +157,12 @@ pub struct Settings<R = PairTable<bool>> {
     /// How couplings and modes are corrected (M16).
     #[serde(default, skip_serializing_if = "is_default")]
     pub couplings: CouplingCorrection,
+    /// Which physics parameters move the physics models (M18.5).
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub physics: PhysicsCorrection,
+    /// Decisions about the physics parameters (M18).
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub physics_parameters: PhysicsSettings,
     /// Maximum mismatch \[dB\] of constrained gains around a loop up to which they count as
     /// consistent: each is then constrained at the nearest consistent value.
     #[serde(default = "default_agreement_db")]
@@ -216,6 +224,8 @@ impl<R> Settings<R> {
             delay_from: self.delay_from,
             lead: self.lead,
             couplings: self.couplings,
+            physics: self.physics,
+            physics_parameters: self.physics_parameters.clone(),
             agreement_db: self.agreement_db,
             schedule: self.schedule,
             schedule_delays: self.schedule_delays,
@@ -261,6 +271,8 @@ impl Settings {
             delay_from: DelayFrom::default(),
             lead: LeadSettings::default(),
             couplings: CouplingCorrection::default(),
+            physics: PhysicsCorrection::default(),
+            physics_parameters: PhysicsSettings::default(),
             agreement_db: DEFAULT_AGREEMENT_DB,
             schedule: ScheduleSettings::default(),
             schedule_delays: DelayScheduling::default(),

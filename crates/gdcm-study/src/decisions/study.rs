@@ -58,6 +58,11 @@ impl PartialEq for Study {
 }
 
 impl Study {
+    /// Returns the datasets that the study keeps in memory: the one in use, and the one of the file.
+    pub(crate) fn datasets(&self) -> impl Iterator<Item = &Arc<Dataset>> {
+        std::iter::once(&self.dataset).chain(&self.file)
+    }
+
     /// Creates a study of `dataset` without any decision: default settings, no rejections.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::for_dataset(&dataset);

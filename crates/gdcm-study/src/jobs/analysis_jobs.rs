@@ -1,4 +1,5 @@
-//! Jobs on an analysis: proofs, toggles, variants, error bars, assessments, couplings.
+//! Jobs on an analysis: proofs, toggles, variants, error bars, assessments, couplings,
+//! physics parameters.
 
 use std::sync::Arc;
 
@@ -9,17 +10,20 @@ use gdcm_model::dataset::Pair;
 use gdcm_model::progress::{Cancelled, Progress};
 
 use super::job::Job;
+use crate::decisions::physics_settings::PhysicsCorrection;
 use crate::decisions::settings::CouplingCorrection;
 use crate::decisions::study::Study;
 use crate::execution::in_turn;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
 use crate::results::assessment_table::{AssessmentChoice, AssessmentTable};
 use crate::results::couplings_assessment::AssessedCouplings;
+use crate::results::physics_assessment::AssessedPhysics;
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 use crate::stages::couplings_assessment::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
+use crate::stages::physics_assessment::with_physics;
 
 /// Complete proof of optimality for eq. (7) in a condition, if the budget of the interactive
 /// analysis was too small.
@@ -203,5 +207,40 @@ impl Job for CouplingsJob {
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         engine.assess_couplings(&self.study, self.couplings, progress)
+    }
+}
+
+/// Job that diagnoses and assesses the physics parameters of a study, beside the interactive
+/// analysis.
+#[derive(Clone, Debug)]
+pub struct PhysicsJob {
+    /// The study; its own setting of the parameters applied is ignored.
+    pub study: Study,
+    /// The parameters whose effect is assessed; not off.
+    pub physics: PhysicsCorrection,
+}
+
+impl PhysicsJob {
+    fn variant(&self) -> VariantJob {
+        VariantJob {
+            study: with_physics(&self.study, self.physics),
+        }
+    }
+}
+
+impl PartialEq for PhysicsJob {
+    fn eq(&self, other: &Self) -> bool {
+        self.variant() == other.variant()
+    }
+}
+
+impl Job for PhysicsJob {
+    /// An engine that caches the results common to all fits.
+    type Tools = Engine;
+    /// `None` where no parameters are requested.
+    type Output = Option<AssessedPhysics>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.assess_physics(&self.study, self.physics, progress)
     }
 }

@@ -10,8 +10,9 @@ use gdcm_method::fidelity::Discontinuity;
 use gdcm_method::fidelity::representative::Representative;
 use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
-use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Model, Pair, PairTable};
 
+use super::applied_physics::{AppliedPhysics, MovedCondition};
 use super::caution::Caution;
 use super::comparison::{BundleMetrics, Comparison};
 use super::convention_doubt::ConventionDoubt;
@@ -19,6 +20,8 @@ use super::couplings_assessment::CouplingsAssessment;
 use super::fitted_couplings::{CoupledCondition, FittedCouplings};
 use super::lead_compensation::LeadCompensated;
 use super::lead_offer::LeadOffer;
+use super::physics_assessment::PhysicsAssessment;
+use super::physics_findings::PhysicsFailure;
 use super::uncertainty::Uncertainty;
 use crate::decisions::requirement_settings::RequirementSettings;
 use crate::decisions::study::Study;
@@ -59,6 +62,12 @@ pub struct Analysis {
     pub omega: Arc<[f64]>,
     /// Each condition's result, or why it has none.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
+    /// Physics parameters and the models moved by them, before couplings, or why there are none;
+    /// `None` where none are requested (M18.5).
+    pub physics: Option<Result<Arc<AppliedPhysics>, PhysicsFailure>>,
+    /// Benefit and cost of the physics parameters, once assessed
+    /// ([`Engine::assess_physics`](crate::stages::engine::Engine::assess_physics)).
+    pub physics_assessment: Option<Arc<PhysicsAssessment>>,
     /// Couplings applied to every physics model, or why there are none; `None` where none are
     /// requested (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
@@ -98,6 +107,33 @@ impl Analysis {
         analysis
     }
 
+    /// Returns the physics parameters applied to the physics models; `None` where there are none.
+    pub fn applied_physics(&self) -> Option<&Arc<AppliedPhysics>> {
+        self.physics.as_ref()?.as_ref().ok()
+    }
+
+    /// Returns the physics parameters that the study requests; `None` where it requests none.
+    ///
+    /// # Errors
+    /// [`PhysicsFailure`] if they are unavailable: an export without them would not match the
+    /// request.
+    pub fn asked_physics(&self) -> Result<Option<&Arc<AppliedPhysics>>, &PhysicsFailure> {
+        match &self.physics {
+            None => Ok(None),
+            Some(Ok(applied)) => Ok(Some(applied)),
+            Some(Err(failure)) => Err(failure),
+        }
+    }
+
+    /// Returns the dataset with its physics models as compared and corrected: moved by the physics
+    /// parameters, where there are any.
+    pub fn moved_dataset(&self) -> &Arc<Dataset> {
+        match self.applied_physics() {
+            Some(applied) => &applied.dataset,
+            None => &self.study.dataset,
+        }
+    }
+
     /// Returns the couplings applied to every physics model; `None` where there are none.
     pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
         self.couplings.as_ref()?.as_ref().ok()
@@ -121,10 +157,13 @@ impl Analysis {
 /// cautions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
-    /// The analysed condition; the order of its models applies to all results below.
+    /// The analysed condition, its physics models moved by the physics parameters where there are
+    /// any; the order of its models applies to all results below.
     pub condition: Arc<Condition>,
     /// Distances within the bundles, and discontinuity ratios.
     pub figures: Arc<BundleMetrics>,
+    /// The condition as in the dataset; `None` if its physics models are not moved.
+    pub moved: Option<MovedCondition>,
     /// Changes due to the couplings; `None` without couplings.
     pub coupled: Option<CoupledCondition>,
     /// Representatives, G and D, with the couplings on the physics models where there are any
@@ -159,6 +198,29 @@ impl ConditionAnalysis {
         match &self.coupled {
             Some(coupled) => &coupled.before,
             None => &self.comparison,
+        }
+    }
+
+    /// Returns the comparison of the models as in the dataset, without physics parameters and
+    /// couplings.
+    pub fn file_comparison(&self) -> &Comparison {
+        match &self.moved {
+            Some(moved) => &moved.before,
+            None => self.before_couplings(),
+        }
+    }
+
+    /// Returns whether physics parameters or couplings change the physics models before the gains
+    /// and delays.
+    pub fn has_changed_physics(&self) -> bool {
+        self.moved.is_some() || self.coupled.is_some()
+    }
+
+    /// Returns the condition as in the dataset.
+    pub fn file_condition(&self) -> &Arc<Condition> {
+        match &self.moved {
+            Some(moved) => &moved.file,
+            None => &self.condition,
         }
     }
 

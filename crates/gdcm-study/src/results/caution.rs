@@ -4,9 +4,12 @@ use std::fmt;
 
 use gdcm_method::correction::delta::LARGEST_GAIN_DB;
 use gdcm_method::fidelity::discontinuity::DiscontinuityError;
+use gdcm_method::physics::ConditionOmission;
 use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Pair};
 use gdcm_model::response::PolarResponse;
 use gdcm_model::response::large_entry::LargeEntry;
+
+use super::moved_models::{BendingParameter, MovedModels, UnmovedModel};
 
 /// Usual range of G; a value outside it suggests different units, or a response without physical
 /// meaning.
@@ -75,6 +78,13 @@ pub enum Caution {
         bundle: BundleKind,
         models: Vec<String>,
     },
+    /// The physics parameters move other conditions, but not this one (M18.5).
+    ParametersNotApplied(ConditionOmission),
+    /// Physics models keep their response, because the changes of the runs do not apply to them
+    /// (M18.5).
+    ModelsNotMoved(Vec<UnmovedModel>),
+    /// The effect of parameters bends at the values applied (M18.7).
+    ParametersBend(Vec<BendingParameter>),
     /// The objective fits a response whose G is outside [`USUAL_GAINS`].
     UnusualGain { pair: Pair, gain: f64 },
 }
@@ -87,6 +97,25 @@ impl Caution {
         } else {
             Some(Caution::UnusualGain { pair, gain })
         }
+    }
+
+    /// Returns the cautions about the moved physics models of a condition.
+    pub(crate) fn of_moved_models(moved: &MovedModels) -> Vec<Self> {
+        let mut cautions = Vec::new();
+        match moved {
+            MovedModels::NotMoved(omission) => {
+                cautions.push(Caution::ParametersNotApplied(omission.clone()));
+            }
+            MovedModels::Moved { kept, bends } => {
+                if !kept.is_empty() {
+                    cautions.push(Caution::ModelsNotMoved(kept.clone()));
+                }
+                if !bends.is_empty() {
+                    cautions.push(Caution::ParametersBend(bends.clone()));
+                }
+            }
+        }
+        cautions
     }
 
     /// Returns the stable code, for programs and tests.
@@ -102,6 +131,9 @@ impl Caution {
             Caution::NotCoherent { .. } => "not-coherent",
             Caution::CoherenceNotUsed => "coherence-not-used",
             Caution::ChannelsByPosition { .. } => "channels-by-position",
+            Caution::ParametersNotApplied(_) => "parameters-not-applied",
+            Caution::ModelsNotMoved(_) => "models-not-moved",
+            Caution::ParametersBend(_) => "parameters-bend",
             Caution::UnusualGain { .. } => "unusual-gain",
         }
     }

@@ -103,7 +103,7 @@ fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMean
 }
 
 /// Returns whether the channel has a unit of angular rate.
-fn is_rate(channel: &Channel) -> bool {
+pub(super) fn is_rate(channel: &Channel) -> bool {
     ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
 }
 

@@ -2,6 +2,7 @@
 //! and results derived from a finished analysis: assessments, requirements, time histories.
 
 pub mod analysis;
+pub mod applied_physics;
 pub mod asked_condition;
 pub mod assessment_table;
 pub mod caution;
@@ -21,6 +22,9 @@ pub mod lead_offer;
 pub mod lead_remarks;
 pub mod missing_finding;
 pub mod model_swap;
+pub mod moved_models;
+pub mod physics_assessment;
+pub mod physics_findings;
 pub mod record_comparison;
 pub mod record_history;
 pub mod record_simulations;
@@ -30,10 +34,14 @@ pub mod reported_error;
 pub mod required_bandwidth;
 pub mod required_modes;
 pub mod required_summary;
+pub mod requirement_grid;
 pub mod requirement_role;
 pub mod requirements;
+pub mod rerun_check;
+pub mod response_costs;
 pub mod schedule_losses;
 pub mod scheduled_conditions;
+pub mod suggested_runs;
 pub mod test_input_responses;
 pub mod time_histories;
 pub mod uncertainty;

@@ -4,11 +4,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_model::dataset::{Band, BundleKind, Condition};
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
 use super::condition_responses::ConditionResponses;
 use crate::decisions::settings::{PhaseCorrection, Settings};
 use crate::results::analysis::ConditionAnalysis;
+use crate::results::applied_physics::AppliedPhysics;
 use crate::results::fitted_couplings::FittedCouplings;
 
 /// Number of frequencies of drawn curves.
@@ -27,14 +28,15 @@ pub struct ConditionCurves {
     pub grid: FrequencyGrid,
     pub physics: Vec<Arc<FrequencyResponse>>,
     pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Coupled responses computed for the most recent requests, with their inputs.
+    /// Moved and coupled responses computed for the most recent requests, with their inputs.
     coupled: Mutex<Vec<CoupledCurve>>,
 }
 
-/// A physics model's response with couplings.
+/// A physics model's response with the physics parameters and couplings of a result.
 #[derive(Debug)]
 struct CoupledCurve {
-    fitted: Arc<FittedCouplings>,
+    physics: Option<Arc<AppliedPhysics>>,
+    fitted: Option<Arc<FittedCouplings>>,
     model: usize,
     response: Arc<FrequencyResponse>,
 }
@@ -59,26 +61,39 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns `H~` of a physics model with the couplings of `result`; `H` without couplings.
+    /// Returns `H~` of a physics model with the physics parameters and the couplings of `result`;
+    /// `H` without them.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
         model: usize,
     ) -> Arc<FrequencyResponse> {
-        let Some(coupled) = &result.coupled else {
+        if !result.has_changed_physics() {
             return Arc::clone(&self.physics[model]);
-        };
+        }
+        let physics = result.moved.as_ref().map(|moved| &moved.applied);
+        let fitted = result.coupled.as_ref().map(|coupled| &coupled.fitted);
         let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = kept
-            .iter()
-            .find(|curve| curve.model == model && Arc::ptr_eq(&curve.fitted, &coupled.fitted));
+        let known = kept.iter().find(|curve| {
+            curve.model == model
+                && are_same(curve.physics.as_ref(), physics)
+                && are_same(curve.fitted.as_ref(), fitted)
+        });
         if let Some(curve) = known {
             return Arc::clone(&curve.response);
         }
-        let response = Arc::new(result.coupled_response(&self.physics[model]).into_owned());
+        let plain = match &result.moved {
+            None => Arc::clone(&self.physics[model]),
+            Some(_) => {
+                let moved = &result.condition.bundle(BundleKind::Physics)[model];
+                Arc::new(PreparedModel::new(&moved.dynamics).response(&self.grid))
+            }
+        };
+        let response = Arc::new(result.coupled_response(&plain).into_owned());
         kept.truncate(KEPT - 1);
         let curve = CoupledCurve {
-            fitted: Arc::clone(&coupled.fitted),
+            physics: physics.cloned(),
+            fitted: fitted.cloned(),
             model,
             response: Arc::clone(&response),
         };
@@ -89,6 +104,15 @@ impl ConditionCurves {
     /// Returns the responses of the models of a bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
+    }
+}
+
+/// Returns whether two shared values are the same object, or both are missing.
+fn are_same<T>(a: Option<&Arc<T>>, b: Option<&Arc<T>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (None, None) => true,
+        _ => false,
     }
 }
 

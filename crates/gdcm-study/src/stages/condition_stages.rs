@@ -4,8 +4,9 @@
 //! 1  responses of every model                                    (dynamics of the model, grid)
 //! 2  distances within each bundle                                (compared responses, coherence)
 //! 3  representatives, G and D                                    (rejections, pins, averages)
-//! 4  with couplings: responses of the coupled physics models, and stage 3 again
-//! 5  optimal delays and gains                                    (constraints, weights, bounds)
+//! 4  with physics parameters: responses of the moved physics models, and stage 3 again
+//! 5  with couplings: responses of the coupled physics models, and stage 3 again
+//! 6  optimal delays and gains                                    (constraints, weights, bounds)
 //! ```
 
 use std::sync::Arc;
@@ -20,14 +21,17 @@ use gdcm_model::progress::Cancelled;
 use super::comparison_input::ComparisonInput;
 use super::condition_responses::{ConditionModels, ConditionResponses, CoupledResponses};
 use super::coupling_fit::CouplingSource;
-use super::known_models::{GridKey, Purpose};
+use super::known_models::{GridKey, KnownModels, Purpose};
 use super::memo::Memo;
 use super::model_swaps::{SwapInput, SwapMemo, SwapOptimum};
 use super::optima::{NoOptima, Optima, SolveInput, SolvedProblems};
+use super::physics_fit::PhysicsSource;
 use super::run::Run;
 use crate::decisions::choices::ConditionChoice;
 use crate::decisions::settings::Settings;
+use crate::execution::Execution;
 use crate::results::analysis::{ConditionAnalysis, ConditionFailure};
+use crate::results::applied_physics::{AppliedPhysics, MovedCondition};
 use crate::results::caution::Caution;
 use crate::results::comparison::{BundleMetrics, Comparison};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
@@ -81,12 +85,23 @@ struct CoupledKey {
 pub(crate) struct ConditionStages {
     models: ConditionModels,
     metrics: Memo<MetricsKey, Arc<BundleMetrics>>,
-    /// Stages for the physics models without couplings.
+    /// Stages for the physics models without couplings, as in the dataset.
     plain: ComparedStages,
+    /// The values that move the physics models, if any (M18.5).
+    physics: Option<Arc<AppliedPhysics>>,
+    /// Stages for the moved physics models without couplings, where the condition has any.
+    moved: Option<MovedStages>,
     responses: Memo<CoupledKey, CoupledResponses>,
     /// Stages for the physics models with couplings.
     coupled: ComparedStages,
     swaps: SwapMemo,
+}
+
+/// Moved physics models of a condition, with the last result of each stage.
+#[derive(Clone, Debug)]
+struct MovedStages {
+    models: ConditionModels,
+    compared: ComparedStages,
 }
 
 /// Last comparison of the representatives of a condition, and the optima based on it.
@@ -114,6 +129,8 @@ impl ConditionStages {
             models,
             metrics: Memo::default(),
             plain: ComparedStages::default(),
+            physics: None,
+            moved: None,
             responses: Memo::default(),
             coupled: ComparedStages::default(),
             swaps: SwapMemo::default(),
@@ -129,6 +146,41 @@ impl ConditionStages {
         }
     }
 
+    /// Sets the values that move the physics models of the stages after the distances; results are
+    /// kept while the models stay the same (M18.5).
+    pub(crate) fn apply_physics(
+        &mut self,
+        applied: Option<&Arc<AppliedPhysics>>,
+        known: &KnownModels,
+    ) {
+        self.physics = applied.cloned();
+        let moved = applied.and_then(|applied| applied.moved(self.models.condition().id()));
+        let present = self.moved.as_ref().map(|moved| moved.models.condition());
+        let is_same = match (moved, present) {
+            (Some(moved), Some(present)) => Arc::ptr_eq(moved, present),
+            (None, None) => true,
+            _ => false,
+        };
+        if is_same {
+            return;
+        }
+        self.moved = moved.map(|condition| MovedStages {
+            models: ConditionModels::new(condition, known),
+            compared: ComparedStages::default(),
+        });
+        self.responses = Memo::default();
+        self.coupled = ComparedStages::default();
+        self.swaps = SwapMemo::default();
+    }
+
+    /// Returns the models that the stages after the distances compare.
+    fn compared_models(&self) -> &ConditionModels {
+        match &self.moved {
+            Some(moved) => &moved.models,
+            None => &self.models,
+        }
+    }
+
     /// Returns the number of steps of the analysis of a condition: three for each model, plus one.
     pub(crate) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
@@ -141,10 +193,13 @@ impl ConditionStages {
     /// Replaces the cached gains if they solve this problem.
     pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         self.plain.problems.take_gains(problem, solution);
+        if let Some(moved) = &mut self.moved {
+            moved.compared.problems.take_gains(problem, solution);
+        }
         self.coupled.problems.take_gains(problem, solution);
     }
 
-    /// Computes responses and distances of the models without couplings.
+    /// Computes responses and distances of the models as in the dataset.
     fn measure<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
         let execution = run.execution;
         let condition = Arc::clone(self.models.condition());
@@ -170,6 +225,53 @@ impl ConditionStages {
         })
     }
 
+    /// Replaces the physics models by the moved ones, where the condition has any; distances and
+    /// suggested outliers stay those of the models in the dataset.
+    fn with_moved_models<'a>(&self, measured: Measured<'a>) -> Result<Measured<'a>, Cancelled> {
+        let Some(moved) = &self.moved else {
+            return Ok(measured);
+        };
+        let run = measured.run;
+        // The steps of the models are reported by `measure`.
+        let silent = Execution::new(
+            run.execution.executor(),
+            run.execution.progress(),
+            usize::MAX,
+        );
+        let responses =
+            moved
+                .models
+                .responses(Purpose::Comparison, run.grid_key(), run.grid, &silent)?;
+        Ok(Measured {
+            condition: Arc::clone(moved.models.condition()),
+            responses,
+            ..measured
+        })
+    }
+
+    /// Returns the stages for the models without couplings.
+    fn stages_without_couplings(&mut self) -> &mut ComparedStages {
+        match &mut self.moved {
+            Some(moved) => &mut moved.compared,
+            None => &mut self.plain,
+        }
+    }
+
+    /// Returns the input of the fit of physics parameters from this condition.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where the run is cancelled.
+    pub(crate) fn physics_source(&mut self, run: Run<'_>) -> Result<PhysicsSource, Cancelled> {
+        let measured = self.measure(run)?;
+        let comparison = self.plain.compare(&measured, None);
+        run.execution.step(1);
+        Ok(PhysicsSource {
+            is_held_out: run.study.choice(measured.condition.id()).held_out,
+            condition: measured.condition,
+            comparison,
+        })
+    }
+
     /// Returns the input of the coupling fit from this condition; `None` where its representatives
     /// cannot be compared, or it has no optimal delays.
     ///
@@ -180,7 +282,8 @@ impl ConditionStages {
         run: Run<'_>,
     ) -> Result<Option<CouplingSource>, Cancelled> {
         let measured = self.measure(run)?;
-        let source = match self.plain.compare(&measured, None) {
+        let measured = self.with_moved_models(measured)?;
+        let source = match self.stages_without_couplings().compare(&measured, None) {
             Err(_) => None,
             Ok(comparison) => self.source_of(&measured, comparison)?,
         };
@@ -195,17 +298,19 @@ impl ConditionStages {
     ) -> Result<Option<CouplingSource>, Cancelled> {
         let input = measured.solve_input(&comparison);
         let problem = Arc::new(input.delay_problem(input.lead_design().as_deref()));
-        let Ok(delays) = self.plain.problems.delays(&input, &problem)? else {
+        let stages = self.stages_without_couplings();
+        let Ok(delays) = stages.problems.delays(&input, &problem)? else {
             return Ok(None);
         };
         let physics = comparison.physics.model;
         let identified = comparison.identified.model;
+        let models = self.compared_models();
         Ok(Some(CouplingSource {
             condition: Arc::clone(&measured.condition),
             delays_s: delays.channels(),
             contents: [
-                self.models.content(BundleKind::Physics, physics),
-                self.models.content(BundleKind::Identified, identified),
+                models.content(BundleKind::Physics, physics),
+                models.content(BundleKind::Identified, identified),
             ],
             physics: Arc::clone(&measured.responses.physics[physics]),
             flight: Arc::clone(&measured.responses.identified[identified]),
@@ -237,20 +342,56 @@ impl ConditionStages {
         run: Run<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<ConditionAnalysis, NoOptima> {
-        let mut measured = self.measure(run)?;
-        let Some(fitted) = couplings else {
-            return self.plain.compare_and_solve(&measured, None);
+        let measured = self.measure(run)?;
+        let moved = self.moved_condition(&measured)?;
+        let mut measured = self.with_moved_models(measured)?;
+        let stages = self.stages_without_couplings();
+        let mut result = match couplings {
+            None => stages.compare_and_solve(&measured, None)?,
+            Some(fitted) => {
+                let before = stages.compare(&measured, None)?;
+                measured.responses = self.coupled_responses(run, couplings, measured.responses);
+                let result = self.coupled.compare_and_solve(&measured, couplings)?;
+                ConditionAnalysis {
+                    coupled: Some(CoupledCondition {
+                        before,
+                        fitted: Arc::clone(fitted),
+                    }),
+                    ..result
+                }
+            }
         };
-        let before = self.plain.compare(&measured, None)?;
-        measured.responses = self.coupled_responses(run, couplings, measured.responses);
-        let result = self.coupled.compare_and_solve(&measured, couplings)?;
-        Ok(ConditionAnalysis {
-            coupled: Some(CoupledCondition {
-                before,
-                fitted: Arc::clone(fitted),
-            }),
-            ..result
-        })
+        result.moved = moved;
+        result.cautions.extend(self.physics_cautions());
+        Ok(result)
+    }
+
+    /// Compares the models as in the dataset, where the physics models are moved.
+    fn moved_condition(
+        &mut self,
+        measured: &Measured<'_>,
+    ) -> Result<Option<MovedCondition>, ConditionFailure> {
+        match (&self.moved, &self.physics) {
+            (Some(_), Some(applied)) => Ok(Some(MovedCondition {
+                file: Arc::clone(&measured.condition),
+                before: self.plain.compare(measured, None)?,
+                applied: Arc::clone(applied),
+            })),
+            _ => Ok(None),
+        }
+    }
+
+    /// Returns the cautions about the moved models of the condition.
+    fn physics_cautions(&self) -> Vec<Caution> {
+        let id = self.models.condition().id();
+        let moved = match &self.physics {
+            Some(applied) => applied.conditions.get(&id),
+            None => None,
+        };
+        match moved {
+            Some(moved) => Caution::of_moved_models(moved),
+            None => Vec::new(),
+        }
     }
 
     /// Computes the gains and delays of the condition after other models replace the
@@ -265,9 +406,12 @@ impl ConditionStages {
         analysis: &ConditionAnalysis,
         couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<ConditionSwaps, Cancelled> {
-        let responses =
-            self.models
-                .responses(Purpose::Comparison, run.grid_key(), run.grid, run.execution)?;
+        let responses = self.compared_models().responses(
+            Purpose::Comparison,
+            run.grid_key(),
+            run.grid,
+            run.execution,
+        )?;
         let responses = self.coupled_responses(run, couplings, responses);
         let input = SwapInput {
             run,
@@ -393,6 +537,7 @@ impl ComparedStages {
         Ok(ConditionAnalysis {
             condition: Arc::clone(&measured.condition),
             figures: Arc::clone(&measured.metrics),
+            moved: None,
             coupled: None,
             comparison,
             gain_problem,

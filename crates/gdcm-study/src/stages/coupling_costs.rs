@@ -10,13 +10,19 @@ use crate::results::assessment_table::{
 };
 use crate::results::couplings_assessment::{AxisCost, CouplingCost, CouplingCosts};
 
-/// Results of a condition that is left out of the fit and the schedule.
+/// Results of a condition that is left out of the fit of couplings and the schedule.
 pub(super) struct LeftOutCondition {
     pub(super) fit: LeftOutFit,
+    pub(super) cost: LeftOutCost,
+}
+
+/// J of a condition that is left out of the fits and the schedule.
+pub(super) struct LeftOutCost {
+    pub(super) condition: ConditionId,
     pub(super) cost: CouplingCost,
-    /// J without couplings, response by response.
+    /// J without the correction assessed, response by response.
     without: PairTable<Option<CostChange>>,
-    /// J with couplings, response by response.
+    /// J with it, response by response.
     with: PairTable<Option<CostChange>>,
 }
 
@@ -32,12 +38,28 @@ impl LeftOutCondition {
             condition,
             fit: held_out.fitted_couplings()?.fit.clone(),
         };
+        Some(Self {
+            fit,
+            cost: LeftOutCost::new(condition, without, held_out)?,
+        })
+    }
+}
+
+impl LeftOutCost {
+    /// Computes J of the condition under the schedule of the others, without the correction
+    /// assessed and with it; `None` where the schedule cannot be fitted to the other conditions, or
+    /// the condition cannot be assessed.
+    pub(super) fn new(
+        condition: ConditionId,
+        without: &Analysis,
+        held_out: &Analysis,
+    ) -> Option<Self> {
         let without_changes = changes(without, condition, AssessedCorrection::ScheduleOfOthers)?;
         let with_changes = changes(held_out, condition, AssessedCorrection::Scheduled)?;
         let mut sums = CostSums::new(without.study.dataset.on_axis());
         sums.add(&without_changes, &with_changes);
         Some(Self {
-            fit,
+            condition,
             cost: sums.corrected(),
             without: without_changes,
             with: with_changes,
@@ -59,11 +81,11 @@ fn changes(
     Some(assessed(analysis, condition, choice).ok()?.changes)
 }
 
-/// Averages J over the conditions, without and with couplings.
+/// Averages J over the conditions, without and with the correction assessed.
 pub(super) fn coupling_costs(
     without: &Analysis,
     with: &Analysis,
-    left_out: &[LeftOutCondition],
+    left_out: &[&LeftOutCost],
 ) -> CouplingCosts {
     let own = cost_sums(without, with, AssessedCorrection::Own);
     let scheduled = cost_sums(without, with, AssessedCorrection::Scheduled);
@@ -81,6 +103,11 @@ pub(super) fn coupling_costs(
             Some(unseen.corrected())
         },
     }
+}
+
+/// Averages J of the uncorrected physics representatives of an analysis.
+pub(super) fn uncorrected_cost(analysis: &Analysis) -> AxisCost {
+    cost_sums(analysis, analysis, AssessedCorrection::Own).uncorrected()
 }
 
 /// Sums J under a correction over the conditions that can be assessed both without and with

@@ -18,7 +18,7 @@ use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use super::known_models::GridKey;
-use crate::decisions::settings::PhaseCorrection;
+use crate::decisions::settings::{PhaseCorrection, Settings};
 use crate::decisions::study::Study;
 use crate::results::comparison::Comparison;
 use crate::results::fitted_couplings::FittedCouplings;
@@ -71,12 +71,22 @@ struct ConditionKey {
 
 /// Averaging assumed for measured responses that do not state it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Averaging {
+pub(crate) struct Averaging {
     averages: Option<f64>,
     /// Length of a window \[s\].
     window_s: Option<f64>,
     /// Whether the windows overlap by half.
     half_overlap: bool,
+}
+
+impl Averaging {
+    pub(crate) fn new(settings: &Settings) -> Self {
+        Self {
+            averages: settings.uncertainty.averages,
+            window_s: settings.uncertainty.window_s,
+            half_overlap: settings.uncertainty.half_overlap,
+        }
+    }
 }
 
 /// All inputs on which the fit depends. The weight and the bounds of the gains are not among them.
@@ -110,11 +120,7 @@ impl CouplingFitKey {
                 PhaseCorrection::None | PhaseCorrection::Delay => None,
             },
             coherence: settings.coherence_threshold,
-            averaging: Averaging {
-                averages: settings.uncertainty.averages,
-                window_s: settings.uncertainty.window_s,
-                half_overlap: settings.uncertainty.half_overlap,
-            },
+            averaging: Averaging::new(settings),
             delays_s: mean_delays_s(&delays_s),
             conditions: sources
                 .iter()
@@ -191,7 +197,11 @@ impl CouplingFitKey {
 
 /// Returns the standard deviation of `ln H` from the standard deviations of an identified model, or
 /// from its coherence if that is used (M16.2).
-fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
+pub(crate) fn deviation(
+    study: &Study,
+    identified: &Model,
+    omega: &[f64],
+) -> Option<PairTable<Vec<f64>>> {
     if let Some(bands) = &identified.bands {
         return Some(response_deviation(bands, omega));
     }

@@ -17,7 +17,7 @@ use gdcm_model::executor::{Sequential, each};
 use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
 
 use super::condition_stages::SWAP_PROOF;
-use super::coupling_costs::{LeftOutCondition, coupling_costs};
+use super::coupling_costs::{LeftOutCondition, LeftOutCost, coupling_costs};
 use super::coupling_effects::{condition_effect, margin_grid};
 use super::engine::Engine;
 use crate::decisions::edit::Edit;
@@ -79,7 +79,7 @@ impl Engine {
             effect.couplings.left_out = left_out
                 .iter()
                 .find(|left_out| left_out.fit.condition == id)
-                .map(|left_out| left_out.cost);
+                .map(|left_out| left_out.cost.cost);
             conditions.insert(id, effect.couplings);
             unstable.extend(effect.unstable);
         }
@@ -89,12 +89,14 @@ impl Engine {
             .flatten()
             .filter(|result| result.offer.is_some())
             .count();
+        let costs_left_out: Vec<&LeftOutCost> =
+            left_out.iter().map(|left_out| &left_out.cost).collect();
         Ok(Some(Ok(Arc::new(CouplingsAssessment {
             couplings,
             fitted,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
-            costs: coupling_costs(&without, &with, &left_out),
+            costs: coupling_costs(&without, &with, &costs_left_out),
             omega: grid.omega().into(),
             conditions,
             unstable,

@@ -18,11 +18,14 @@ use super::convention_check::convention_doubts;
 use super::coupling_fit::{CouplingFitKey, CouplingOutcome, CouplingSource};
 use super::known_models::{GridKey, KnownModels, Purpose};
 use super::memo::Memo;
+use super::physics_models::{PhysicsMemo, PhysicsOutcome};
 use super::run::Run;
 use super::signed_delay_cautions::signed_delays_apart;
+use crate::decisions::physics_settings::PhysicsCorrection;
 use crate::decisions::study::Study;
 use crate::execution::Execution;
 use crate::results::analysis::{Analysis, ConditionAnalysis, ConditionFailure, Outcomes};
+use crate::results::applied_physics::AppliedPhysics;
 use crate::results::assessment_table::{AssessmentChoice, assessed};
 use crate::results::comparison::Mismatches;
 use crate::results::convention_doubt::ConventionDoubt;
@@ -42,6 +45,7 @@ use crate::results::uncertainty::Uncertainty;
 /// responses                      (dynamics of the model, band, points)
 /// distances                      (compared responses, coherence)
 /// representatives, G, D          (rejections, pins, average)
+/// physics parameters, where requested: all later stages use the moved physics models
 /// couplings, where requested: all later stages use the coupled physics models
 /// gains, delays                  (constraints, weights, alpha, bounds)
 /// schedule
@@ -57,6 +61,7 @@ pub struct Engine {
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
     known: KnownModels,
+    physics: PhysicsMemo,
     couplings: Memo<CouplingFitKey, CouplingOutcome>,
     conditions: BTreeMap<ConditionId, ConditionStages>,
     /// The condition drawn last.
@@ -87,6 +92,7 @@ impl Engine {
             proofs: ProofBudget::default(),
             dataset: None,
             known: KnownModels::default(),
+            physics: PhysicsMemo::default(),
             couplings: Memo::default(),
             conditions: BTreeMap::new(),
             drawn: None,
@@ -142,12 +148,13 @@ impl Engine {
     ///
     /// ```text
     /// 1  models of the dataset, with the responses that are already known
-    /// 2  couplings, where requested, fitted to all conditions
-    /// 3  each condition: distances, representatives, G and D, gains and delays
-    /// 4  apparent sign and unit differences
-    /// 5  schedule, with cautions about signed delays
-    /// 6  assessment of each condition under the schedule
-    /// 7  cautions about conditions for which the schedule costs much more than their optimum
+    /// 2  physics parameters, where requested, fitted to all conditions; moved physics models
+    /// 3  couplings, where requested, fitted to all conditions
+    /// 4  each condition: distances, representatives, G and D, gains and delays
+    /// 5  apparent sign and unit differences
+    /// 6  schedule, with cautions about signed delays
+    /// 7  assessment of each condition under the schedule
+    /// 8  cautions about conditions for which the schedule costs much more than their optimum
     /// ```
     pub fn analyze_first(
         &mut self,
@@ -164,6 +171,9 @@ impl Engine {
             proofs: self.proofs,
             execution: &execution,
         };
+        let physics = fit_physics(run, &mut self.physics, &mut self.conditions)?;
+        let applied = physics.as_ref().and_then(|outcome| outcome.as_ref().ok());
+        move_models(&mut self.conditions, applied, &self.known);
         let couplings = fit_couplings(run, &mut self.couplings, &mut self.conditions)?;
         let fitted = couplings.as_ref().and_then(|outcome| outcome.as_ref().ok());
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
@@ -175,6 +185,8 @@ impl Engine {
             study: study.clone(),
             omega: grid.omega().into(),
             conditions,
+            physics,
+            physics_assessment: None,
             couplings,
             coupling_assessment: None,
             doubts,
@@ -212,6 +224,11 @@ impl Engine {
             .map(|condition| 2 * model_count(condition))
             .sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
+        move_models(
+            &mut self.conditions,
+            analysis.applied_physics(),
+            &self.known,
+        );
         let mut analysed = Vec::new();
         for (id, stages) in &mut self.conditions {
             if let Some(result) = analysis.condition(*id) {
@@ -343,13 +360,17 @@ pub struct WantedFirst<'a> {
 }
 
 /// Returns the number of steps of an analysis. Conditions to which couplings are fitted count three
-/// times: for the inputs of the fit, for the fit, and for the analysis.
+/// times: for the inputs of the fit, for the fit, and for the analysis. Each counts twice more where
+/// physics parameters are requested.
 fn steps(study: &Study) -> usize {
     let has_couplings = study.settings.couplings.kind().is_some();
     let mut steps = 0;
     for condition in study.dataset.conditions() {
         let is_fitted_to = has_couplings && !study.choice(condition.id()).held_out;
-        let repetitions = if is_fitted_to { 3 } else { 1 };
+        let mut repetitions = if is_fitted_to { 3 } else { 1 };
+        if study.settings.physics != PhysicsCorrection::Off {
+            repetitions += 2;
+        }
         steps += repetitions * ConditionStages::steps(condition);
     }
     steps
@@ -359,6 +380,50 @@ fn steps(study: &Study) -> usize {
 fn add_schedule_cautions(analysis: &mut Analysis, cautions: Vec<ScheduleCaution>) {
     if let Ok(schedule) = &mut analysis.schedule {
         schedule.cautions.extend(cautions);
+    }
+}
+
+/// Fits physics parameters, and moves the physics models by them; `None` where none are requested
+/// (M18.5).
+fn fit_physics(
+    run: Run<'_>,
+    kept: &mut PhysicsMemo,
+    stages: &mut BTreeMap<ConditionId, ConditionStages>,
+) -> Result<Option<PhysicsOutcome>, Cancelled> {
+    if run.study.settings.physics == PhysicsCorrection::Off {
+        return Ok(None);
+    }
+    let execution = run.execution;
+    let mut chosen = Vec::new();
+    let mut steps = 0;
+    for id in run.study.dataset.ids() {
+        if let Some(stages) = stages.get(&id) {
+            steps += ConditionStages::steps(stages.models().condition());
+        }
+    }
+    for stages in stages.values_mut() {
+        chosen.push(stages);
+    }
+    let sources = execution.each_mut(chosen, |stages| stages.physics_source(run))?;
+    let progress = FitProgress {
+        execution,
+        steps,
+        reported: AtomicUsize::new(0),
+    };
+    let applied = kept.apply(run.study, &sources, execution.executor(), &progress)?;
+    // A cached fit reports no progress: its steps are reported here.
+    progress.advanced(1, 1);
+    Ok(Some(applied))
+}
+
+/// Sets the values that move the physics models of every condition.
+fn move_models(
+    conditions: &mut BTreeMap<ConditionId, ConditionStages>,
+    applied: Option<&Arc<AppliedPhysics>>,
+    known: &KnownModels,
+) {
+    for stages in conditions.values_mut() {
+        stages.apply_physics(applied, known);
     }
 }
 
@@ -450,11 +515,11 @@ fn analyze_conditions(
 
 /// Collects suspected sign and unit differences, and adds each to the conditions that show it.
 fn add_doubts(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
-    // Signs and units are judged on the models without couplings.
+    // Signs and units are judged on the models as in the dataset.
     let mut mismatches: Vec<(ConditionId, &Mismatches)> = Vec::new();
     for (id, outcome) in outcomes.iter() {
         if let Ok(result) = outcome {
-            mismatches.push((*id, &result.before_couplings().representative.mismatch));
+            mismatches.push((*id, &result.file_comparison().representative.mismatch));
         }
     }
     let doubts = convention_doubts(&mismatches, &study.dataset.measuring_pairs());

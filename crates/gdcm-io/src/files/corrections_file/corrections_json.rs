@@ -14,6 +14,7 @@ use super::condition_json::condition_json;
 use super::couplings::couplings;
 use super::labelled_analysis::LabelledAnalysis;
 use super::pair_rows::rows;
+use super::physics::physics;
 use super::schedule::schedule_json;
 use super::uncertainty::uncertainty;
 use super::{NAME, VERSION};
@@ -67,6 +68,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "settings": settings,
         "signs": analysis.study.turned_channels(),
         "contains": ExportContents::of_results(analysis).json(dataset),
+        "physics": physics(analysis),
         "couplings": couplings(analysis),
         "conditions": conditions,
         "failed": failed,
@@ -74,7 +76,10 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "assessment": {"conditions": assessed, "left_out": left_out},
         "uncertainty": uncertainty(&names),
     });
-    without_empty(corrections, &["signs", "couplings", "uncertainty"])
+    without_empty(
+        corrections,
+        &["signs", "physics", "couplings", "uncertainty"],
+    )
 }
 
 /// Returns the change in J of a condition's nominal model due to the schedule.

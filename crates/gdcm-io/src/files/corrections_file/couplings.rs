@@ -68,11 +68,11 @@ fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
     })
 }
 
-fn axis_cost(cost: AxisCost) -> Value {
+pub(super) fn axis_cost(cost: AxisCost) -> Value {
     json!({"on_axis": cost.on_axis, "others": cost.others})
 }
 
-fn coupling_cost(cost: CouplingCost) -> Value {
+pub(super) fn coupling_cost(cost: CouplingCost) -> Value {
     json!({
         "on_axis": cost.with.on_axis,
         "others": cost.with.others,

@@ -1,4 +1,5 @@
-//! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`, and their checksums.
+//! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`, with physics parameters
+//! also `physics.csv`, and their checksums.
 
 mod assessment_csv;
 mod condition_json;
@@ -8,6 +9,7 @@ mod couplings;
 mod csv_condition;
 mod labelled_analysis;
 mod pair_rows;
+mod physics;
 mod schedule;
 mod solutions;
 mod uncertainty;
@@ -19,6 +21,7 @@ use std::path::{Path, PathBuf};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
+use self::physics::write_physics_csv;
 use crate::file_error::FileError;
 use crate::json_writing::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
@@ -37,6 +40,9 @@ pub const RESULT_FILES: [&str; 4] = [
     "assessment.csv",
     "corrections.sha256",
 ];
+
+/// Name of the table of physics parameters, which is written where they are requested.
+pub const PHYSICS_FILE: &str = "physics.csv";
 
 /// Returns the paths of the result files in a directory.
 pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
@@ -67,6 +73,10 @@ pub fn write_results(
     outputs.add(&responses, |file| {
         write_assessment_csv(analysis, chosen, file)
     })?;
+    if let Some(applied) = analysis.applied_physics() {
+        let parameters = directory.join(PHYSICS_FILE);
+        outputs.add(&parameters, |file| write_physics_csv(applied, file))?;
+    }
     outputs.add_checksums(&checksums)?;
     outputs.persist()
 }

@@ -176,6 +176,12 @@ fn present_decisions(
                 refusal,
             )
         })?;
+    settings.physics_parameters.check().map_err(|refusal| {
+        ContentError::new(
+            Location::entry("settings, physics_parameters".to_owned()),
+            refusal,
+        )
+    })?;
     let mut choices = BTreeMap::new();
     for (index, condition) in conditions.into_iter().enumerate() {
         let ConditionText {

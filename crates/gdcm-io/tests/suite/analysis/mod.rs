@@ -26,6 +26,7 @@ mod lead;
 mod mean_gain;
 mod modes;
 mod physics;
+mod physics_stage;
 mod real_aircraft;
 mod remarks;
 mod response_paths;

@@ -126,6 +126,34 @@ fn every_setting_is_a_key_of_the_file() {
     }
 }
 
+#[test]
+fn decisions_about_physics_parameters_are_kept_and_checked() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    let mut study = Study::new(loaded.dataset.clone());
+    let parameters = &mut study.settings.physics_parameters;
+    parameters.by_hand.insert("Ixx".to_owned(), -4.5);
+    parameters.off.insert("lift".to_owned());
+    parameters.plausible_sd.insert("Ixx".to_owned(), 7.5);
+    save_study(&study, &loaded, &desk.study()).unwrap();
+    assert_eq!(open_study(&desk.study()).unwrap().study, study);
+    // A file of an older program has none of these decisions.
+    desk.saved(|text| {
+        assert!(text["settings"].get("physics").is_none());
+        assert!(text["settings"].get("physics_parameters").is_none());
+    });
+    let opened = open_study(&desk.study()).unwrap().study;
+    assert_eq!(opened.settings.physics_parameters, Default::default());
+    for (key, value) in [
+        ("plausible_sd", serde_json::json!({"Ixx": 0.0})),
+        ("points", serde_json::json!(1)),
+        ("gain_sd", serde_json::json!(-1.0)),
+    ] {
+        desk.saved(|text| text["settings"]["physics_parameters"] = serde_json::json!({key: value}));
+        assert!(open_study(&desk.study()).is_err(), "{key}");
+    }
+}
+
 /// Returns the delay scheduling of a study opened from a file after `change`.
 fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
     let desk = Desk::new();

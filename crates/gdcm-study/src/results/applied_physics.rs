@@ -1,0 +1,139 @@
+//! Physics models with the parameters of a study moved: the only source of such models for the
+//! stages after the fit and for exports (M18.5).
+//!
+//! ```text
+//! A(z) = A + sum_k (z_k L_k + z_k^2 Q_k);   B, C and D likewise
+//! ```
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_method::physics::{OfferedParameter, PhysicsDiagnosis};
+use gdcm_model::dataset::physics_parameter::ParameterChange;
+use gdcm_model::dataset::{Condition, ConditionId, Dataset};
+
+use super::comparison::Comparison;
+use super::moved_models::MovedModels;
+use super::physics_findings::PhysicsFindings;
+use crate::decisions::physics_settings::PhysicsCorrection;
+
+/// The values of a study's physics parameters, and the physics models moved by them.
+#[derive(Clone, Debug)]
+pub struct AppliedPhysics {
+    pub correction: PhysicsCorrection,
+    /// Diagnosis of all parameters that are on; `None` for values set by hand.
+    pub findings: Option<Arc<PhysicsFindings>>,
+    /// Fit of the named parameters with the others off; `None` if all are applied, or none is named.
+    pub refit: Option<Arc<PhysicsDiagnosis>>,
+    /// The moved parameters, in the order of the dataset; empty if none is moved.
+    pub values: Vec<AppliedValue>,
+    /// Names with a value by hand that the dataset does not have.
+    pub unknown: Vec<String>,
+    /// What happened to the physics models of each condition; empty if no parameter is moved.
+    pub conditions: BTreeMap<ConditionId, MovedModels>,
+    /// The dataset with the moved physics models.
+    pub dataset: Arc<Dataset>,
+}
+
+impl PartialEq for AppliedPhysics {
+    /// Compares values and outcomes: the models follow from them and from the dataset of the study.
+    fn eq(&self, other: &Self) -> bool {
+        self.correction == other.correction
+            && self.values == other.values
+            && self.unknown == other.unknown
+            && self.conditions == other.conditions
+            && self.findings == other.findings
+            && self.refit == other.refit
+    }
+}
+
+/// A moved parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AppliedValue {
+    pub parameter: OfferedParameter,
+    /// Its change, in plausible standard deviations.
+    pub z: f64,
+    /// Half-width of the interval, in plausible standard deviations; `None` for a value set by hand,
+    /// and with fewer than four conditions.
+    pub half_width: Option<f64>,
+    /// Whether the value was set by hand.
+    pub is_by_hand: bool,
+}
+
+impl AppliedValue {
+    /// Returns the change in the unit of the parameter.
+    pub fn change(&self) -> f64 {
+        self.z * self.parameter.plausible_sd
+    }
+
+    /// Returns the change as a rerun states it.
+    pub fn parameter_change(&self) -> ParameterChange {
+        ParameterChange {
+            name: self.parameter.name.clone(),
+            delta: self.change(),
+            unit: self.parameter.unit.clone(),
+        }
+    }
+}
+
+/// A condition with moved physics models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovedCondition {
+    /// The condition as in the dataset.
+    pub file: Arc<Condition>,
+    /// Comparison of the models of the dataset, by which the representatives are selected.
+    pub before: Arc<Comparison>,
+    pub applied: Arc<AppliedPhysics>,
+}
+
+impl AppliedPhysics {
+    /// Returns a condition with its moved physics models; `None` if it keeps those of the dataset.
+    pub fn moved(&self, id: ConditionId) -> Option<&Arc<Condition>> {
+        match self.conditions.get(&id)? {
+            MovedModels::Moved { .. } => self.dataset.condition(id),
+            MovedModels::NotMoved(_) => None,
+        }
+    }
+
+    /// Returns the changes of the moved parameters, as a rerun states them.
+    pub fn changes(&self) -> Vec<ParameterChange> {
+        self.values
+            .iter()
+            .map(AppliedValue::parameter_change)
+            .collect()
+    }
+
+    /// Returns the values of the moved parameters without a condition, in plausible standard
+    /// deviations; those of all conditions if the condition takes no part in the fit.
+    pub fn values_without(&self, condition: ConditionId) -> Vec<AppliedValue> {
+        let mut values = self.values.clone();
+        let (Some(diagnosis), Some(findings)) = (self.diagnosis(), &self.findings) else {
+            return values;
+        };
+        let left_out = diagnosis
+            .conditions
+            .iter()
+            .find(|diagnosed| diagnosed.id == condition);
+        if let Some(left_out) = left_out {
+            for value in &mut values {
+                let place = findings
+                    .parameters
+                    .iter()
+                    .position(|parameter| parameter.name == value.parameter.name);
+                if let Some(z) = place.and_then(|place| left_out.z_without.get(place)) {
+                    value.z = *z;
+                }
+            }
+        }
+        values
+    }
+
+    /// Returns the diagnosis of the values applied: that of the named parameters, or of all.
+    pub fn diagnosis(&self) -> Option<&PhysicsDiagnosis> {
+        match (&self.refit, &self.findings) {
+            (Some(refit), _) => Some(refit),
+            (None, Some(findings)) => Some(&findings.diagnosis),
+            (None, None) => None,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Benefit of the physics parameters: J without and with them and for conditions left out, channel
+//! delays and couplings that they take over, reruns (M18.5, M18.6).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_method::correction::Channels;
+use gdcm_method::couplings::PoleShift;
+use gdcm_model::dataset::{Band, ConditionId};
+
+use super::applied_physics::AppliedPhysics;
+use super::couplings_assessment::{AxisCost, CouplingCost, CouplingCosts, NoPoles};
+use super::fitted_couplings::FittedCouplings;
+use super::physics_findings::PhysicsFailure;
+use super::rerun_check::RerunCheck;
+use crate::decisions::physics_settings::PhysicsCorrection;
+
+/// Assessment, or why the parameters are unavailable.
+pub type AssessedPhysics = Result<Arc<PhysicsAssessment>, PhysicsFailure>;
+
+/// Diagnosis and benefit of the physics parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhysicsAssessment {
+    /// The parameters applied in [`Self::costs`].
+    pub correction: PhysicsCorrection,
+    /// Values, models and, unless set by hand, the diagnosis.
+    pub applied: Arc<AppliedPhysics>,
+    /// Confidence level of the intervals.
+    pub level: f64,
+    pub band: Band,
+    /// J without and with the parameters, each with the other corrections of the study.
+    pub costs: CouplingCosts,
+    /// J of the moved physics representatives without any other correction.
+    pub moved_uncorrected: AxisCost,
+    /// Effect on each analysed condition.
+    pub conditions: BTreeMap<ConditionId, ConditionPhysics>,
+    /// Couplings fitted without the parameters, if the study requests couplings.
+    pub couplings_without: Option<Arc<FittedCouplings>>,
+    /// Couplings fitted with the parameters applied.
+    pub couplings_with: Option<Arc<FittedCouplings>>,
+    /// Reruns of the dataset against the prediction for their values.
+    pub reruns: Vec<RerunCheck>,
+}
+
+/// The parameters' effect on a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionPhysics {
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Signed delays of the channels without and with the parameters \[s\]; leads are negative.
+    pub delays_s: WithoutAndWith<Channels<f64>>,
+    /// Poles of the physics representative before and after, or why they are unavailable.
+    pub poles: Result<Vec<PoleShift>, NoPoles>,
+    /// J of the condition left out of the fit and the schedule; `None` if it takes no part in them.
+    pub left_out: Option<CouplingCost>,
+}
+
+/// A result without and with the parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WithoutAndWith<T> {
+    pub without: T,
+    pub with: T,
+}
+
+impl PhysicsAssessment {
+    /// Returns the channels' mean signed delays over the conditions, without and with the parameters
+    /// \[s\]; `None` without conditions.
+    pub fn mean_delays_s(&self) -> Option<WithoutAndWith<Channels<f64>>> {
+        let first = self.conditions.values().next()?;
+        let mut mean = first.delays_s.clone();
+        for channels in [&mut mean.without, &mut mean.with] {
+            for delay_s in channels.inputs.iter_mut().chain(&mut channels.outputs) {
+                *delay_s = 0.0;
+            }
+        }
+        let share = 1.0 / self.conditions.len() as f64;
+        for condition in self.conditions.values() {
+            add(&mut mean.without, &condition.delays_s.without, share);
+            add(&mut mean.with, &condition.delays_s.with, share);
+        }
+        Some(mean)
+    }
+}
+
+/// Adds `share` times the delays of `other`.
+fn add(channels: &mut Channels<f64>, other: &Channels<f64>, share: f64) {
+    for (delay_s, other) in channels.inputs.iter_mut().zip(&other.inputs) {
+        *delay_s += share * other;
+    }
+    for (delay_s, other) in channels.outputs.iter_mut().zip(&other.outputs) {
+        *delay_s += share * other;
+    }
+}

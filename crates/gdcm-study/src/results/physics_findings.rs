@@ -1,0 +1,206 @@
+//! Diagnosis of a study's physics parameters, with the runs and conditions that take no part (M18).
+
+use gdcm_method::physics::diagnosis::ParameterDiagnosis;
+use gdcm_method::physics::{
+    ConditionOmission, OfferedParameter, PhysicsDiagnosis, PhysicsError, PhysicsProblem, RefusedRun,
+};
+use gdcm_model::dataset::ConditionId;
+
+/// Diagnosis of the parameters that are on.
+#[derive(Clone, Debug)]
+pub struct PhysicsFindings {
+    /// The parameters that are on, in the order of the dataset.
+    pub parameters: Vec<OfferedParameter>,
+    /// The parameters that are off.
+    pub off: Vec<OfferedParameter>,
+    /// Data of the fit.
+    pub problem: PhysicsProblem,
+    pub diagnosis: PhysicsDiagnosis,
+    pub left_out: LeftOutData,
+}
+
+/// Runs and conditions that take no part in the fit, with the reasons.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LeftOutData {
+    pub runs: Vec<RefusedConditionRun>,
+    pub conditions: Vec<OmittedCondition>,
+}
+
+/// A run that is not used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefusedConditionRun {
+    pub condition: ConditionId,
+    pub run: RefusedRun,
+}
+
+/// A condition that takes no part in the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OmittedCondition {
+    pub condition: ConditionId,
+    pub why: NotFitted,
+}
+
+/// Why a condition takes no part in the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotFitted {
+    /// It is held out.
+    HeldOut,
+    /// Its representatives cannot be compared; the stable code of the reason.
+    NotCompared { code: &'static str },
+    /// Its runs do not suffice.
+    Runs(ConditionOmission),
+}
+
+impl NotFitted {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::HeldOut => "held-out",
+            Self::NotCompared { code } => code,
+            Self::Runs(omission) => omission.code(),
+        }
+    }
+}
+
+/// Why requested physics parameters are unavailable.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PhysicsFailure {
+    /// The dataset has no run of any parameter.
+    #[error(
+        "no physics parameters: the dataset has no run of any parameter; add physics models \
+        linearised with one parameter moved"
+    )]
+    NoRuns,
+    /// Every parameter is switched off.
+    #[error("no physics parameters: every parameter is switched off")]
+    AllOff,
+    /// No condition takes part in the fit.
+    #[error(
+        "no physics parameters: no condition has comparable models and runs of every parameter that is on"
+    )]
+    NoConditions(Box<LeftOutData>),
+    #[error(transparent)]
+    Fit(PhysicsError),
+}
+
+impl PhysicsFailure {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoRuns => "physics-without-runs",
+            Self::AllOff => "physics-all-off",
+            Self::NoConditions(_) => "physics-without-conditions",
+            Self::Fit(error) => error.code(),
+        }
+    }
+
+    /// Returns the runs and conditions that could not be used.
+    pub fn left_out(&self) -> Option<&LeftOutData> {
+        match self {
+            Self::NoConditions(left_out) => Some(left_out),
+            _ => None,
+        }
+    }
+}
+
+impl PartialEq for PhysicsFindings {
+    /// Compares the results; the data of the fit are not read.
+    fn eq(&self, other: &Self) -> bool {
+        self.parameters == other.parameters
+            && self.off == other.off
+            && self.diagnosis == other.diagnosis
+            && self.left_out == other.left_out
+    }
+}
+
+/// A parameter with its diagnosis.
+#[derive(Clone, Copy, Debug)]
+pub struct DiagnosedParameter<'a> {
+    pub parameter: &'a OfferedParameter,
+    pub diagnosis: &'a ParameterDiagnosis,
+}
+
+impl DiagnosedParameter<'_> {
+    /// Returns the change in the unit of the parameter.
+    pub fn change(&self) -> f64 {
+        self.diagnosis.z * self.parameter.plausible_sd
+    }
+
+    /// Returns the half-width of the interval in the unit of the parameter.
+    pub fn half_width(&self) -> Option<f64> {
+        Some(self.diagnosis.half_width? * self.parameter.plausible_sd)
+    }
+
+    /// Returns the ends of the interval in the unit of the parameter.
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        let half_width = self.half_width()?;
+        Some([self.change() - half_width, self.change() + half_width])
+    }
+}
+
+/// How much a value changes when a condition is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConditionPull {
+    pub condition: ConditionId,
+    /// Index among the parameters that are on.
+    pub parameter: usize,
+    /// Value without the condition minus the value with it, in plausible standard deviations.
+    pub change: f64,
+}
+
+impl PhysicsFindings {
+    /// Returns the parameters that are on, with their diagnosis.
+    pub fn diagnosed(&self) -> impl Iterator<Item = DiagnosedParameter<'_>> {
+        self.parameters
+            .iter()
+            .zip(&self.diagnosis.parameters)
+            .map(|(parameter, diagnosis)| DiagnosedParameter {
+                parameter,
+                diagnosis,
+            })
+    }
+
+    /// Lists the parameters that are on, by index: the fitted ones in the order of the stepwise
+    /// list, then the others.
+    pub fn ranked(&self) -> Vec<usize> {
+        let mut ranked: Vec<usize> = (0..self.parameters.len()).collect();
+        ranked.sort_by_key(|parameter| {
+            let step = self.diagnosis.parameters[*parameter].step;
+            (step.is_none(), step)
+        });
+        ranked
+    }
+
+    /// Returns the index of the named parameter among those that are on; without a name, or if no
+    /// such parameter is on, that of the first in the ranking. `None` if no parameter is on.
+    pub fn selected(&self, name: Option<&str>) -> Option<usize> {
+        let found = self
+            .parameters
+            .iter()
+            .position(|parameter| Some(parameter.name.as_str()) == name);
+        found.or_else(|| self.ranked().first().copied())
+    }
+
+    /// Returns the named parameters.
+    pub fn named(&self) -> Vec<DiagnosedParameter<'_>> {
+        self.diagnosed()
+            .filter(|diagnosed| diagnosed.diagnosis.is_named())
+            .collect()
+    }
+
+    /// Lists how much each value changes without each condition, the largest change first.
+    pub fn pulls(&self) -> Vec<ConditionPull> {
+        let mut pulls = Vec::new();
+        for condition in &self.diagnosis.conditions {
+            for (parameter, z_without) in condition.z_without.iter().enumerate() {
+                pulls.push(ConditionPull {
+                    condition: condition.id,
+                    parameter,
+                    change: z_without - self.diagnosis.fit.z[parameter],
+                });
+            }
+        }
+        pulls.sort_by(|a, b| b.change.abs().total_cmp(&a.change.abs()));
+        pulls
+    }
+}

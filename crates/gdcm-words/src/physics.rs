@@ -1,0 +1,587 @@
+//! Sentences and tables about named physics parameters (M18.4 to M18.6).
+//!
+//! A parameter "would have to move by" an amount, or "acts like" another: the diagnosis never states
+//! a cause, because a parameter of like effect that was not offered cannot be excluded.
+
+use gdcm_method::physics::identifiability::WeakDirection;
+use gdcm_method::physics::{OfferedParameter, RunRefusal, Verdict, WhyNotNamed};
+use gdcm_model::number_format::{counted, decimals, signed, telling, with_minus_sign};
+use gdcm_model::units::number;
+use gdcm_study::results::applied_physics::{AppliedPhysics, AppliedValue};
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
+use gdcm_study::results::physics_findings::{
+    DiagnosedParameter, LeftOutData, NotFitted, PhysicsFindings,
+};
+use gdcm_study::results::rerun_check::{RerunCheck, RerunRefusal, RerunVerdict};
+
+use crate::couplings::cost_cells;
+use crate::table::Table;
+
+/// Stands beside every verdict.
+pub const LIKE_EFFECT: &str = "A parameter of like effect that was not offered cannot be excluded.";
+
+/// Said beside error bars where parameters are moved.
+pub const BARS_KEEP_VALUES: &str =
+    "error bars hold these values fixed: parameters are not fitted again for each swap of models";
+
+/// Most pulls that are listed.
+const LISTED_PULLS: usize = 3;
+
+/// Formats a change with its half-width in the unit of the parameter: "+1.6 ± 0.2 deg".
+pub fn change_text(parameter: &OfferedParameter, change: f64, half_width: Option<f64>) -> String {
+    let unit = unit_text(&parameter.unit);
+    match half_width {
+        Some(half_width) if half_width > 0.0 && half_width.is_finite() => {
+            let count = interval_decimals(half_width);
+            format!(
+                "{} ± {}{unit}",
+                signed(change, count),
+                decimals(half_width, count)
+            )
+        }
+        _ => format!("{}{unit}", plain_change(change)),
+    }
+}
+
+/// Formats a change with up to six digits and its sign.
+fn plain_change(change: f64) -> String {
+    let text = with_minus_sign(&gdcm_model::number_format::six_digits(change));
+    if change > 0.0 {
+        format!("+{text}")
+    } else {
+        text
+    }
+}
+
+/// Returns the unit after a space; empty for a number without unit ("1").
+fn unit_text(unit: &str) -> String {
+    if unit == "1" || unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
+}
+
+/// Returns the number of decimals that shows a half-width with one significant digit, or two if the
+/// first is 1.
+fn interval_decimals(half_width: f64) -> usize {
+    let exponent = half_width.log10().floor();
+    let first_digit = half_width / 10_f64.powf(exponent);
+    let mut count = -exponent;
+    if first_digit < 2.0 {
+        count += 1.0;
+    }
+    count.clamp(0.0, 9.0) as usize
+}
+
+/// Names an applied value: "Ixx +4 %".
+pub fn applied_value_text(value: &AppliedValue) -> String {
+    let half_width = value
+        .half_width
+        .map(|half_width| half_width * value.parameter.plausible_sd);
+    format!(
+        "{} {}",
+        value.parameter.name,
+        change_text(&value.parameter, value.change(), half_width)
+    )
+}
+
+/// Lists the applied values: "Ixx +4 %", "tail_lift +10 ± 2 %".
+pub fn applied_value_list(applied: &AppliedPhysics) -> Vec<String> {
+    applied.values.iter().map(applied_value_text).collect()
+}
+
+/// States the verdict on the parameters, and that a parameter of like effect cannot be excluded.
+pub fn verdict_text(findings: &PhysicsFindings) -> String {
+    format!("{} {LIKE_EFFECT}", verdict_sentence(findings))
+}
+
+fn verdict_sentence(findings: &PhysicsFindings) -> String {
+    let diagnosis = &findings.diagnosis;
+    let count = findings.parameters.len();
+    let (Some(verdict), Some(explained)) = (diagnosis.verdict, diagnosis.explained()) else {
+        return format!(
+            "{} in the fit: the values are without intervals, and no parameter is named.",
+            counted(diagnosis.conditions.len(), "condition")
+        );
+    };
+    let explained = percent(explained);
+    let named = findings.named();
+    match verdict {
+        Verdict::None if count == 1 => format!(
+            "The parameter does not explain what gains and delays of the channels leave ({explained})."
+        ),
+        Verdict::None => format!(
+            "None of the {count} parameters explains what gains and delays of the channels leave \
+            ({explained})."
+        ),
+        Verdict::Accounts if named.is_empty() => format!(
+            "The parameters account for {explained} of what gains and delays of the channels leave, \
+            but none of them alone is named."
+        ),
+        Verdict::Accounts => format!(
+            "{}. That accounts for {explained} of what gains and delays of the channels leave; the \
+            rest is near the spread of the identified models.",
+            moves_text(&named)
+        ),
+        Verdict::InPart if named.is_empty() => format!(
+            "The parameters explain {explained} of what gains and delays of the channels leave, but \
+            none of them is named. Something that is not among them is also at work."
+        ),
+        Verdict::InPart => format!(
+            "{}. The parameters explain {explained} of what gains and delays of the channels leave. \
+            Something that is not among them is also at work.",
+            moves_text(&named)
+        ),
+    }
+}
+
+/// Formats a share in percent; a small negative share is zero.
+fn percent(share: f64) -> String {
+    format!("{} %", decimals((100.0 * share).max(0.0), 0))
+}
+
+/// States the moves of named parameters: "tail_lift would have to move by +10 ± 2 %".
+fn moves_text(named: &[DiagnosedParameter<'_>]) -> String {
+    let mut moves = Vec::new();
+    for (index, found) in named.iter().enumerate() {
+        let change = change_text(found.parameter, found.change(), found.half_width());
+        let verb = if index == 0 {
+            " would have to move"
+        } else {
+            ""
+        };
+        moves.push(format!("{}{verb} by {change}", found.parameter.name));
+    }
+    joined(&moves)
+}
+
+/// Joins parts by commas and "and".
+fn joined(parts: &[String]) -> String {
+    match parts {
+        [] => String::new(),
+        [only] => only.clone(),
+        [others @ .., last] => format!("{} and {last}", others.join(", ")),
+    }
+}
+
+/// States what the diagnosis says about a parameter.
+pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
+    let parameter = found.parameter;
+    let change = change_text(parameter, found.change(), found.half_width());
+    match found.diagnosis.why_not_named {
+        None => format!("would have to move by {change}"),
+        Some(WhyNotNamed::Held) => format!("held by hand at {change}"),
+        Some(WhyNotNamed::FewConditions { found: count }) => format!(
+            "not named: {} in the fit, four are needed",
+            counted(count, "condition")
+        ),
+        Some(WhyNotNamed::NothingExplained { .. }) => {
+            "not named: the parameters together explain less than a tenth".to_owned()
+        }
+        Some(WhyNotNamed::AtBound { z }) => format!(
+            "would have to {} by {}, beyond what is plausible: look for a parameter with a like \
+            effect",
+            if z < 0.0 { "fall" } else { "rise" },
+            change_text(parameter, found.change().abs(), None).trim_start_matches('+')
+        ),
+        Some(WhyNotNamed::DataSilent { .. }) => "the data say nothing about it".to_owned(),
+        Some(WhyNotNamed::IntervalContainsZero) => match found.interval() {
+            Some([least, most]) => format!(
+                "between {} and {}: no change needed",
+                interval_end(least, found),
+                interval_end(most, found)
+            ),
+            None => "no change needed".to_owned(),
+        },
+        Some(WhyNotNamed::LittleGain { .. }) => format!(
+            "{change}, but conditions left out are hardly predicted better with it: not named"
+        ),
+    }
+}
+
+/// Says in a few words what the diagnosis says about a parameter, for a narrow column; `why_not` is
+/// `None` for a named one.
+pub fn naming_words(why_not: Option<WhyNotNamed>) -> &'static str {
+    match why_not {
+        None => "would have to move",
+        Some(WhyNotNamed::Held) => "held by hand",
+        Some(WhyNotNamed::FewConditions { .. }) => "too few conditions",
+        Some(WhyNotNamed::NothingExplained { .. }) => "explains nothing",
+        Some(WhyNotNamed::AtBound { .. }) => "beyond plausible",
+        Some(WhyNotNamed::DataSilent { .. }) => "not determined",
+        Some(WhyNotNamed::IntervalContainsZero) => "as modelled",
+        Some(WhyNotNamed::LittleGain { .. }) => "little gain",
+    }
+}
+
+fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
+    let count = interval_decimals(found.half_width().unwrap_or(1.0));
+    format!("{}{}", signed(end, count), unit_text(&found.parameter.unit))
+}
+
+/// Tabulates the parameters: change, half-width, plausible change, share explained alone, decrease
+/// of the ratio by its step, share that channels can take, verdict.
+pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
+    let bar = format!("± {} %", number(100.0 * level));
+    let columns = [
+        "parameter".to_owned(),
+        "unit".to_owned(),
+        "change".to_owned(),
+        bar,
+        "plausible ±".to_owned(),
+        "explained alone [%]".to_owned(),
+        "step".to_owned(),
+        "explained by step [%]".to_owned(),
+        "learned [%]".to_owned(),
+        "channels can take [%]".to_owned(),
+        "verdict".to_owned(),
+    ];
+    let mut table = Table::new("Physics parameters", columns);
+    for found in findings.diagnosed() {
+        let diagnosis = found.diagnosis;
+        let half_width = found.half_width();
+        let count = interval_decimals(half_width.unwrap_or(found.parameter.plausible_sd));
+        table.row([
+            found.parameter.name.clone(),
+            found.parameter.unit.clone(),
+            signed(found.change(), count),
+            cell(half_width, count),
+            number(found.parameter.plausible_sd),
+            cell(diagnosis.ratio_alone.map(|ratio| 100.0 * (1.0 - ratio)), 1),
+            match diagnosis.step {
+                Some(step) => step.to_string(),
+                None => String::new(),
+            },
+            cell(diagnosis.gain.map(|gain| 100.0 * gain), 1),
+            cell(diagnosis.learned.map(|learned| 100.0 * learned), 0),
+            cell(diagnosis.channels_can_take.map(|share| 100.0 * share), 0),
+            parameter_text(found),
+        ]);
+    }
+    for parameter in &findings.off {
+        let mut cells = vec![String::new(); 11];
+        cells[0] = parameter.name.clone();
+        cells[1] = parameter.unit.clone();
+        cells[4] = number(parameter.plausible_sd);
+        cells[10] = "off".to_owned();
+        table.row(cells);
+    }
+    table
+}
+
+/// Formats a number; empty if it is missing.
+fn cell(value: Option<f64>, count: usize) -> String {
+    match value {
+        Some(value) => decimals(value, count),
+        None => String::new(),
+    }
+}
+
+/// Lists the cautions about the diagnosis.
+pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
+    let diagnosis = &findings.diagnosis;
+    let name = |index: usize| findings.parameters[index].name.as_str();
+    let mut cautions = Vec::new();
+    if let Some(moving) = diagnosis.fit.still_moving {
+        cautions.push(format!(
+            "the fit has not settled after {}: {} still moves; it is usually one of a pair",
+            counted(diagnosis.fit.passes.len(), "pass").replace("passs", "passes"),
+            name(moving)
+        ));
+    }
+    for found in findings.diagnosed() {
+        if found.diagnosis.acts_like_channels() {
+            cautions.push(format!(
+                "{} acts like a gain or a delay of the channels; its value rests on the prior of the \
+                delays",
+                found.parameter.name
+            ));
+        }
+    }
+    for pair in &diagnosis.pairs {
+        let [first, second] = pair.parameters;
+        cautions.push(format!(
+            "{} and {} cannot be told apart (correlation {}): give a plausible value for one, or \
+            move both",
+            name(first),
+            name(second),
+            decimals(pair.correlation, 2)
+        ));
+    }
+    if let Some(weak) = diagnosis.weak_direction() {
+        cautions.push(weak_direction_text(weak, findings));
+    }
+    let poor = diagnosis.poorly_fitted();
+    if !poor.is_empty() {
+        let ids: Vec<String> = poor.iter().map(|id| id.to_string()).collect();
+        cautions.push(format!(
+            "condition {} is fitted 1.5 times worse than the median condition: check its nominal \
+            model and its runs",
+            ids.join(", ")
+        ));
+    }
+    cautions
+}
+
+fn weak_direction_text(weak: &WeakDirection, findings: &PhysicsFindings) -> String {
+    /// Least component that is listed.
+    const LISTED: f64 = 0.2;
+    let mut parts = Vec::new();
+    for (&parameter, &component) in findings.diagnosis.fit.fitted.iter().zip(&weak.direction) {
+        if component.abs() >= LISTED {
+            parts.push(format!(
+                "{} {}",
+                signed(component, 2),
+                findings.parameters[parameter].name
+            ));
+        }
+    }
+    format!(
+        "the data say less than the plausible values about the combination {} (in plausible \
+        standard deviations)",
+        parts.join(" ")
+    )
+}
+
+/// Lists the conditions that change a value most when they are left out: "without condition 10,
+/// tail_wake changes by −0.4 plausible standard deviations".
+pub fn pull_lines(findings: &PhysicsFindings) -> Vec<String> {
+    let mut lines = Vec::new();
+    for pull in findings.pulls().into_iter().take(LISTED_PULLS) {
+        lines.push(format!(
+            "without condition {}, {} changes by {} plausible standard deviations",
+            pull.condition,
+            findings.parameters[pull.parameter].name,
+            signed(pull.change, 2)
+        ));
+    }
+    lines
+}
+
+/// Lists the runs and conditions that take no part in the fit, with the reasons.
+pub fn left_out_lines(left_out: &LeftOutData) -> Vec<String> {
+    let mut lines = Vec::new();
+    for omitted in &left_out.conditions {
+        lines.push(format!(
+            "condition {} takes no part in the fit: {}",
+            omitted.condition,
+            not_fitted_text(&omitted.why)
+        ));
+    }
+    for refused in &left_out.runs {
+        lines.push(format!(
+            "condition {}, run \"{}\" of {} is not used: {}",
+            refused.condition,
+            refused.run.model,
+            refused.run.parameter,
+            refusal_text(&refused.run.reason)
+        ));
+    }
+    lines
+}
+
+fn not_fitted_text(why: &NotFitted) -> String {
+    match why {
+        NotFitted::HeldOut => "it is held out".to_owned(),
+        NotFitted::NotCompared { code } => {
+            format!("its models cannot be compared ({code})")
+        }
+        NotFitted::Runs(omission) => omission.to_string(),
+    }
+}
+
+/// Says why a run is not used.
+pub fn refusal_text(refusal: &RunRefusal) -> String {
+    match refusal {
+        RunRefusal::NoBase => {
+            "no physics model of the condition has its perturbation; add the model at that trim \
+            with the parameter nominal"
+                .to_owned()
+        }
+        RunRefusal::BaseNotUsed { base } => format!(
+            "its base \"{base}\" is rejected or set aside; restore it, or supply runs at another \
+            trim"
+        ),
+        RunRefusal::NoMatrices => {
+            "the run or its base is a measured response; matrices are needed".to_owned()
+        }
+        RunRefusal::Shape {
+            base,
+            expected,
+            found,
+        } => format!(
+            "expected {} states, {} inputs and {} outputs as in \"{base}\", found {}, {} and {}",
+            expected[0], expected[1], expected[2], found[0], found[1], found[2]
+        ),
+        RunRefusal::States {
+            base,
+            position,
+            expected,
+            found,
+        } => format!(
+            "state {position}: expected {expected} as in \"{base}\", found {found}; give both the \
+            same states in the same order"
+        ),
+        RunRefusal::Timing { base } => {
+            format!("its sample time or delays differ from those of \"{base}\"")
+        }
+        RunRefusal::Unit { expected, found } => {
+            format!("its step is in {found}, the parameter is in {expected}")
+        }
+        RunRefusal::Step { delta } => format!(
+            "expected a finite step other than 0, found {}",
+            number(*delta)
+        ),
+        RunRefusal::NoChange { base } => {
+            format!("it has the matrices of its base \"{base}\": the parameter was not moved")
+        }
+        RunRefusal::StepRepeated { other, delta } => {
+            format!("\"{other}\" has the same step {}", number(*delta))
+        }
+        RunRefusal::MatricesRepeated { other } => {
+            format!("\"{other}\" has the same matrices at another step")
+        }
+        RunRefusal::TooMany => "two runs of the parameter are used already".to_owned(),
+    }
+}
+
+/// Tabulates mean J without and with the parameters.
+pub fn physics_cost_table(assessment: &PhysicsAssessment) -> Table {
+    let columns = [
+        "mean J",
+        "on-axis, without",
+        "on-axis, with",
+        "others, without",
+        "others, with",
+    ];
+    let mut table = Table::new("", columns);
+    let costs = &assessment.costs;
+    let uncorrected = gdcm_study::results::couplings_assessment::CouplingCost {
+        without: costs.uncorrected,
+        with: assessment.moved_uncorrected,
+    };
+    table.row(cost_cells("uncorrected", uncorrected));
+    table.row(cost_cells("own correction", costs.own));
+    table.row(cost_cells("scheduled", costs.scheduled));
+    if let Some(left_out) = costs.left_out {
+        table.row(cost_cells("condition left out", left_out));
+    }
+    table
+}
+
+/// Tabulates the channels' mean signed delays \[ms\] without and with the parameters: what a
+/// parameter takes over from the leads.
+pub fn channel_delay_table(
+    assessment: &PhysicsAssessment,
+    inputs: &[String],
+    outputs: &[String],
+) -> Table {
+    let columns = ["channel", "without [ms]", "with [ms]"];
+    let mut table = Table::new("Mean delays of the channels (leads negative)", columns);
+    let Some(mean) = assessment.mean_delays_s() else {
+        return table;
+    };
+    let without = mean.without.inputs.iter().chain(&mean.without.outputs);
+    let with = mean.with.inputs.iter().chain(&mean.with.outputs);
+    for ((name, without_s), with_s) in inputs.iter().chain(outputs).zip(without).zip(with) {
+        table.row([
+            name.clone(),
+            decimals(1e3 * without_s, 1),
+            decimals(1e3 * with_s, 1),
+        ]);
+    }
+    table
+}
+
+/// States what a rerun says about the prediction (M18.6).
+pub fn rerun_text(check: &RerunCheck) -> String {
+    let place = format!("condition {}, rerun \"{}\"", check.condition, check.model);
+    let cost = match &check.outcome {
+        Ok(cost) => cost,
+        Err(refusal) => {
+            return format!("{place} is not compared: {}", rerun_refusal_text(refusal));
+        }
+    };
+    let mean = |value: Option<f64>| match value {
+        Some(value) => telling(value, 2),
+        None => "-".to_owned(),
+    };
+    let figures = format!(
+        "J of the prediction against it {} on-axis, {} others (it differs from its base by {} and {})",
+        mean(cost.prediction.on_axis),
+        mean(cost.prediction.others),
+        mean(cost.base.on_axis),
+        mean(cost.base.others)
+    );
+    let verdict = match cost.verdict() {
+        RerunVerdict::Good => "the prediction is good",
+        RerunVerdict::Fair => "the prediction is fair",
+        RerunVerdict::NotLinear => {
+            "not linear enough: give a second run at the value found, or take the rerun as the new \
+            nominal model with runs of its own"
+        }
+    };
+    format!("{place}: {figures}; {verdict}")
+}
+
+fn rerun_refusal_text(refusal: &RerunRefusal) -> String {
+    match refusal {
+        RerunRefusal::NoBase => "no physics model of the condition has its perturbation".to_owned(),
+        RerunRefusal::UnknownParameter { name } => {
+            format!("the dataset has no run of {name}")
+        }
+        RerunRefusal::Unit {
+            name,
+            expected,
+            found,
+        } => format!("the change of {name} is in {found}, its runs are in {expected}"),
+        RerunRefusal::Runs(omission) => omission.to_string(),
+        RerunRefusal::Increments(error) => error.to_string(),
+        RerunRefusal::NothingToCompare => "no response can be compared".to_owned(),
+    }
+}
+
+/// Returns a block of text to paste into the input of the physics model: name, change, unit.
+pub fn paste_block(applied: &AppliedPhysics) -> String {
+    let mut text = String::from("# parameter  change from nominal  unit\n");
+    for value in &applied.values {
+        let name = &value.parameter.name;
+        let change = plain_change(value.change()).replace('\u{2212}', "-");
+        text.push_str(&format!("{name} = {change} {}\n", value.parameter.unit));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameter(unit: &str) -> OfferedParameter {
+        OfferedParameter {
+            name: "p".to_owned(),
+            unit: unit.to_owned(),
+            plausible_sd: 1.0,
+            description: String::new(),
+        }
+    }
+
+    #[test]
+    fn changes_have_the_digits_of_their_interval() {
+        let text = |unit, change, half_width| change_text(&parameter(unit), change, half_width);
+        assert_eq!(text("deg", 1.58, Some(0.21)), "+1.6 ± 0.2 deg");
+        assert_eq!(text("%", 10.2, Some(2.1)), "+10 ± 2 %");
+        assert_eq!(text("1", 0.243, Some(0.17)), "+0.24 ± 0.17");
+        assert_eq!(text("%", -12.0, None), "−12 %");
+        assert_eq!(text("%", 4.0, Some(0.0)), "+4 %");
+    }
+
+    #[test]
+    fn no_sentence_states_a_cause() {
+        for text in [include_str!("physics.rs")] {
+            let claims = text.matches(concat!("the cause", " is")).count();
+            assert_eq!(claims, 0);
+        }
+        assert!(LIKE_EFFECT.contains("not offered"));
+    }
+}

@@ -1,0 +1,121 @@
+//! Sentences and a file template for the runs worth making first (M18.4).
+
+use gdcm_model::dataset::Dataset;
+use gdcm_model::number_format::{decimals, signed};
+use gdcm_model::units::number;
+use gdcm_study::results::suggested_runs::{LeadSide, RunPattern, SuggestedRuns};
+
+/// States the pattern, and the parameters worth a run.
+pub fn suggestion_text(suggestion: &SuggestedRuns, dataset: &Dataset) -> String {
+    let names: Vec<String> = suggestion
+        .parameters
+        .iter()
+        .map(|parameter| format!("{} ({})", parameter.name, parameter.meaning))
+        .collect();
+    format!(
+        "{}: try a run with {} moved",
+        pattern_text(&suggestion.pattern, dataset),
+        names.join(", or ")
+    )
+}
+
+/// States the observed pattern; a parameter "acts like" it, no cause is stated.
+pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
+    let (inputs, outputs) = dataset.names_of_channels();
+    match pattern {
+        RunPattern::CrossedCyclic {
+            inputs: [first, second],
+            shares: [forth, back],
+        } => format!(
+            "{} receives {} % of {}, and {} receives {} % of {}: opposite signs, which a swashplate \
+            phase acts like",
+            inputs[*first],
+            signed(100.0 * forth, 1),
+            inputs[*second],
+            inputs[*second],
+            signed(100.0 * back, 1),
+            inputs[*first]
+        ),
+        RunPattern::CrossedRate {
+            input,
+            output,
+            share,
+        } => format!(
+            "{} feeds {} across the cyclic axes (up to {} % of the stick)",
+            outputs[*output],
+            inputs[*input],
+            decimals(100.0 * share, 0)
+        ),
+        RunPattern::EqualLeads {
+            side,
+            mean_s,
+            deviation_s,
+        } => {
+            let side = match side {
+                LeadSide::Inputs => "all inputs",
+                LeadSide::Outputs => "all outputs",
+                LeadSide::Responses => "all on-axis responses",
+            };
+            format!(
+                "{side} need a similar lead ({} ± {} ms)",
+                decimals(-1e3 * mean_s, 0),
+                decimals(1e3 * deviation_s, 0)
+            )
+        }
+        RunPattern::PedalGainAndYawDamping {
+            pair,
+            gain,
+            damping_share,
+        } => {
+            let damping = match damping_share {
+                Some(share) => format!(
+                    ", and its damping a feedback (up to {} % of the stick)",
+                    decimals(100.0 * share, 0)
+                ),
+                None => String::new(),
+            };
+            format!(
+                "{} needs a gain that differs from 1 or between conditions (mean {}){damping}",
+                dataset.pair_name(*pair),
+                decimals(*gain, 2)
+            )
+        }
+        RunPattern::PitchGainOverAirspeed { pair, slow, fast } => format!(
+            "{} needs a gain of {} in the slow conditions and {} in the fast ones",
+            dataset.pair_name(*pair),
+            decimals(*slow, 2),
+            decimals(*fast, 2)
+        ),
+    }
+}
+
+/// Returns a template of the runs for a dataset file: for each parameter a physics model to complete,
+/// and the declaration of the parameters at the top level.
+pub fn run_template(suggestions: &[SuggestedRuns]) -> String {
+    let mut declared = Vec::new();
+    let mut models = Vec::new();
+    for parameter in suggestions
+        .iter()
+        .flat_map(|suggestion| &suggestion.parameters)
+    {
+        let unit = parameter.unit;
+        let name = parameter.name;
+        let step = number(parameter.step);
+        declared.push(format!(
+            "    {{\"name\": \"{name}\", \"unit\": \"{unit}\", \"plausible_sd\": {step}, \
+            \"description\": \"{}\"}}",
+            parameter.meaning
+        ));
+        models.push(format!(
+            "        {{\"name\": \"{name} +{step} {unit}\", \"role\": \"perturbed\",\n         \
+            \"perturbation\": {{\"airspeed_kt\": 0, \"rate_of_climb_fpm\": 0, \"roll_deg\": 0}},\n         \
+            \"parameter\": {{\"name\": \"{name}\", \"delta\": {step}, \"unit\": \"{unit}\"}},\n         \
+            \"states\": [], \"A\": [], \"B\": [], \"C\": [], \"D\": []}}"
+        ));
+    }
+    format!(
+        "{{\n  \"parameters\": [\n{}\n  ],\n  \"conditions\": [\n    {{\"id\": 1, \"physics_models\": [\n{}\n    ]}}\n  ]\n}}\n",
+        declared.join(",\n"),
+        models.join(",\n")
+    )
+}

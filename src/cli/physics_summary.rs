@@ -1,0 +1,108 @@
+//! The part of the summary of `gdcm analyze` about physics parameters (M18).
+
+use gdcm_method::physics::OfferedParameter;
+use gdcm_model::message_text::sanitized;
+use gdcm_model::number_format::counted;
+use gdcm_study::Analysis;
+use gdcm_study::results::physics_findings::PhysicsFindings;
+use gdcm_words::Table;
+use gdcm_words::physics::{
+    BARS_KEEP_VALUES, applied_value_list, channel_delay_table, diagnosis_cautions, left_out_lines,
+    parameter_table, paste_block, physics_cost_table, pull_lines, rerun_text, verdict_text,
+};
+
+use super::printed_lines::{detail, indented, line};
+use super::terminal::keep_caution;
+
+/// Returns diagnosis, values, benefit and cautions of the physics parameters; a hint where the
+/// dataset has runs that are not used; empty without runs.
+pub(super) fn physics_section(analysis: &Analysis) -> String {
+    let applied = match &analysis.physics {
+        None => return unused_runs_line(analysis),
+        Some(Err(failure)) => {
+            let words = failure.to_string();
+            keep_caution(failure.code(), &[], &words);
+            let mut text = format!("\n{}", line("Physics", &sanitized(&words)));
+            for words in failure.left_out().map(left_out_lines).unwrap_or_default() {
+                text += &detail("", &sanitized(&words));
+            }
+            return text;
+        }
+        Some(Ok(applied)) => applied,
+    };
+    let mut text = "\n".to_owned();
+    match &applied.findings {
+        Some(findings) => text += &findings_section(analysis, findings),
+        None => text += &line("Physics", "values set by hand; nothing is fitted"),
+    }
+    let values = applied_value_list(applied);
+    let words = if values.is_empty() {
+        "none: the physics models are those of the dataset".to_owned()
+    } else {
+        values.join(", ")
+    };
+    text += &detail("applied", &sanitized(&words));
+    for name in &applied.unknown {
+        let words = format!("the dataset has no run of {name}; its value has no effect");
+        keep_caution("unknown-parameter", &[], &words);
+        text += &detail("caution", &sanitized(&words));
+    }
+    if let Some(assessment) = &analysis.physics_assessment {
+        text += &indented(&physics_cost_table(assessment), 2);
+        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let delays = channel_delay_table(assessment, &inputs, &outputs);
+        text += &indented(&sanitized_table(delays), 2);
+        for check in &assessment.reruns {
+            text += &detail("rerun", &sanitized(&rerun_text(check)));
+        }
+    }
+    if !values.is_empty() {
+        text += &detail("bars", BARS_KEEP_VALUES);
+        text += "\nTo paste into the input of the physics model:\n";
+        for block_line in paste_block(applied).lines() {
+            text += &format!("  {}\n", sanitized(block_line));
+        }
+    }
+    text
+}
+
+/// Returns verdict, table, cautions, and what takes no part in the fit.
+fn findings_section(analysis: &Analysis, findings: &PhysicsFindings) -> String {
+    let level = analysis.study.settings.uncertainty.level;
+    let mut text = line("Physics", &sanitized(&verdict_text(findings)));
+    text += &indented(&sanitized_table(parameter_table(findings, level)), 2);
+    for words in diagnosis_cautions(findings) {
+        keep_caution("physics-diagnosis", &[], &words);
+        text += &detail("caution", &sanitized(&words));
+    }
+    for words in left_out_lines(&findings.left_out) {
+        text += &detail("not used", &sanitized(&words));
+    }
+    for words in pull_lines(findings) {
+        text += &detail("pull", &sanitized(&words));
+    }
+    text
+}
+
+/// Returns the table with printable cells.
+fn sanitized_table(mut table: Table) -> Table {
+    for row in &mut table.rows {
+        for cell in row {
+            *cell = sanitized(cell);
+        }
+    }
+    table
+}
+
+/// Returns a hint that the dataset has runs; empty if it has none.
+fn unused_runs_line(analysis: &Analysis) -> String {
+    let count = OfferedParameter::list(&analysis.study.dataset).len();
+    if count == 0 {
+        return String::new();
+    }
+    let words = format!(
+        "runs of {} are not used; --physics named says which would have to move",
+        counted(count, "parameter")
+    );
+    format!("\n{}", line("Physics", &words))
+}

@@ -1,0 +1,113 @@
+//! Physics parameters on the command line: printed text and files (M18.5).
+
+use std::fs;
+
+use crate::commands::Desk;
+use crate::{entries, read_json};
+
+/// The dataset with known truth: tail lift +11 %, swashplate phase +1.6 deg, inflow mass -12 %.
+const DATASET: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/data/reference/physics-dataset.json.gz"
+);
+
+fn line<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [
+        &["analyze", DATASET, "--points", "40", "--phase", "lead"],
+        more,
+    ]
+    .concat()
+}
+
+#[test]
+fn analyze_names_parameters_and_writes_them() {
+    let desk = Desk::new();
+    let told = desk.messages(&line(&["--physics", "named", "--out", "named"]));
+    told.assert_success();
+    for words in [
+        "tail_lift",
+        "would have to move by",
+        "not offered",
+        "physics.csv",
+    ] {
+        assert!(told.text.contains(words), "{words}: {}", told.text);
+    }
+    let found = read_json(&desk.path("named/corrections.json"));
+    assert_eq!(found["settings"]["physics"], "named");
+    let physics = &found["physics"];
+    assert_eq!(physics["verdict"], "accounts");
+    let parameters = entries(&physics["parameters"]);
+    assert_eq!(parameters.len(), 7);
+    let mut named = Vec::new();
+    for parameter in parameters {
+        assert_eq!(parameter["on"], true);
+        assert_eq!(entries(&parameter["interval"]).len(), 2);
+        assert!(parameter["variance"]["prior"].as_f64().unwrap() > 0.0);
+        if parameter["named"] == true {
+            named.push(parameter["name"].as_str().unwrap());
+        } else {
+            assert!(parameter["why_not"].is_string());
+        }
+    }
+    assert_eq!(named, ["tail_lift", "swashplate_phase"]);
+    let applied = entries(&physics["applied"]);
+    assert_eq!(applied.len(), 2);
+    let phase = applied[1]["change"].as_f64().unwrap();
+    assert!((phase - 1.65).abs() < 0.05, "{phase}");
+    let left_out = &physics["left_out"];
+    assert!(left_out["others"].as_f64() < left_out["without_others"].as_f64());
+    assert_eq!(entries(&physics["without_condition"]).len(), 8);
+    assert_eq!(entries(&found["contains"]["physics"]).len(), 2);
+    let table = fs::read_to_string(desk.path("named/physics.csv")).unwrap();
+    assert_eq!(table.lines().count(), 8);
+    let sums = fs::read_to_string(desk.path("named/corrections.sha256")).unwrap();
+    assert!(sums.contains("physics.csv"));
+
+    desk.gdcm(&line(&["--out", "off"])).assert_done();
+    let off = read_json(&desk.path("off/corrections.json"));
+    assert!(off.get("physics").is_none() && off["settings"].get("physics").is_none());
+    assert!(!desk.path("off/physics.csv").exists());
+}
+
+#[test]
+fn values_are_set_by_hand() {
+    let desk = Desk::new();
+    let by_hand = ["--parameter", "Ixx=+4%", "--parameter", "tail_wake=-0.1"];
+    desk.gdcm(&line(&[&by_hand[..], &["--out", "hand"]].concat()))
+        .assert_done();
+    let found = read_json(&desk.path("hand/corrections.json"));
+    assert_eq!(found["settings"]["physics"], "by-hand");
+    let settings = &found["settings"]["physics_parameters"]["by_hand"];
+    assert_eq!(settings["Ixx"], 4.0);
+    assert_eq!(settings["tail_wake"], -0.1);
+    let applied = entries(&found["physics"]["applied"]);
+    assert_eq!(applied.len(), 2);
+    assert_eq!(applied[0]["by_hand"], true);
+    assert!(found["physics"].get("verdict").is_none());
+    assert_eq!(
+        found["physics"]["text_block"]
+            .as_str()
+            .unwrap()
+            .lines()
+            .count(),
+        3
+    );
+}
+
+#[test]
+fn wrong_values_are_refused_with_codes() {
+    let desk = Desk::new();
+    for (value, code) in [
+        ("Iyy=+4%", "unknown-parameter"),
+        ("Ixx=4 deg", "parameter-unit"),
+        ("Ixx", "wrong-command-line"),
+        ("Ixx=nan", "wrong-command-line"),
+    ] {
+        desk.messages(&line(&["--parameter", value, "--out", "wrong"]))
+            .assert_code(code, &[]);
+    }
+    let twice = ["--parameter", "Ixx=1", "--parameter", "Ixx=2"];
+    desk.messages(&line(&[&twice[..], &["--out", "wrong"]].concat()))
+        .assert_code("given-twice", &[]);
+    assert!(!desk.path("wrong").exists());
+}

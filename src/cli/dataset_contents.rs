@@ -33,9 +33,10 @@ pub(super) fn contents(loaded: &LoadedDataset) -> String {
     text += &condition_table(dataset);
     text += &timings(dataset);
     text += &records(dataset);
-    for words in &loaded.cautions {
-        keep_caution("dataset-file", &[], words);
-        text += &caution_line(words);
+    for caution in &loaded.cautions {
+        let words = caution.to_string();
+        keep_caution(caution.code(), &[], &words);
+        text += &caution_line(&words);
     }
     text
 }

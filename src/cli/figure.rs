@@ -11,7 +11,9 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{ConditionSource, Figure, FigureKind, FigureRequest, Role, all_channels};
+use gdcm_study::decisions::physics_settings::PhysicsCorrection;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
@@ -53,6 +55,9 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     if arguments.view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
     }
+    if arguments.view == FigureKind::Physics {
+        request.physics = Some(assessed_physics(&analysis.study, &mut engine)?);
+    }
     let figure = match condition {
         None => request.figure(Some(&analysis), None),
         Some(condition) => figure_of_condition(&request, &analysis, condition, &mut engine)?,
@@ -86,6 +91,24 @@ fn assessed_couplings(
         }),
         None => Err(Failure::NoResult {
             reason: "there are no couplings to assess".to_owned(),
+        }),
+    }
+}
+
+/// Diagnoses the physics parameters applied by the study; if it applies none, the named ones.
+fn assessed_physics(study: &Study, engine: &mut Engine) -> Result<Arc<PhysicsAssessment>, Failure> {
+    let physics = match study.settings.physics {
+        PhysicsCorrection::Off => PhysicsCorrection::Named,
+        requested => requested,
+    };
+    let progress = TerminalProgress::new("physics parameters");
+    match engine.assess_physics(study, physics, &progress)? {
+        Some(Ok(assessment)) => Ok(assessment),
+        Some(Err(why)) => Err(Failure::NoResult {
+            reason: why.to_string(),
+        }),
+        None => Err(Failure::NoResult {
+            reason: "there are no physics parameters to assess".to_owned(),
         }),
     }
 }

@@ -45,8 +45,8 @@ impl CommandStudy {
                 (Study::new(loaded.dataset.clone()), loaded)
             }
         };
-        for words in &loaded.cautions {
-            caution("dataset-file", &format!("{}: {words}", loaded.origin));
+        for found in &loaded.cautions {
+            caution(found.code(), &format!("{}: {found}", loaded.origin));
         }
         apply_options(&mut study, arguments)?;
         let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]

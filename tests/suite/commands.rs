@@ -666,7 +666,7 @@ fn check_says_what_a_file_holds() {
     let checked = desk.messages(&["check", "odd.json"]);
     checked
         .assert_success()
-        .assert_reported("dataset-file", &["\"author\""]);
+        .assert_reported("unknown-key", &["\"author\""]);
     for words in [
         "odd.json",
         "LON [%], LAT [%]",

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use gdcm_model::dataset::location::Location;
 
 use crate::content_fault::{ContentError, ContentFault};
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::json_location::location_of;
 use crate::json_outline::Outline;
@@ -41,7 +42,7 @@ impl Format {
         text: &'t [u8],
         path: &Path,
         budget: &ReadingBudget<'_>,
-    ) -> Result<(T, Vec<String>), FileError> {
+    ) -> Result<(T, Vec<FileCaution>), FileError> {
         check_object(text, path)?;
         self.check(text, path, budget)?;
         budget

@@ -16,6 +16,7 @@ pub mod content_fault;
 pub mod csv_text;
 pub mod export;
 pub mod export_fault;
+pub mod file_caution;
 pub mod file_error;
 pub mod file_reading;
 pub mod files;

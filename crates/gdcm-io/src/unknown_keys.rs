@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_model::message_text::quoted;
-
+use crate::file_caution::FileCaution;
 use crate::json_location::location_of;
 use crate::json_outline::Outline;
 use crate::json_path::Step;
@@ -50,44 +49,35 @@ impl UnknownKeys {
     }
 
     /// Returns a caution for each unknown key, with its place in the text.
-    pub(super) fn cautions(&self, text: &[u8]) -> Vec<String> {
+    pub(super) fn cautions(&self, text: &[u8]) -> Vec<FileCaution> {
         if self.found.is_empty() {
             return Vec::new();
         }
         let outline = Outline::read(text);
-        let mut cautions: Vec<String> = self
+        let mut cautions: Vec<FileCaution> = self
             .found
             .values()
             .map(|unknown| unknown.caution(&outline))
             .collect();
         if self.beyond > 0 {
-            let others = match self.beyond {
-                1 => "1 other key is".to_owned(),
-                count => format!("{count} other keys are"),
-            };
-            cautions.push(format!("{others} not known and not used"));
+            cautions.push(FileCaution::MoreUnknownKeys { count: self.beyond });
         }
         cautions
     }
 }
 
 impl UnknownKey {
-    fn caution(&self, outline: &Outline) -> String {
-        let more = if self.count > 1 {
-            format!(", and {} more like it", self.count - 1)
-        } else {
-            String::new()
-        };
+    fn caution(&self, outline: &Outline) -> FileCaution {
         match self.steps.split_last() {
-            Some((Step::Key(key), parent)) => format!(
-                "{}the key {} is not known and not used{more}",
-                location_of(parent, outline).before(),
-                quoted(key)
-            ),
-            _ => format!(
-                "{}this entry is not known and not used{more}",
-                location_of(&self.steps, outline).before()
-            ),
+            Some((Step::Key(key), parent)) => FileCaution::UnknownKey {
+                place: location_of(parent, outline).before(),
+                key: key.clone(),
+                count: self.count,
+            },
+            _ => FileCaution::UnknownEntry {
+                place: location_of(&self.steps, outline).before(),
+                count: self.count,
+            },
         }
     }
 }

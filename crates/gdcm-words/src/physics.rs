@@ -200,6 +200,21 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
     }
 }
 
+/// Says in a few words what the diagnosis says about a parameter, for a narrow column; `why_not` is
+/// `None` for a named one.
+pub fn naming_words(why_not: Option<WhyNotNamed>) -> &'static str {
+    match why_not {
+        None => "would have to move",
+        Some(WhyNotNamed::Held) => "held by hand",
+        Some(WhyNotNamed::FewConditions { .. }) => "too few conditions",
+        Some(WhyNotNamed::NothingExplained { .. }) => "explains nothing",
+        Some(WhyNotNamed::AtBound { .. }) => "beyond plausible",
+        Some(WhyNotNamed::DataSilent { .. }) => "not determined",
+        Some(WhyNotNamed::IntervalContainsZero) => "as modelled",
+        Some(WhyNotNamed::LittleGain { .. }) => "little gain",
+    }
+}
+
 fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
     let count = interval_decimals(found.half_width().unwrap_or(1.0));
     format!("{}{}", signed(end, count), unit_text(&found.parameter.unit))

@@ -201,6 +201,12 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     )
     .with_report(|queue, background| background.couplings = queue.progress());
     kinds.add(LaneClass::Long, engines.sharing(), couplings);
+    let physics = JobKind::new(
+        |app| needed_jobs!(app, Physics),
+        |app, job, assessed| app.state.results.physics = Some((job, assessed)),
+    )
+    .with_report(|queue, background| background.physics = queue.progress());
+    kinds.add(LaneClass::Long, engines.sharing(), physics);
     let time_histories = JobKind::new(
         |app| needed_jobs!(app, TimeHistories),
         |app, job, histories| app.state.results.time_histories = Some((job, histories)),

@@ -26,6 +26,8 @@ impl GdcmApp {
             DisplayCommand::ShowEvidence(shown) => display.gains.show_evidence = shown,
             DisplayCommand::ShowAcross(role) => display.frequency.across_role = role,
             DisplayCommand::Assess(figures) => display.judging.assessed = figures,
+            DisplayCommand::ShowParameter(name) => display.physics.selected = Some(name),
+            DisplayCommand::ShowPhysics(page) => display.physics.page = page,
             DisplayCommand::ShowRequirements(page) => {
                 display.judging.requirements_page = page;
                 display.judging.requirements_sorting = Default::default();

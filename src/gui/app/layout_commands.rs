@@ -3,7 +3,9 @@
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view_arrangement::Arrangement;
+use crate::gui::views::view_content;
 use crate::gui::widgets::number_field::focus_field;
+use crate::gui::widgets::page_switch::neighbouring_page;
 use crate::gui::widgets::window_regions::leave_region;
 
 /// Target of a requested change of focus.
@@ -23,6 +25,7 @@ impl GdcmApp {
                 self.state.on_start_page = false;
                 self.state.display.layout.arrangement.show(view);
             }
+            LayoutCommand::TurnPage { forward } => self.turn_page(forward),
             LayoutCommand::ShowGroup(group) => display.layout.arrangement.show_group(group),
             LayoutCommand::ShowBeside(view) => display.layout.arrangement.show_beside(view),
             LayoutCommand::ShowInDock(view) => display.layout.arrangement.dock_view(view),
@@ -51,6 +54,17 @@ impl GdcmApp {
             LayoutCommand::ShowTourStep(step) => self.state.tour = step,
             LayoutCommand::ShowStart(is_shown) => self.state.on_start_page = is_shown,
             LayoutCommand::BeginWith(choice) => display.layout.opens_with = choice,
+        }
+    }
+
+    /// Shows the page after or before the shown page of the view in front, if the view has pages.
+    fn turn_page(&mut self, forward: bool) {
+        let view = self.state.display.layout.arrangement.view();
+        let pages = (view_content(view).pages)(&self.state);
+        let shown: Vec<bool> = pages.iter().map(|page| page.is_shown).collect();
+        let by = if forward { 1 } else { -1 };
+        if let Some(index) = neighbouring_page(&shown, by) {
+            self.carry_out(vec![pages[index].command.clone()]);
         }
     }
 

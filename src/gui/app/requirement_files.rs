@@ -78,7 +78,7 @@ fn read_table_into(
         RequirementTable::Tolerances => {
             let (tolerances, cautions) = load_tolerances(path)?;
             settings.tolerances = tolerances;
-            Ok(cautions)
+            Ok(cautions.iter().map(ToString::to_string).collect())
         }
     }
 }

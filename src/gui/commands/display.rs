@@ -8,6 +8,7 @@ use gdcm_study::AcrossRole;
 use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::physics_display::PhysicsPage;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::widgets::palette::PlotStyle;
 
@@ -34,6 +35,10 @@ pub enum DisplayCommand {
     ShowAcross(AcrossRole),
     /// Changes the assessed quantity or its representation.
     Assess(AssessmentDisplay),
+    /// Selects a physics parameter by name.
+    ShowParameter(String),
+    /// Shows a page of the Physics view.
+    ShowPhysics(PhysicsPage),
     /// Shows a page of the Requirements view.
     ShowRequirements(RequirementsPage),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.

@@ -11,6 +11,10 @@ use crate::gui::state::view::{View, ViewGroup};
 pub enum LayoutCommand {
     /// Brings a view to the front.
     ShowView(View),
+    /// Shows the next page of the view in front, or the previous one.
+    TurnPage {
+        forward: bool,
+    },
     /// Brings a group of views to the front and shows the view that was last open in it.
     ShowGroup(ViewGroup),
     /// Shows a second view beside the view in front; `None` shows the view in front alone.

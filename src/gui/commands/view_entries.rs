@@ -97,6 +97,7 @@ fn layout_entries(state: &State) -> impl Iterator<Item = Entry> {
     view_group_entries()
         .into_iter()
         .chain(neighbour_entries(state))
+        .chain(page_entries())
         .chain(fold_entries(state))
         .map(|entry| entry.within(Menu::View, 3))
 }
@@ -113,6 +114,24 @@ fn view_group_entries() -> Vec<Entry> {
         entries.push(entry.keys(Modifiers::ALT, key));
     }
     entries
+}
+
+fn page_entries() -> [Entry; 2] {
+    let meaning = "Of the view in front, if it has pages";
+    [
+        Entry::new(
+            "Next page",
+            meaning,
+            LayoutCommand::TurnPage { forward: true },
+        )
+        .keys(Modifiers::ALT, Key::PageDown),
+        Entry::new(
+            "Previous page",
+            meaning,
+            LayoutCommand::TurnPage { forward: false },
+        )
+        .keys(Modifiers::ALT, Key::PageUp),
+    ]
 }
 
 fn neighbour_entries(state: &State) -> [Entry; 2] {

@@ -81,7 +81,12 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     )));
     if !state.file_cautions.is_empty() {
         let label = ui.label(palette.small_warning(counted(state.file_cautions.len(), "caution")));
-        label.on_hover_text(state.file_cautions.join("\n"));
+        let lines: Vec<String> = state
+            .file_cautions
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        label.on_hover_text(lines.join("\n"));
     }
 }
 
@@ -181,6 +186,9 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
             "couplings with each condition left out, {} % …",
             steps.percent()
         );
+    }
+    if let Some(steps) = background.physics {
+        return format!("physics parameters, {} % …", steps.percent());
     }
     if background.views > 0 {
         "preparing the views …".to_owned()

@@ -36,6 +36,8 @@ pub struct Background {
     pub time_histories: Option<Steps>,
     /// Progress of the couplings.
     pub couplings: Option<Steps>,
+    /// Progress of the physics parameters.
+    pub physics: Option<Steps>,
     /// Number of jobs that the visible views wait for.
     pub views: usize,
     /// Progress of the report, by condition.
@@ -55,6 +57,7 @@ impl Background {
             || self.error_bars.is_some()
             || self.time_histories.is_some()
             || self.couplings.is_some()
+            || self.physics.is_some()
             || self.views > 0
             || self.report.is_some()
             || self.identification.is_some()

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::analysis_jobs::{
-    AssessmentJob, CouplingsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
+    AssessmentJob, CouplingsJob, PhysicsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
 };
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
@@ -22,6 +22,7 @@ use gdcm_study::jobs::requirement_jobs::{
 };
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
+use gdcm_study::results::physics_assessment::AssessedPhysics;
 use gdcm_study::results::record_history::{NoRecordHistory, RecordHistory};
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::test_input_responses::TestAnswers;
@@ -71,6 +72,8 @@ pub struct Results {
     /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
     /// `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
+    /// Diagnosis and benefit of the physics parameters, with the job; see `State::physics`.
+    pub physics: Option<(PhysicsJob, Option<AssessedPhysics>)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Responses to the test input, with their job; see `State::test_answers`.

@@ -7,6 +7,7 @@ use super::frequency_plots::FrequencyPlots;
 use super::gain_display::GainDisplay;
 use super::judging_display::JudgingDisplay;
 use super::layout::Layout;
+use super::physics_display::PhysicsDisplay;
 use super::poles_display::PolesDisplay;
 use super::selection::Selection;
 use super::view::View;
@@ -20,6 +21,7 @@ pub struct Display {
     pub curves: CurveDisplay,
     pub frequency: FrequencyPlots,
     pub gains: GainDisplay,
+    pub physics: PhysicsDisplay,
     pub poles: PolesDisplay,
     pub judging: JudgingDisplay,
     /// Figures of the views, kept between frames.

@@ -25,6 +25,7 @@ pub mod notices;
 pub mod opens_with;
 pub mod pair_set;
 pub mod panel_tables;
+pub mod physics_display;
 pub mod poles_display;
 pub mod preferences;
 pub mod record_change;

@@ -19,6 +19,7 @@
 //! | `record_history`               | condition and record of the requested job   | may be older |
 //! | `time_histories`               | the records now in use                      | may be older |
 //! | `couplings`                    | displayed dataset and assessed couplings    | may be older |
+//! | `physics`                      | displayed dataset and assessed parameters   | may be older |
 //! | `uncertainty`                  | newest analysis                             | its own     |
 //! | `value_uncertainty`            | newest analysis, not older than `shown`     | its own     |
 //!
@@ -30,12 +31,15 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::Dataset;
+use gdcm_study::decisions::physics_settings::PhysicsCorrection;
 use gdcm_study::jobs::analysis_jobs::Toggles;
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, ConditionModes};
 use gdcm_study::jobs::requirement_jobs::RecordHistoryJob;
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
+use gdcm_study::results::physics_assessment::AssessedPhysics;
+use gdcm_study::results::physics_findings::PhysicsFindings;
 use gdcm_study::results::record_history::{NoRecordHistory, RecordHistory};
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::test_input_responses::TestAnswers;
@@ -240,6 +244,33 @@ impl State {
             CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
             requested => requested,
         }
+    }
+
+    /// Returns the diagnosis of the physics parameters and their benefit, whether or not they are
+    /// applied; until it is ready, that under older settings. The inner `None` stands for a study
+    /// that selects none.
+    pub fn physics(&self) -> Option<&Option<AssessedPhysics>> {
+        let (known, assessed) = self.results.physics.as_ref()?;
+        if !self.is_shown_dataset(&known.study.dataset) || known.physics != self.assessed_physics()
+        {
+            return None;
+        }
+        Some(assessed)
+    }
+
+    /// Returns the physics parameters that the study applies. If it applies none, returns the named
+    /// ones, whose possible benefit is then assessed.
+    pub fn assessed_physics(&self) -> PhysicsCorrection {
+        match self.study.settings.physics {
+            PhysicsCorrection::Off => PhysicsCorrection::Named,
+            requested => requested,
+        }
+    }
+
+    /// Returns the index of the selected parameter among those that are on.
+    pub fn selected_parameter(&self, findings: &PhysicsFindings) -> usize {
+        let name = self.display.physics.selected.as_deref();
+        findings.selected(name).unwrap_or(0)
     }
 
     /// Returns the uncertainty of the newest analysis; `None` until its job is complete.

@@ -56,6 +56,8 @@ pub enum View {
     Across,
     /// Poles and modes of every model in the condition.
     Poles,
+    /// Named physics parameters: which would have to move, and by how much (M18).
+    Physics,
     /// Input mixing and output feedback (M16).
     Couplings,
     /// Channel gains over airspeed (Figures 3 and 4).
@@ -79,12 +81,13 @@ pub enum View {
 
 impl View {
     /// Every view, in menu order.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
         Self::Across,
         Self::Poles,
+        Self::Physics,
         Self::Couplings,
         Self::Records,
         Self::NetGain,
@@ -164,6 +167,7 @@ impl View {
             Self::Overview => OVERVIEW,
             Self::Across => ACROSS,
             Self::Poles => POLES,
+            Self::Physics => PHYSICS,
             Self::Couplings => COUPLINGS,
             Self::Records => RECORDS,
             Self::NetGain => NET_GAIN,
@@ -211,6 +215,17 @@ const POLES: ViewFacts = ViewFacts {
     purpose: "Poles of every model of the condition in the s-plane, and the modes in a table",
     group: ViewGroup::Models,
     figure: Some(FigureKind::Poles),
+    ..ViewFacts::PLAIN
+};
+
+const PHYSICS: ViewFacts = ViewFacts {
+    name: "Physics",
+    purpose: "Named physics parameters: which would have to move so that the physics models meet \
+                    flight, and by how much",
+    group: ViewGroup::Models,
+    takes_dock: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::Physics),
     ..ViewFacts::PLAIN
 };
 

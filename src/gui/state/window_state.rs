@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::Example;
+use gdcm_io::file_caution::FileCaution;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::Study;
 use gdcm_study::decisions::dataset_differences::Difference;
@@ -56,7 +57,7 @@ pub struct State {
     pub display: Display,
     pub results: Results,
     /// Cautions from reading the dataset file.
-    pub file_cautions: Vec<String>,
+    pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
     /// Short message in the status bar.
@@ -79,7 +80,7 @@ pub struct State {
 
 impl State {
     /// Creates the state for a window that shows `study` for the first time.
-    pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
+    pub fn new(study: Study, study_name: String, file_cautions: Vec<FileCaution>) -> Self {
         let pair = study
             .dataset
             .measuring_pairs()

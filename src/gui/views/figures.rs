@@ -6,6 +6,7 @@ use std::sync::Arc;
 use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::requirements::Requirements;
 
 use super::frequency_curves::{bode_options, condition_source};
@@ -90,6 +91,8 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         across_role: display.frequency.across_role,
         bode,
         couplings,
+        physics: shown_physics(state, kind),
+        parameter: display.physics.selected.clone(),
         requirements,
         over_time,
         ..usual
@@ -99,6 +102,15 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
 /// Returns the assessed couplings, once available.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
+}
+
+/// Returns the diagnosis of the physics parameters for a figure; `None` for other figures, or until
+/// it is available.
+fn shown_physics(state: &State, kind: FigureKind) -> Option<Arc<PhysicsAssessment>> {
+    if kind != FigureKind::Physics {
+        return None;
+    }
+    state.physics()?.as_ref()?.as_ref().ok().cloned()
 }
 
 /// Returns the requirements for a figure; `None` for other figures, or until they are available.

@@ -36,6 +36,7 @@ pub mod net_gain;
 mod net_gain_header;
 pub mod net_gain_pairs;
 pub mod overview;
+pub mod physics;
 pub mod poles;
 pub mod records;
 pub mod requirement_histories;
@@ -60,6 +61,7 @@ use gdcm_study::jobs::curve_jobs::ModesJob;
 use crate::gui::commands::command::Command;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 use across::{across_header_ui, across_job, across_view_ui};
 use assessment::assessment_view_ui;
@@ -77,10 +79,11 @@ use net_gain::net_gain_view_ui;
 use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
+use physics::{physics_header_ui, physics_job, physics_pages, physics_view_ui};
 use poles::{poles_header_ui, poles_view_ui};
 use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
-    NOT_A_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
+    NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
 };
 use variant_analyses::variant_jobs;
 
@@ -95,6 +98,7 @@ pub fn view_content(view: View) -> ViewContent {
         View::Overview => OVERVIEW,
         View::Across => ACROSS,
         View::Poles => POLES,
+        View::Physics => PHYSICS,
         View::Couplings => COUPLINGS,
         View::Records => RECORDS,
         View::Channels => CHANNELS,
@@ -113,6 +117,8 @@ pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
     /// Additional text in the header.
     pub title: ViewTitle,
+    /// Pages of the view, in the order of the segmented control; empty for a view without pages.
+    pub pages: fn(&State) -> Vec<PageEntry>,
     /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
     /// Width of the tools \[pt\]; the title takes the rest.
@@ -128,11 +134,20 @@ impl ViewContent {
     const PLAIN: Self = Self {
         draw: |_, _, _, _| {},
         title: ViewTitle::None,
+        pages: |_| Vec::new(),
         tools: |_, _, _, _| {},
         tools_width: 0.0,
         needs: |_| Vec::new(),
         figure_pairs: |_| Vec::new(),
     };
+}
+
+/// Page of a view, and the command that shows it.
+#[derive(Clone, Debug)]
+pub struct PageEntry {
+    pub words: PageWords,
+    pub is_shown: bool,
+    pub command: Command,
 }
 
 /// Text in a view's header.
@@ -176,6 +191,7 @@ const ACROSS: ViewContent = ViewContent {
     tools_width: 330.0,
     needs: |state| vec![Need::Across(across_job(state))],
     figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
 };
 
 const POLES: ViewContent = ViewContent {
@@ -184,6 +200,16 @@ const POLES: ViewContent = ViewContent {
     tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
     tools_width: 180.0,
     needs: modes_needs,
+    ..ViewContent::PLAIN
+};
+
+const PHYSICS: ViewContent = ViewContent {
+    draw: physics_view_ui,
+    title: ViewTitle::Words(|_| "common to all conditions".to_owned()),
+    pages: physics_pages,
+    tools: physics_header_ui,
+    tools_width: 240.0,
+    needs: |state| vec![Need::Physics(physics_job(state))],
     ..ViewContent::PLAIN
 };
 
@@ -241,8 +267,7 @@ const COMPARE: ViewContent = ViewContent {
 const REQUIREMENTS: ViewContent = ViewContent {
     draw: requirements_view_ui,
     title: ViewTitle::Words(|_| NOT_A_QUALIFICATION.to_owned()),
-    tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-    tools_width: 270.0,
+    pages: requirements_pages,
     needs: requirements_needs,
     ..ViewContent::PLAIN
 };

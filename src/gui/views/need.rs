@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_study::Analysis;
-use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, VariantJob};
+use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, PhysicsJob, VariantJob};
 use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::SimulationJob;
 use gdcm_study::jobs::requirement_jobs::{
@@ -24,6 +24,7 @@ pub enum Need {
     /// Simulated response to a record.
     Simulation(SimulationJob),
     Couplings(CouplingsJob),
+    Physics(PhysicsJob),
     Requirements(RequirementsJob),
     /// Models' responses to the test input.
     TestAnswers(TestAnswersJob),

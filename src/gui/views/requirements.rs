@@ -12,6 +12,7 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
 use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
 
+use super::PageEntry;
 use super::bandwidth::{bandwidth_plots_ui, bandwidth_row_commands};
 use super::bandwidth_settings::bandwidth_inputs_ui;
 use super::need::{Need, current_analysis};
@@ -26,7 +27,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::{PageWords, page_tab_ui};
+use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
@@ -37,20 +38,14 @@ pub(super) const NOT_A_QUALIFICATION: &str =
 /// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.34;
 
-/// Draws the page tabs, from right to left.
-pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+/// Returns the pages, in display order.
+pub fn requirements_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.judging.requirements_page;
     let pages = [
         (
-            RequirementsPage::Summary,
-            "summary",
-            "Corrected models compared with identified models: mean J, shares of the band inside \
-            the MUAD envelopes, deviations over time",
-        ),
-        (
-            RequirementsPage::Modes,
-            "modes",
-            "Modes of the condition and their tolerances",
+            RequirementsPage::Bandwidth,
+            "bandwidth",
+            "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)",
         ),
         (
             RequirementsPage::Histories,
@@ -58,22 +53,30 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
             "Flight records with tolerances, or responses to a step or a doublet",
         ),
         (
-            RequirementsPage::Bandwidth,
-            "bandwidth",
-            "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)",
+            RequirementsPage::Modes,
+            "modes",
+            "Modes of the condition and their tolerances",
+        ),
+        (
+            RequirementsPage::Summary,
+            "summary",
+            "Corrected models compared with identified models: mean J, shares of the band inside \
+            the MUAD envelopes, deviations over time",
         ),
     ];
+    let mut entries = Vec::new();
     for (page, name, purpose) in pages {
-        let words = PageWords {
-            name,
-            short_name: name,
-            purpose,
-        };
-        let (_, is_clicked) = page_tab_ui(ui, page == shown, words);
-        if is_clicked {
-            commands.push(DisplayCommand::ShowRequirements(page).into());
-        }
+        entries.push(PageEntry {
+            words: PageWords {
+                name,
+                short_name: name,
+                purpose,
+            },
+            is_shown: page == shown,
+            command: DisplayCommand::ShowRequirements(page).into(),
+        });
     }
+    entries
 }
 
 /// Returns the job for the displayed requirements; `None` until there is an analysis.

@@ -5,12 +5,14 @@
 
 pub mod choices;
 pub mod controls;
+pub mod drawer;
 pub mod elision;
 pub mod escape_key;
 pub mod focus_ring;
 pub mod list_row;
 pub mod number_entry;
 pub mod number_field;
+pub mod page_switch;
 pub mod painted_text;
 pub mod palette;
 pub mod panel_layout;

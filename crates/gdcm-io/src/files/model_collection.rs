@@ -17,6 +17,7 @@ use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::whole_number::whole;
 
 use super::dataset_file::{LabelText, ModelText};
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::json_reading::{Format, Limited, list};
 use crate::json_writing::write_compact;
@@ -161,7 +162,7 @@ pub(crate) fn found_models(
     text: &[u8],
     path: &Path,
     budget: &ReadingBudget<'_>,
-) -> Option<(Vec<FoundModel>, Vec<String>)> {
+) -> Option<(Vec<FoundModel>, Vec<FileCaution>)> {
     let (texts, unknown) = match MODELS.decode::<ModelsText>(text, path, budget) {
         Ok((text, unknown)) => (text.models, unknown),
         Err(_) => {
@@ -170,7 +171,7 @@ pub(crate) fn found_models(
             (text.models, Vec::new())
         }
     };
-    if unknown.iter().any(|words| names_delay(words)) {
+    if unknown.iter().any(names_delay) {
         return None;
     }
     let mut models = Vec::with_capacity(texts.len());
@@ -180,12 +181,17 @@ pub(crate) fn found_models(
     Some((models, unknown))
 }
 
-/// Returns whether a caution about an unknown key contains a word that suggests a delay.
-fn names_delay(words: &str) -> bool {
-    let words = words.to_lowercase();
-    ["delay", "\"tau", "\"td", "dead", "latency"]
+/// Returns whether a caution is about a key whose name suggests a delay.
+fn names_delay(caution: &FileCaution) -> bool {
+    let (FileCaution::UnknownKey { key, .. } | FileCaution::MisplacedKey { key, .. }) = caution
+    else {
+        return false;
+    };
+    let key = key.to_lowercase();
+    let contains = ["delay", "dead", "latency"]
         .iter()
-        .any(|word| words.contains(word))
+        .any(|word| key.contains(word));
+    contains || ["tau", "td"].iter().any(|word| key.starts_with(word))
 }
 
 /// Returns labels with the names and units of channels.

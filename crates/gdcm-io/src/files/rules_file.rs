@@ -16,6 +16,7 @@ use gdcm_model::names::{NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 
 use crate::content_fault::{ContentError, ContentFault};
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::file_reading::Source;
 use crate::json_reading::{Format, list};
@@ -40,7 +41,7 @@ pub fn rules_path(dataset: &Path) -> PathBuf {
 ///
 /// # Errors
 /// [`FileError`] if the file cannot be read, or any part of it is invalid.
-pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
+pub fn load_rules(path: &Path) -> Result<(Rules, Vec<FileCaution>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, cautions) = FORMAT.decode::<RulesText>(source.text(), path, &budget)?;

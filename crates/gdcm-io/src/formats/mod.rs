@@ -42,6 +42,7 @@ use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::Dataset;
 
 use self::variables::Variable;
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::formats::foreign_formats::FOREIGN_FORMAT;
 use crate::formats::json_and_gzip::JSON;
@@ -103,9 +104,9 @@ pub(crate) enum Contents {
     /// Text with lines of numbers; their meaning depends on whether models or records are sought.
     Text(String),
     /// A dataset in this program's JSON format, with cautions about unknown keys.
-    Dataset(Box<Dataset>, Vec<String>),
+    Dataset(Box<Dataset>, Vec<FileCaution>),
     /// Models in this program's JSON format, with cautions about unknown keys.
-    Models(Vec<FoundModel>, Vec<String>),
+    Models(Vec<FoundModel>, Vec<FileCaution>),
     /// Aircraft logs: records whose columns may have different time axes.
     Logs(Vec<Columns>),
     Archive {

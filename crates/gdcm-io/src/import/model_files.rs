@@ -158,7 +158,7 @@ impl<'h> ModelReading<'h> {
             },
             Contents::Dataset(dataset, unknown) => Found {
                 items: models_of_dataset(&dataset, name),
-                unused: unknown,
+                unused: unknown.iter().map(ToString::to_string).collect(),
                 ..Found::default()
             },
             Contents::Logs(_) => Found {
@@ -167,7 +167,7 @@ impl<'h> ModelReading<'h> {
             },
             Contents::Models(models, unknown) => Found {
                 items: models,
-                unused: unknown,
+                unused: unknown.iter().map(ToString::to_string).collect(),
                 ..Found::default()
             },
             Contents::Archive {

@@ -28,6 +28,7 @@ use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Analysis, Engine};
 
 use self::page::Page;
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
@@ -46,7 +47,7 @@ pub struct ReportSource {
     /// SHA-256 of the dataset file, in hexadecimal.
     pub sha256: String,
     /// Irregularities found when the dataset file was read.
-    pub cautions: Vec<String>,
+    pub cautions: Vec<FileCaution>,
 }
 
 impl ReportSource {

@@ -1,5 +1,7 @@
 //! The whole diagnosis: values with intervals, names and verdict, as typed facts (M18.2 to M18.4).
 
+use nalgebra::DVector;
+
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Portion, Progress, Shares};
@@ -15,6 +17,9 @@ use super::verdict::{NamingFacts, Verdict, WhyNotNamed};
 
 /// Ratio of a condition's misfit to the median of the conditions above which a caution is raised.
 pub const NOTABLE_MISFIT: f64 = 1.5;
+/// Least information of a condition about a parameter, in units of its prior: a standard deviation
+/// of three plausible ones.
+const LEAST_INFORMATION: f64 = 1.0 / 9.0;
 /// Share of the progress that the passes have; scores and intervals follow.
 const PASSES_SHARE: f64 = 0.95;
 /// Step name in progress reports.
@@ -69,6 +74,20 @@ pub struct ConditionDiagnosis {
     pub misfit: Option<f64>,
     /// Values of all parameters without this condition, in plausible standard deviations.
     pub z_without: Vec<f64>,
+    /// Value of each parameter in this condition; `None` for a held parameter, and where the
+    /// condition does not determine it.
+    pub z_here: Vec<Option<ValueHere>>,
+}
+
+/// Value of a parameter from a single condition, with its prior left out, the other parameters and
+/// the delays at the solution, and the gains of the condition free:
+/// `z = x_k + (g'_k - (S' x)_k) / S'_kk`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValueHere {
+    /// In plausible standard deviations.
+    pub z: f64,
+    /// Standard deviation `1 / sqrt(S'_kk)`, in plausible standard deviations.
+    pub sd: f64,
 }
 
 /// The diagnosis: which parameters would have to move, and by how much.
@@ -244,6 +263,38 @@ impl Assembly<'_> {
         }
     }
 
+    /// Returns the value of a parameter from a single condition; `place` is its index among the
+    /// fitted ones.
+    fn value_here(&self, condition: usize, place: usize) -> Option<ValueHere> {
+        let reduced = &self.equations.reduced[condition];
+        let information = reduced.matrix[(place, place)];
+        if information.is_nan() || information <= LEAST_INFORMATION {
+            return None;
+        }
+        let x = self.shared_values();
+        let residual = reduced.right[place] - reduced.matrix.row(place).transpose().dot(&x);
+        Some(ValueHere {
+            z: x[place] + residual / information,
+            sd: information.sqrt().recip(),
+        })
+    }
+
+    /// Returns the shared unknowns at the solution: fitted parameters, delays of the outputs, delays
+    /// of the inputs.
+    fn shared_values(&self) -> DVector<f64> {
+        let fitted = self
+            .fit
+            .fitted
+            .iter()
+            .map(|&parameter| self.fit.z[parameter]);
+        let delays = &self.fit.delays_s;
+        let values: Vec<f64> = fitted
+            .chain(delays.outputs.iter().copied())
+            .chain(delays.inputs.iter().copied())
+            .collect();
+        DVector::from_vec(values)
+    }
+
     fn conditions(&self) -> Vec<ConditionDiagnosis> {
         let mut conditions = Vec::with_capacity(self.problem.conditions.len());
         for (index, condition) in self.problem.conditions.iter().enumerate() {
@@ -252,10 +303,15 @@ impl Assembly<'_> {
             for (&parameter, &z) in self.fit.fitted.iter().zip(without) {
                 z_without[parameter] = z;
             }
+            let mut z_here = vec![None; z_without.len()];
+            for (place, &parameter) in self.fit.fitted.iter().enumerate() {
+                z_here[parameter] = self.value_here(index, place);
+            }
             conditions.push(ConditionDiagnosis {
                 id: condition.id,
                 misfit: self.equations.blocks[index].sums().misfit(),
                 z_without,
+                z_here,
             });
         }
         conditions

@@ -7,6 +7,7 @@ use super::location::Location;
 use super::measured_response::MeasuredResponseError;
 use super::physics_parameter::ParameterError;
 use super::state_space::StateSpaceError;
+use crate::number_format::counted;
 
 /// A fault in a dataset draft.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -93,9 +94,34 @@ impl DraftError {
     }
 }
 
-/// An unusual but harmless property of a dataset draft.
-#[derive(Clone, Debug, PartialEq)]
+/// An unusual but harmless property of a dataset draft, with its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     pub place: Location,
-    pub words: String,
+    pub oddity: DraftOddity,
+}
+
+/// An unusual but harmless property of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DraftOddity {
+    /// The order stated by the identification differs from the number of states.
+    #[error("the stated order is {stated}, but the matrices have {}", counted(*states, "state"))]
+    Order { stated: usize, states: usize },
+    /// The number of state names differs from the number of states.
+    #[error(
+        "{} for {}; the names are ignored",
+        counted(*names, "state name"),
+        counted(*states, "state")
+    )]
+    StateNames { names: usize, states: usize },
+}
+
+impl DraftOddity {
+    /// Returns the stable code by which scripts and tests distinguish the oddities.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Order { .. } => "stated-order",
+            Self::StateNames { .. } => "state-name-count",
+        }
+    }
 }

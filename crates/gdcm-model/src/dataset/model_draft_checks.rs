@@ -9,7 +9,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
-use super::draft_fault::{DraftError, DraftFault, Warning};
+use super::draft_fault::{DraftError, DraftFault, DraftOddity, Warning};
 use super::dynamics::Dynamics;
 use super::location::Location;
 use super::measured_response::MeasuredResponse;
@@ -17,7 +17,6 @@ use super::model::{Model, ModelBands, Origin};
 use super::model_id::BundleKind;
 use super::pair_table::{Pair, PairTable};
 use super::state_space::{StateSpace, Timing};
-use crate::number_format::counted;
 
 /// Builder of checked models for a dataset with given channel counts.
 pub(super) struct ModelBuilder {
@@ -95,13 +94,13 @@ impl ModelBuilder {
             } = origin
             && model.order() != *order
         {
-            let words = format!(
-                "the stated order is {order}, but the matrices have {}",
-                counted(model.order(), "state")
-            );
+            let oddity = DraftOddity::Order {
+                stated: *order,
+                states: model.order(),
+            };
             self.warnings.push(Warning {
                 place: place.clone(),
-                words,
+                oddity,
             });
         }
     }
@@ -121,12 +120,11 @@ impl ModelBuilder {
             return names.into();
         }
         if order > 0 && !names.is_empty() {
-            let words = format!(
-                "{} for {}; the names are ignored",
-                counted(names.len(), "state name"),
-                counted(order, "state")
-            );
-            self.warnings.push(Warning { place, words });
+            let oddity = DraftOddity::StateNames {
+                names: names.len(),
+                states: order,
+            };
+            self.warnings.push(Warning { place, oddity });
         }
         Arc::default()
     }

@@ -12,7 +12,7 @@
 //! | [`role`], `color`, `stroke` | line styles and colours by meaning |
 //! | [`request`] | kinds of figures; the figure for a request |
 //! | [`drawing`], `area` | shapes and texts on paper |
-//! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | a figure for each view |
+//! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`physics`], [`leads`], [`requirements`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
@@ -82,6 +82,7 @@ mod paint_axes;
 mod paint_dots;
 mod paint_marks;
 mod paint_words;
+pub mod physics;
 mod placed;
 pub mod poles;
 mod range;

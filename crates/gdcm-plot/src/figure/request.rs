@@ -9,6 +9,7 @@ use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::test_input_responses::TestAnswers;
@@ -20,6 +21,7 @@ use super::error::error_figure;
 use super::figure::Figure;
 use super::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use super::leads::leads_figure;
+use super::physics::physics_figure;
 use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
 use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
 
@@ -47,6 +49,8 @@ pub enum FigureKind {
     Leads,
     /// Effect of couplings on the loop that they close, and on the poles in a condition.
     Couplings,
+    /// A physics parameter in every condition, and the misfit that remains as parameters are added.
+    Physics,
     /// Phase delay over bandwidth of attitude responses, or model responses over time.
     Requirements,
     /// A response in every condition, coloured by airspeed.
@@ -54,7 +58,7 @@ pub enum FigureKind {
 }
 
 impl FigureKind {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -65,6 +69,7 @@ impl FigureKind {
         Self::Poles,
         Self::Leads,
         Self::Couplings,
+        Self::Physics,
         Self::Requirements,
         Self::Airspeeds,
     ];
@@ -82,6 +87,7 @@ impl FigureKind {
             Self::Poles => "poles",
             Self::Leads => "leads",
             Self::Couplings => "couplings",
+            Self::Physics => "physics",
             Self::Requirements => "requirements",
             Self::Airspeeds => "airspeeds",
         }
@@ -132,6 +138,9 @@ pub struct FigureRequest {
     pub across_role: AcrossRole,
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
+    pub physics: Option<Arc<PhysicsAssessment>>,
+    /// Name of the parameter in [`FigureKind::Physics`]; the first of the ranking if `None`.
+    pub parameter: Option<String>,
     pub requirements: Option<Arc<Requirements>>,
     /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
     pub over_time: Option<OverTime>,
@@ -178,6 +187,7 @@ impl FigureRequest {
                 let shown = condition.map(|source| source.curves.condition.id());
                 couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit)
             }
+            FigureKind::Physics => self.physics_figure(analysis?),
             FigureKind::Airspeeds => {
                 airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode)
             }
@@ -194,6 +204,14 @@ impl FigureRequest {
                 across: self.across,
             },
         ))
+    }
+
+    /// Plots a physics parameter in every condition, and the misfit that remains.
+    fn physics_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        let assessment = self.physics.as_deref()?;
+        let findings = assessment.applied.findings.as_deref()?;
+        let shown = findings.selected(self.parameter.as_deref())?;
+        physics_figure(findings, &analysis.study.dataset, assessment.level, shown)
     }
 
     /// Computes and plots modes and zeros of all models.

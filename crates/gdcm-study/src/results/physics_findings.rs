@@ -160,6 +160,27 @@ impl PhysicsFindings {
             })
     }
 
+    /// Lists the parameters that are on, by index: the fitted ones in the order of the stepwise
+    /// list, then the others.
+    pub fn ranked(&self) -> Vec<usize> {
+        let mut ranked: Vec<usize> = (0..self.parameters.len()).collect();
+        ranked.sort_by_key(|parameter| {
+            let step = self.diagnosis.parameters[*parameter].step;
+            (step.is_none(), step)
+        });
+        ranked
+    }
+
+    /// Returns the index of the named parameter among those that are on; without a name, or if no
+    /// such parameter is on, that of the first in the ranking. `None` if no parameter is on.
+    pub fn selected(&self, name: Option<&str>) -> Option<usize> {
+        let found = self
+            .parameters
+            .iter()
+            .position(|parameter| Some(parameter.name.as_str()) == name);
+        found.or_else(|| self.ranked().first().copied())
+    }
+
     /// Returns the named parameters.
     pub fn named(&self) -> Vec<DiagnosedParameter<'_>> {
         self.diagnosed()

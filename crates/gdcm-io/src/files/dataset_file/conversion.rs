@@ -10,13 +10,14 @@ use super::json_form::{
     BandText, ChannelText, ConditionText, DatasetText, FORMAT, ModelText, ParameterText, RecordText,
 };
 use crate::content_fault::{ContentError, ContentFault};
+use crate::file_caution::FileCaution;
 use crate::json_reading::Limited;
 
 /// Draft of a dataset, with cautions about the text from which it was read.
 pub(super) struct CautionedDraft {
     pub(super) draft: DatasetDraft,
     /// Cautions about model keys that have no meaning in a dataset.
-    pub(super) cautions: Vec<String>,
+    pub(super) cautions: Vec<FileCaution>,
 }
 
 impl DatasetText {
@@ -146,7 +147,7 @@ impl ConditionText {
     fn into_draft(
         self,
         position: usize,
-        cautions: &mut Vec<String>,
+        cautions: &mut Vec<FileCaution>,
     ) -> Result<ConditionDraft, ContentError> {
         let place = Location::condition(position, self.id);
         let flight_state = FlightState {
@@ -206,16 +207,16 @@ fn model_drafts(
     texts: Vec<ModelText>,
     kind: BundleKind,
     condition: &Location,
-    cautions: &mut Vec<String>,
+    cautions: &mut Vec<FileCaution>,
 ) -> Result<Vec<ModelDraft>, ContentError> {
     let mut drafts = Vec::with_capacity(texts.len());
     for (index, model) in texts.into_iter().enumerate() {
         let place = condition.model(kind, index + 1, &model.name);
         for key in model.misplaced_keys(kind) {
-            cautions.push(format!(
-                "{}the key \"{key}\" has no meaning here and is not used",
-                place.before()
-            ));
+            cautions.push(FileCaution::MisplacedKey {
+                place: place.before(),
+                key: key.to_owned(),
+            });
         }
         let origin = match kind {
             BundleKind::Physics => model.physics_origin(&place)?,

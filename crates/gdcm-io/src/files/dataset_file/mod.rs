@@ -19,6 +19,7 @@ use self::conversion::CautionedDraft;
 use self::json_form::{DatasetText, FORMAT};
 use super::example::Example;
 use crate::content_fault::ContentError;
+use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::file_reading::Source;
 use crate::json_writing::write_compact;
@@ -78,7 +79,7 @@ pub struct LoadedDataset {
     pub sha256: String,
     pub origin: DatasetOrigin,
     /// Unknown keys and other irregularities, each with its place.
-    pub cautions: Vec<String>,
+    pub cautions: Vec<FileCaution>,
 }
 
 impl LoadedDataset {
@@ -156,7 +157,7 @@ pub(crate) fn dataset_from(
         .checked()
         .map_err(|fault| error(ContentError::from(fault)))?;
     for odd in oddities {
-        cautions.push(format!("{}{}", odd.place.before(), odd.words));
+        cautions.push(FileCaution::Oddity(odd));
     }
     Ok(LoadedDataset {
         dataset: Arc::new(dataset),

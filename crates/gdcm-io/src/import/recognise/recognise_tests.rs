@@ -236,7 +236,7 @@ fn json(text: &str) -> Found<FoundModel> {
         } => super::recognise(&variables, pages_first, &budget).unwrap(),
         Contents::Models(items, unused) => Found {
             items,
-            unused,
+            unused: unused.iter().map(ToString::to_string).collect(),
             ..Found::default()
         },
         _ => panic!("neither variables nor models: {text}"),

@@ -7,9 +7,11 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 
+use gdcm_io::file_caution::FileCaution;
 use gdcm_io::{
     DatasetOrigin, Example, FileError, embedded_example, load_any, load_dataset, load_dataset_bytes,
 };
+use gdcm_model::dataset::draft_fault::DraftOddity;
 use gdcm_model::dataset::limits::LARGEST_TEXT;
 
 mod parameters;
@@ -111,7 +113,7 @@ fn the_small_dataset_is_read_as_it_is_written() {
         (1.0, -2.0),
         "A[row][column]"
     );
-    assert_eq!(loaded.cautions, Vec::<String>::new());
+    assert_eq!(loaded.cautions, []);
 }
 
 #[test]
@@ -126,7 +128,7 @@ fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
         response["valid_band_rad_s"] = json!([[[0.5, 9], [0.5, 9]], [[0.5, 9], [1, 9]]]);
     });
     let loaded = load(&bytes).unwrap();
-    assert_eq!(loaded.cautions, Vec::<String>::new());
+    assert_eq!(loaded.cautions, []);
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
     gdcm_io::files::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
@@ -190,13 +192,20 @@ fn keys_that_are_not_known_are_named_with_their_places_once() {
             model["wind"] = json!({"deep": [1, 2]});
         }
     });
-    let cautions = load(&bytes).unwrap().cautions;
     assert_eq!(
-        cautions,
+        load(&bytes).unwrap().cautions,
         [
-            "the key \"author\" is not known and not used",
-            "condition 7 (number 1 in the file), physics model \"nominal\" (number 1): the key \"wind\" is not known and not \
-             used, and 1 more like it",
+            FileCaution::UnknownKey {
+                place: String::new(),
+                key: "author".to_owned(),
+                count: 1,
+            },
+            FileCaution::UnknownKey {
+                place: "condition 7 (number 1 in the file), physics model \"nominal\" (number 1): "
+                    .to_owned(),
+                key: "wind".to_owned(),
+                count: 2,
+            },
         ]
     );
 }
@@ -205,11 +214,20 @@ fn keys_that_are_not_known_are_named_with_their_places_once() {
 fn an_order_that_the_matrices_do_not_have_is_a_caution() {
     let bytes = small(|file| file["conditions"][1]["identified_models"][0]["order"] = json!(12));
     let cautions = load(&bytes).unwrap().cautions;
+    let [FileCaution::Oddity(warning)] = cautions.as_slice() else {
+        panic!("{cautions:?}")
+    };
     assert_eq!(
-        cautions,
-        [
-            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): the stated order is 12, but the matrices have 2 states"
-        ]
+        warning.oddity,
+        DraftOddity::Order {
+            stated: 12,
+            states: 2
+        }
+    );
+    let place = warning.place.to_string();
+    assert!(
+        place.starts_with("condition 10") && place.contains("\"sweeps\""),
+        "{place}"
     );
 }
 
@@ -221,10 +239,8 @@ fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the
         }
     });
     let cautions = load(&bytes).unwrap().cautions;
-    assert_eq!(
-        (cautions.len(), cautions[50].as_str()),
-        (51, "950 other keys are not known and not used")
-    );
+    assert_eq!(cautions.len(), 51);
+    assert_eq!(cautions[50], FileCaution::MoreUnknownKeys { count: 950 });
 }
 
 #[test]
@@ -247,8 +263,5 @@ fn names_of_states_are_kept_where_there_is_one_for_each() {
     let [caution] = wrong.cautions.as_slice() else {
         panic!("{:?}", wrong.cautions)
     };
-    assert!(
-        caution.contains("1 state name for 2 states; the names are ignored"),
-        "{caution}"
-    );
+    assert_eq!(caution.code(), "state-name-count");
 }

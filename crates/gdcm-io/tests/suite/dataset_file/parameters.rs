@@ -158,8 +158,10 @@ fn a_parameter_of_an_identified_model_is_reported() {
             json!({"name": "Ixx", "delta": 5, "unit": "%"});
     }))
     .unwrap();
-    let cautions = format!("{:?}", loaded.cautions);
-    assert!(cautions.contains("parameter"), "{cautions}");
+    let [FileCaution::MisplacedKey { key, .. }] = loaded.cautions.as_slice() else {
+        panic!("{:?}", loaded.cautions)
+    };
+    assert_eq!(key, "parameter");
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn saved(bytes: &[u8]) -> String {
 #[test]
 fn records_and_bands_are_read_and_come_back_as_they_were() {
     let loaded = load(&small(with_all)).unwrap();
-    assert_eq!(loaded.cautions, Vec::<String>::new());
+    assert_eq!(loaded.cautions, []);
     let condition = &loaded.dataset.conditions()[0];
     let kinds: Vec<RecordKind> = condition
         .records()

@@ -226,3 +226,24 @@ fn a_family_of_responses_fits_like_one_of_matrices_for_small_changes() {
     assert!((found.fit.z[0] - 0.05).abs() < 5e-3, "{}", found.fit.z[0]);
     assert!((found.fit.z[1] + 0.04).abs() < 5e-3, "{}", found.fit.z[1]);
 }
+
+/// The normal equations summed over the conditions: `sum_c S'_kk (z_c - z) = z`, the pull of the
+/// prior. The passes stop when no value moves by more than 1e-3.
+#[test]
+fn values_of_single_conditions_average_to_the_common_value_but_for_the_prior() {
+    let found = diagnosis(&toy("R_disturbed"));
+    for parameter in 0..2 {
+        let z = found.fit.z[parameter];
+        let mut information = 0.0;
+        let mut pull = 0.0;
+        for condition in &found.conditions {
+            let here = condition.z_here[parameter].unwrap();
+            information += here.sd.powi(-2);
+            pull += here.sd.powi(-2) * (here.z - z);
+        }
+        let tolerance = 1e-3 * (1.0 + information);
+        assert!((pull - z).abs() < tolerance, "{pull} instead of {z}");
+        let from_zero = pull.abs() / (1.0 + information);
+        assert!(from_zero < z.abs(), "the prior is weaker than the data");
+    }
+}

@@ -1,0 +1,60 @@
+//! Cautions about the text of a file: something in it is not used, or looks unusual.
+
+use gdcm_model::dataset::draft_fault::Warning;
+use gdcm_model::message_text::quoted;
+
+/// A caution about a file, with its place.
+///
+/// Its text is the sentence shown to the engineer; [`Self::code`] is for programs and tests.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FileCaution {
+    /// A key that the program does not know, the first of `count` like it.
+    #[error("{place}the key {} is not known and not used{}", quoted(key), more(*count))]
+    UnknownKey {
+        /// Place of the first such key, before the sentence: empty, or ending with a colon.
+        place: String,
+        key: String,
+        count: usize,
+    },
+    /// An entry of a list that the program does not use, the first of `count` like it.
+    #[error("{place}this entry is not known and not used{}", more(*count))]
+    UnknownEntry { place: String, count: usize },
+    /// Further unknown keys, which are only counted.
+    #[error("{} not known and not used", others(*count))]
+    MoreUnknownKeys { count: usize },
+    /// A key that belongs to models of the other kind.
+    #[error("{place}the key \"{key}\" has no meaning here and is not used")]
+    MisplacedKey { place: String, key: String },
+    /// An unusual property of a model.
+    #[error("{}{}", .0.place.before(), .0.oddity)]
+    Oddity(Warning),
+}
+
+impl FileCaution {
+    /// Returns the stable code by which scripts and tests distinguish the cautions.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::UnknownKey { .. } => "unknown-key",
+            Self::UnknownEntry { .. } => "unknown-entry",
+            Self::MoreUnknownKeys { .. } => "more-unknown-keys",
+            Self::MisplacedKey { .. } => "misplaced-key",
+            Self::Oddity(warning) => warning.oddity.code(),
+        }
+    }
+}
+
+/// Counts what is like the first: ", and 2 more like it"; empty for a single occurrence.
+fn more(count: usize) -> String {
+    if count > 1 {
+        format!(", and {} more like it", count - 1)
+    } else {
+        String::new()
+    }
+}
+
+fn others(count: usize) -> String {
+    match count {
+        1 => "1 other key is".to_owned(),
+        count => format!("{count} other keys are"),
+    }
+}

@@ -1,0 +1,252 @@
+//! Named physics parameters: the value of a parameter in each condition over airspeed, and the
+//! misfit that remains as parameters are added (M18.3, M18.4).
+
+use gdcm_method::physics::OfferedParameter;
+use gdcm_method::physics::diagnosis::{ConditionDiagnosis, ParameterDiagnosis};
+use gdcm_method::physics::score::Scores;
+use gdcm_method::physics::verdict::LEAST_GAIN;
+use gdcm_method::uncertainty::student_quantile;
+use gdcm_model::dataset::{Condition, Dataset};
+use gdcm_study::results::physics_findings::PhysicsFindings;
+
+use super::axis::{Axis, Range};
+use super::condition_classes::Classes;
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Band, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule};
+
+/// Value found for all conditions together.
+const JOINT: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.4);
+/// Interval of that value.
+const JOINT_INTERVAL: Color = Color::new(Hue::Perturbed).tint(22);
+/// One plausible standard deviation on both sides of the nominal value.
+const PLAUSIBLE: Color = Color::DIM.tint(12);
+const NOMINAL: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
+const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.7);
+const LEFT_OUT: Stroke = Stroke::solid(Color::INK, 1.4);
+/// Steps that hardly lower the misfit of conditions left out.
+const NO_IMPROVEMENT: Color = Color::DIM.tint(10);
+/// Margin beyond the slowest and the fastest condition \[kt\].
+const AIRSPEED_MARGIN_KT: f64 = 4.0;
+/// Ratio in percent.
+const PERCENT: f64 = 100.0;
+
+/// Builds the figure of the parameter at index `shown` among those that are on; `None` if there is
+/// no such parameter.
+pub fn physics_figure(
+    findings: &PhysicsFindings,
+    dataset: &Dataset,
+    level: f64,
+    shown: usize,
+) -> Option<Figure> {
+    let shown_parameter = ShownParameter {
+        index: shown,
+        parameter: findings.parameters.get(shown)?,
+        diagnosis: findings.diagnosis.parameters.get(shown)?,
+        conditions: &findings.diagnosis.conditions,
+        dataset,
+        level,
+    };
+    let name = &shown_parameter.parameter.name;
+    let mut figure = Figure::new(format!("Physics parameter {name}"))
+        .caption(
+            "Values in single conditions hold the other parameters and the delays at the common \
+            solution and leave the gains of the condition free; the misfit is that of each condition \
+            predicted from the others (M18).",
+        )
+        .columns(2)
+        .aspect(0.72)
+        .plot(shown_parameter.plot());
+    if let Some(scores) = &findings.diagnosis.scores {
+        figure = figure.plot(misfit_plot(scores, &findings.parameters));
+    }
+    Some(figure)
+}
+
+/// A parameter in every condition.
+struct ShownParameter<'a> {
+    /// Index among the parameters that are on.
+    index: usize,
+    parameter: &'a OfferedParameter,
+    diagnosis: &'a ParameterDiagnosis,
+    conditions: &'a [ConditionDiagnosis],
+    dataset: &'a Dataset,
+    /// Confidence level of the intervals.
+    level: f64,
+}
+
+impl ShownParameter<'_> {
+    fn plot(&self) -> Plot {
+        let sd = self.parameter.plausible_sd;
+        let change = self.diagnosis.z * sd;
+        let unit = &self.parameter.unit;
+        let name = &self.parameter.name;
+        let (slowest, fastest) = self.dataset.airspeed_range_kt();
+        let ends = [slowest - AIRSPEED_MARGIN_KT, fastest + AIRSPEED_MARGIN_KT];
+        let x = Axis::linear("Airspeed [kt]").showing(Some(Range::new(ends[0], ends[1])));
+        let y = Axis::linear(format!("Change of {name} [{unit}]"))
+            .including(-sd)
+            .including(sd);
+        let mut panel = Panel::new(x, y).with(Envelope {
+            name: "plausible ± 1 sd".to_owned(),
+            color: PLAUSIBLE,
+            edge: None,
+            points: ends.map(|end| [end, -sd, sd]).to_vec(),
+        });
+        if let Some(half_width) = self.diagnosis.half_width {
+            let half_width = half_width * sd;
+            panel = panel.with(Envelope {
+                name: format!("{:.0} % interval", PERCENT * self.level),
+                color: JOINT_INTERVAL,
+                edge: None,
+                points: ends
+                    .map(|end| [end, change - half_width, change + half_width])
+                    .to_vec(),
+            });
+        }
+        panel = panel
+            .with(Rule::horizontal(0.0, NOMINAL))
+            .with(
+                Curve::through("all conditions", JOINT, ends.map(|end| [end, change]))
+                    .key("all conditions"),
+            )
+            .with(self.bars());
+        Plot::new(format!("{name}, by condition")).panel(panel.with_all(self.dots()))
+    }
+
+    /// Returns the values of single conditions: condition, airspeed, change and its half-width, in
+    /// the unit of the parameter.
+    fn values(&self) -> Vec<PlacedValue<'_>> {
+        let mut values = Vec::new();
+        let degrees = self.conditions.len().saturating_sub(1).max(1) as f64;
+        let quantile = student_quantile(self.level, degrees);
+        for diagnosed in self.conditions {
+            let (Some(Some(here)), Some(condition)) = (
+                diagnosed.z_here.get(self.index),
+                self.dataset.condition(diagnosed.id),
+            ) else {
+                continue;
+            };
+            values.push(PlacedValue {
+                condition,
+                change: here.z * self.parameter.plausible_sd,
+                half_width: quantile * here.sd * self.parameter.plausible_sd,
+            });
+        }
+        values
+    }
+
+    fn bars(&self) -> Intervals {
+        let ends = self.values().into_iter().map(|value| {
+            [
+                value.airspeed_kt(),
+                value.change - value.half_width,
+                value.change + value.half_width,
+            ]
+        });
+        Intervals {
+            name: format!("{:.0} % error bar", PERCENT * self.level),
+            stroke: BAR,
+            ends: ends.collect(),
+        }
+    }
+
+    /// Returns a group of dots for each combination of altitude and weight class.
+    fn dots(&self) -> Vec<Dots> {
+        let classes = Classes::from_dataset(self.dataset);
+        let mut groups: Vec<Dots> = Vec::new();
+        for value in self.values() {
+            let state = value.condition.flight_state();
+            let shape = if classes.is_first_altitude(state) {
+                DotShape::Circle
+            } else {
+                DotShape::Diamond
+            };
+            let filled = classes.is_first_weight(state);
+            let dot = Dot {
+                x: value.airspeed_kt(),
+                y: value.change,
+                label: String::new(),
+                id: Some(MarkId::Condition(state.id)),
+            };
+            let found = groups
+                .iter_mut()
+                .find(|group| group.shape == shape && group.filled == filled);
+            match found {
+                Some(group) => group.dots.push(dot),
+                None => {
+                    let color = Color::new(Hue::Perturbed);
+                    let mut group = Dots::new("single condition", shape, color).filled(filled);
+                    group.dots.push(dot);
+                    groups.push(group);
+                }
+            }
+        }
+        groups
+    }
+}
+
+/// Value of the parameter in a single condition, in the unit of the parameter.
+struct PlacedValue<'a> {
+    condition: &'a Condition,
+    change: f64,
+    half_width: f64,
+}
+
+impl PlacedValue<'_> {
+    fn airspeed_kt(&self) -> f64 {
+        self.condition.flight_state().airspeed_kt
+    }
+}
+
+/// Plots the misfit of conditions left out as parameters are added, in percent of the misfit without
+/// parameters; the steps that do not lower it noticeably are shaded.
+fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
+    let mut names = Vec::new();
+    let mut points = Vec::new();
+    for (step, scored) in scores.stepwise.iter().enumerate() {
+        names.push(match scored.added {
+            Some(parameter) => parameters[parameter].name.clone(),
+            None => "none".to_owned(),
+        });
+        points.push([step as f64, PERCENT * scored.score.ratio]);
+    }
+    let y = Axis::linear("Misfit, conditions left out [%]").including(PERCENT);
+    let mut panel = Panel::new(
+        Axis::named("Parameters added, one after the other", names),
+        y,
+    );
+    if let Some(first) = first_idle_step(scores) {
+        let end = points.len() as f64 - 0.5;
+        panel = panel.over(Band {
+            range: Range::new(first as f64 - 0.5, end),
+            color: NO_IMPROVEMENT,
+            key: "no improvement".to_owned(),
+        });
+    }
+    let mut dots = Dots::new("conditions left out", DotShape::Circle, Color::INK);
+    for [step, percent] in &points {
+        dots = dots.dot(*step, *percent, "");
+    }
+    let curve = Curve::through("conditions left out", LEFT_OUT, points);
+    Plot::new("Remaining misfit").panel(panel.with(curve).with(dots))
+}
+
+/// Returns the first step from which no step lowers the ratio by as much as naming requires; `None`
+/// if the last step does.
+fn first_idle_step(scores: &Scores) -> Option<usize> {
+    let steps = &scores.stepwise;
+    let mut first_idle = steps.len();
+    while first_idle > 1 {
+        let step = first_idle - 1;
+        if steps[step - 1].score.ratio - steps[step].score.ratio >= LEAST_GAIN {
+            break;
+        }
+        first_idle = step;
+    }
+    if first_idle < steps.len() {
+        Some(first_idle)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,183 @@
+//! Correlation of the physics parameters with one another, and the share of each that gains and
+//! delays of the channels can take (M18.3).
+
+use egui::{Align2, Color32, Rect, Sense, Ui, pos2, vec2};
+
+use gdcm_method::physics::identifiability::{ACTS_LIKE_CHANNELS, INSEPARABLE};
+use gdcm_study::results::physics_findings::PhysicsFindings;
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::palette::{Palette, small};
+
+/// Correlation from which the number is written.
+const WRITTEN: f64 = 0.3;
+/// Largest side of a cell \[pt\].
+const LARGEST_CELL: f32 = 26.0;
+/// Room for the numbers of rows and columns \[pt\].
+const MARGIN: f32 = 18.0;
+/// Gap before the column about the channels \[pt\].
+const CHANNEL_GAP: f32 = 10.0;
+
+/// Triangle of the correlations, and a column about the channels.
+pub(super) struct CorrelationMatrix<'a> {
+    pub(super) findings: &'a PhysicsFindings,
+    pub(super) palette: &'a Palette,
+}
+
+impl CorrelationMatrix<'_> {
+    /// Draws the matrix in the order of the ranking; a click on a row selects its parameter.
+    pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let ranked = self.fitted();
+        let count = ranked.len();
+        if count == 0 {
+            return;
+        }
+        let room = ui.available_rect_before_wrap();
+        let across = (room.width() - MARGIN - CHANNEL_GAP - 28.0) / (count as f32 + 1.0);
+        let down = (room.height() - 2.0 * MARGIN) / count as f32;
+        let side = across.min(down).clamp(10.0, LARGEST_CELL);
+        let corner = room.min + vec2(MARGIN, MARGIN);
+        for (row, parameter) in ranked.iter().enumerate() {
+            let top = corner.y + side * row as f32;
+            let number = (row + 1).to_string();
+            self.text(ui, pos2(room.left() + 6.0, top + 0.5 * side), &number);
+            let column_at = pos2(corner.x + side * (row as f32 + 0.5), room.top() + 8.0);
+            self.text(ui, column_at, &number);
+            for (column, other) in ranked.iter().enumerate().take(row) {
+                let place = Rect::from_min_size(
+                    pos2(corner.x + side * column as f32, top),
+                    vec2(side, side),
+                );
+                let correlation = self.correlation(*parameter, *other);
+                self.cell_ui(ui, place, correlation, INSEPARABLE);
+                self.words_ui(ui, place, *parameter, Some(*other), commands);
+            }
+            let channel_left = corner.x + side * count as f32 + CHANNEL_GAP;
+            let place = Rect::from_min_size(pos2(channel_left, top), vec2(side, side));
+            let share = self.findings.diagnosis.parameters[*parameter].channels_can_take;
+            if let Some(share) = share {
+                self.cell_ui(ui, place, share, ACTS_LIKE_CHANNELS);
+            }
+            self.words_ui(ui, place, *parameter, None, commands);
+        }
+        let channel_at = pos2(
+            corner.x + side * (count as f32 + 0.5) + CHANNEL_GAP,
+            room.top() + 8.0,
+        );
+        self.text(ui, channel_at, "channels");
+        let end = corner.y + side * count as f32 + 4.0;
+        ui.allocate_rect(room.with_max_y(end), Sense::hover());
+    }
+
+    /// Returns the fitted parameters in the order of the ranking.
+    fn fitted(&self) -> Vec<usize> {
+        let fitted = &self.findings.diagnosis.fit.fitted;
+        let mut ranked = self.findings.ranked();
+        ranked.retain(|parameter| fitted.contains(parameter));
+        ranked
+    }
+
+    fn correlation(&self, parameter: usize, other: usize) -> f64 {
+        let diagnosis = &self.findings.diagnosis;
+        let place = |wanted: usize| {
+            diagnosis
+                .fit
+                .fitted
+                .iter()
+                .position(|fitted| *fitted == wanted)
+        };
+        match (place(parameter), place(other)) {
+            (Some(row), Some(column)) => diagnosis.identifiability.correlation[(row, column)],
+            _ => 0.0,
+        }
+    }
+
+    /// Paints a cell: the stronger, the brighter; orange above `limit`.
+    fn cell_ui(&self, ui: &Ui, place: Rect, value: f64, limit: f64) {
+        let inner = place.shrink(1.0);
+        let strength = value.abs().clamp(0.0, 1.0) as f32;
+        let is_strong = value.abs() > limit;
+        let color = if is_strong {
+            self.palette.warning
+        } else {
+            self.palette.text.gamma_multiply(0.06 + 0.4 * strength)
+        };
+        ui.painter().rect_filled(inner, 2.0, color);
+        if value.abs() >= WRITTEN && place.width() > 18.0 {
+            let text = short_number(value);
+            let color = if is_strong {
+                self.palette.background
+            } else {
+                self.palette.text
+            };
+            ui.painter()
+                .text(inner.center(), Align2::CENTER_CENTER, text, small(), color);
+        }
+    }
+
+    /// Names a cell, explains it under the pointer, and selects its parameter on a click.
+    fn words_ui(
+        &self,
+        ui: &mut Ui,
+        place: Rect,
+        parameter: usize,
+        other: Option<usize>,
+        commands: &mut Vec<Command>,
+    ) {
+        let name = &self.findings.parameters[parameter].name;
+        let words = match other {
+            Some(other) => {
+                let other_name = &self.findings.parameters[other].name;
+                let correlation = self.correlation(parameter, other);
+                format!("Correlation of {name} and {other_name}: {correlation:.2}")
+            }
+            None => match self.findings.diagnosis.parameters[parameter].channels_can_take {
+                Some(share) => {
+                    let percent = 100.0 * share;
+                    format!("Gains and delays of the channels can take {percent:.0} % of {name}")
+                }
+                None => return,
+            },
+        };
+        let id = ui.scope_id().with(("correlation", parameter, other));
+        let response = named(
+            ui.interact(place, id, Sense::click()),
+            egui::Role::Button,
+            &words,
+        );
+        response
+            .on_hover_text(words)
+            .asks(DisplayCommand::ShowParameter(name.clone()), commands);
+    }
+
+    fn text(&self, ui: &Ui, at: egui::Pos2, text: &str) {
+        let color: Color32 = self.palette.dim_text;
+        ui.painter()
+            .text(at, Align2::CENTER_CENTER, text, small(), color);
+    }
+}
+
+/// Writes a number of magnitude below 1 with two digits: ".71", "−.55".
+fn short_number(value: f64) -> String {
+    let digits = format!("{:.2}", value.abs());
+    let digits = digits.strip_prefix('0').unwrap_or(&digits);
+    if value < 0.0 {
+        format!("\u{2212}{digits}")
+    } else {
+        digits.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short_number;
+
+    #[test]
+    fn a_short_number_keeps_its_sign_and_the_one() {
+        assert_eq!(short_number(0.714), ".71");
+        assert_eq!(short_number(-0.55), "\u{2212}.55");
+        assert_eq!(short_number(1.0), "1.00");
+    }
+}

@@ -1,0 +1,225 @@
+//! Named physics parameters: which of them would have to move, and by how much, so that the physics
+//! models meet flight in all conditions at once (M18).
+//!
+//! | file | content |
+//! |---|---|
+//! | `ranking` | a row for each parameter |
+//! | `correlation` | what cannot be told apart |
+//! | `evidence` | the selected parameter, the effect on the correction, cautions |
+//! | `use_parameters` | the job, and the control that applies the parameters |
+
+mod correlation;
+mod evidence;
+mod ranking;
+mod use_parameters;
+
+use std::sync::Arc;
+
+use egui::{Frame, Label, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
+
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::marks::MarkId;
+use gdcm_plot::figure::physics::physics_figure;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
+use gdcm_study::results::physics_findings::{PhysicsFailure, PhysicsFindings};
+use gdcm_words::physics::verdict_text;
+
+use super::PageEntry;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::plot::figure_legend::figure_legend_ui;
+use crate::gui::plot::{FigureEvent, FigureScene, figure_ui};
+use crate::gui::state::physics_display::PhysicsPage;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::PageWords;
+use crate::gui::widgets::palette::{BODY_SIZE, Palette};
+use correlation::CorrelationMatrix;
+use ranking::Ranking;
+
+pub use evidence::physics_evidence_ui;
+pub use use_parameters::{physics_header_ui, physics_job};
+
+/// Height of the sentence with the verdict \[pt\].
+const SENTENCE: f32 = 52.0;
+/// Minimum plot size \[pt\].
+const LEAST_PLOT: Vec2 = vec2(220.0, 120.0);
+/// Width of the correlation matrix, as a share of the view's width.
+const CORRELATION_PART: f32 = 0.33;
+/// Minimum height of the view that shows everything at once \[pt\].
+const LEAST_WHOLE: f32 = 520.0;
+
+/// Returns the pages of the view; none in a window that shows everything at once.
+pub fn physics_pages(state: &State) -> Vec<PageEntry> {
+    if state.display.physics.shows_everything {
+        return Vec::new();
+    }
+    let mut pages = Vec::new();
+    for page in PhysicsPage::ALL {
+        let (name, purpose) = match page {
+            PhysicsPage::Ranking => (
+                "Ranking",
+                "Every parameter: change, interval, what it explains",
+            ),
+            PhysicsPage::Correlation => (
+                "Correlation",
+                "Parameters that cannot be told apart, and what the channels can take",
+            ),
+            PhysicsPage::Conditions => (
+                "Conditions",
+                "The selected parameter in each condition, and the misfit that remains",
+            ),
+        };
+        pages.push(PageEntry {
+            words: PageWords {
+                name,
+                short_name: name,
+                purpose,
+            },
+            is_shown: page == state.display.physics.page,
+            command: DisplayCommand::ShowPhysics(page).into(),
+        });
+    }
+    pages
+}
+
+/// Draws verdict, ranking, correlation and plots; in a low window one page of them.
+pub fn physics_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    state.display.physics.shows_everything =
+        state.display.layout.is_wide && ui.available_height() >= LEAST_WHOLE;
+    let assessment = match state.physics().cloned() {
+        Some(Some(Ok(assessment))) => assessment,
+        Some(Some(Err(failure))) => return failure_ui(ui, &failure, palette),
+        Some(None) | None => {
+            ui.label(palette.dim(state.results.absence()));
+            return;
+        }
+    };
+    let Some(findings) = assessment.applied.findings.clone() else {
+        let text = "All values are set by hand: nothing is fitted";
+        ui.label(palette.dim(text));
+        return;
+    };
+    sentence_ui(ui, &findings, palette);
+    let selected = state.selected_parameter(&findings);
+    let ranking = Ranking {
+        findings: &findings,
+        selected,
+        palette,
+    };
+    let matrix = CorrelationMatrix {
+        findings: &findings,
+        palette,
+    };
+    if state.display.physics.shows_everything {
+        ui.add_space(6.0);
+        let height = ranking.height().min(0.5 * ui.available_height());
+        ui.horizontal_top(|ui| {
+            let width = ui.available_width();
+            ui.allocate_ui(vec2((1.0 - CORRELATION_PART) * width, height), |ui| {
+                ranking_ui(ui, &ranking, height, commands)
+            });
+            ui.add_space(10.0);
+            ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
+                matrix.ui(ui, commands)
+            });
+        });
+        ui.add_space(6.0);
+        conditions_ui(ui, state, &findings, &assessment, palette, commands);
+        return;
+    }
+    match state.display.physics.page {
+        PhysicsPage::Ranking => {
+            let height = ui.available_height();
+            ranking_ui(ui, &ranking, height, commands);
+        }
+        PhysicsPage::Correlation => matrix.ui(ui, commands),
+        PhysicsPage::Conditions => {
+            conditions_ui(ui, state, &findings, &assessment, palette, commands);
+        }
+    }
+}
+
+fn ranking_ui(ui: &mut Ui, ranking: &Ranking<'_>, height: f32, commands: &mut Vec<Command>) {
+    ScrollArea::vertical()
+        .id_salt("ranking of parameters")
+        .max_height(height)
+        .auto_shrink([false, true])
+        .show(ui, |ui| ranking.ui(ui, commands));
+}
+
+/// Draws the verdict in a box of constant height.
+fn sentence_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
+    let frame = Frame::new()
+        .fill(palette.raised)
+        .corner_radius(6.0)
+        .inner_margin(Margin::symmetric(12, 8));
+    frame.show(ui, |ui| {
+        ui.set_min_size(vec2(ui.available_width(), SENTENCE - 16.0));
+        ui.set_max_height(SENTENCE - 16.0);
+        let text = verdict_text(findings);
+        let label = Label::new(RichText::new(&text).size(BODY_SIZE)).wrap();
+        ui.add(label).on_hover_text(text);
+    });
+}
+
+/// Says why there is no diagnosis, and how to supply what is missing.
+fn failure_ui(ui: &mut Ui, failure: &PhysicsFailure, palette: &Palette) {
+    ui.add_space(8.0);
+    ui.add(Label::new(RichText::new(failure.to_string()).size(BODY_SIZE)).wrap());
+    if matches!(failure, PhysicsFailure::NoRuns) {
+        let text = "Rerun the linearisation with one named parameter moved, once or twice for each \
+            parameter and condition, and import the models: names such as \"Ixx+5%\" are recognised. \
+            \"What to run first\" in Find the cause lists reruns for the pattern seen here \
+            (docs/physics.md).";
+        ui.add(Label::new(palette.dim(text)).wrap());
+    }
+}
+
+/// Draws the selected parameter in each condition, and the misfit that remains.
+fn conditions_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    findings: &Arc<PhysicsFindings>,
+    assessment: &PhysicsAssessment,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let selected = state.selected_parameter(findings);
+    let figure = physics_figure(findings, state.dataset(), assessment.level, selected)
+        .unwrap_or_else(Figure::default);
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::Physics)
+        .unwrap_or_default();
+    view.set_subject(&figure.title);
+    let scene = FigureScene {
+        zooms: true,
+        highlighted: Some(MarkId::Condition(state.condition().id())),
+        ..FigureScene::new(
+            "physics parameters",
+            &figure,
+            LEAST_PLOT,
+            state.results.absence(),
+            &figure,
+        )
+    };
+    figure_legend_ui(ui, &figure, palette);
+    for event in figure_ui(ui, &scene, &mut view, palette) {
+        match event {
+            FigureEvent::Clicked(_, MarkId::Condition(id), _) => {
+                commands.push(SelectionCommand::SelectCondition(id).into());
+            }
+            FigureEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
+            _ => {}
+        }
+    }
+    state.display.figures.insert(View::Physics, view);
+}

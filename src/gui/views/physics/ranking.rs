@@ -1,0 +1,329 @@
+//! Ranking of the physics parameters: change with its interval, place among the plausible changes,
+//! share of the misfit that each explains, and what the data tell about it (M18.4).
+
+use egui::{Align2, Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+
+use gdcm_method::physics::problem::GREATEST_VALUE;
+use gdcm_method::physics::verdict::WhyNotNamed;
+use gdcm_study::Edit;
+use gdcm_study::decisions::physics_settings::ParameterDecision;
+use gdcm_study::results::physics_findings::{DiagnosedParameter, PhysicsFindings};
+use gdcm_words::physics::{change_text, naming_words};
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::list_row::RowLook;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, Room, painted_text, row_text_within};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
+
+/// Height of a row \[pt\].
+pub(super) const ROW: f32 = 24.0;
+/// Height of the headings \[pt\].
+const HEADINGS: f32 = 20.0;
+/// Length of a bar that explains everything \[pt\].
+const FULL_BAR: f32 = 56.0;
+/// Side of a check box \[pt\].
+const CHECK_SIDE: f32 = 12.0;
+/// Plausible standard deviations shown on each side of the nominal value.
+const SHOWN_SD: f32 = GREATEST_VALUE as f32;
+/// Radius of the dot at the value \[pt\].
+const DOT: f32 = 3.5;
+
+/// Left edges and widths of the columns \[pt\].
+#[derive(Clone, Copy, Debug)]
+struct Columns {
+    check: f32,
+    number: f32,
+    name: Room,
+    /// Right edge of the change.
+    change: f32,
+    half_width: f32,
+    /// Centre and half-length of the axis of plausible standard deviations.
+    axis: [f32; 2],
+    bar: f32,
+    percent: f32,
+    verdict: Room,
+}
+
+impl Columns {
+    /// Divides the width of the rows.
+    fn new(width: f32) -> Self {
+        let name = Room {
+            left: 42.0,
+            right: (0.30 * width).max(120.0),
+        };
+        let change = name.right + 62.0;
+        let half_width = change + 6.0;
+        let axis_left = half_width + 58.0;
+        let axis_half = 40.0;
+        let bar = axis_left + 2.0 * axis_half + 16.0;
+        let percent = bar + FULL_BAR + 26.0;
+        Self {
+            check: 6.0,
+            number: 24.0,
+            name,
+            change,
+            half_width,
+            axis: [axis_left + axis_half, axis_half],
+            bar,
+            percent,
+            verdict: Room {
+                left: percent + 10.0,
+                right: width - 4.0,
+            },
+        }
+    }
+}
+
+/// Axis of plausible standard deviations in a row.
+#[derive(Clone, Copy, Debug)]
+struct SdAxis {
+    /// Place of the nominal value on the screen \[pt\].
+    middle: f32,
+    /// Length of a plausible standard deviation \[pt\].
+    per_sd: f32,
+}
+
+impl SdAxis {
+    fn new(row: Rect, columns: Columns) -> Self {
+        let [middle, half] = columns.axis;
+        Self {
+            middle: row.left() + middle,
+            per_sd: half / SHOWN_SD,
+        }
+    }
+
+    /// Returns the place of a change on the screen; beyond the ends of the axis, that of the end.
+    fn place(self, z: f32) -> f32 {
+        self.middle + self.per_sd * z.clamp(-SHOWN_SD, SHOWN_SD)
+    }
+}
+
+/// Ranking of the parameters that are on, then those that are off.
+pub(super) struct Ranking<'a> {
+    pub(super) findings: &'a PhysicsFindings,
+    /// Index of the selected parameter among those that are on.
+    pub(super) selected: usize,
+    pub(super) palette: &'a Palette,
+}
+
+impl Ranking<'_> {
+    /// Returns the height of the ranking \[pt\].
+    pub(super) fn height(&self) -> f32 {
+        let rows = self.findings.parameters.len() + self.findings.off.len();
+        HEADINGS + ROW * rows as f32
+    }
+
+    /// Draws the headings and a row for each parameter; a click on a row selects the parameter.
+    pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let columns = Columns::new(ui.available_width());
+        self.headings_ui(ui, columns);
+        for (place, index) in self.findings.ranked().into_iter().enumerate() {
+            self.row_ui(ui, columns, place + 1, index, commands);
+        }
+        for parameter in &self.findings.off {
+            self.off_row_ui(ui, columns, &parameter.name, commands);
+        }
+    }
+
+    fn headings_ui(&self, ui: &mut Ui, columns: Columns) {
+        let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEADINGS), Sense::hover());
+        let color = self.palette.dim_text;
+        painted_text(ui, row, columns.name.left, "parameter", small(), color);
+        let right = row.with_max_x(row.left() + columns.change);
+        painted_text(ui, right, AT_RIGHT_END, "change", small(), color);
+        painted_text(ui, row, columns.half_width, "±", small(), color);
+        let [middle, _] = columns.axis;
+        let title = "plausible sd ±3";
+        let at = pos2(row.left() + middle, row.center().y);
+        ui.painter()
+            .text(at, Align2::CENTER_CENTER, title, small(), color);
+        painted_text(ui, row, columns.bar, "explained, %", small(), color);
+    }
+
+    fn row_ui(
+        &self,
+        ui: &mut Ui,
+        columns: Columns,
+        place: usize,
+        index: usize,
+        commands: &mut Vec<Command>,
+    ) {
+        let diagnosed = DiagnosedParameter {
+            parameter: &self.findings.parameters[index],
+            diagnosis: &self.findings.diagnosis.parameters[index],
+        };
+        let name = &diagnosed.parameter.name;
+        let look = RowLook {
+            is_selected: index == self.selected,
+            is_pointed: false,
+            height: ROW,
+        };
+        let (row, response) = look.row_ui(ui, self.palette, &format!("Parameter {name}"));
+        response
+            .on_hover_text(&diagnosed.parameter.description)
+            .asks(DisplayCommand::ShowParameter(name.clone()), commands);
+        self.check_ui(ui, row, columns, name, true, commands);
+        let is_named = diagnosed.diagnosis.is_named();
+        let color = if is_named {
+            self.palette.text
+        } else {
+            self.palette.dim_text
+        };
+        let number = place.to_string();
+        painted_text(
+            ui,
+            row,
+            columns.number,
+            &number,
+            body(),
+            self.palette.dim_text,
+        );
+        row_text_within(ui, row, columns.name, name, BODY_SIZE, color);
+        let right = row.with_max_x(row.left() + columns.change);
+        let font = if is_named { medium(BODY_SIZE) } else { body() };
+        let change = change_text(
+            diagnosed.parameter,
+            diagnosed.change(),
+            diagnosed.half_width(),
+        );
+        let (value, interval) = match change.split_once(" ± ") {
+            Some((value, interval)) => (value, format!("± {interval}")),
+            None => (change.as_str(), String::new()),
+        };
+        painted_text(ui, right, AT_RIGHT_END, value, font, color);
+        painted_text(
+            ui,
+            row,
+            columns.half_width,
+            &interval,
+            small(),
+            self.palette.dim_text,
+        );
+        self.axis_ui(ui, row, columns, &diagnosed);
+        self.explained_ui(ui, row, columns, index);
+        let words = naming_words(diagnosed.diagnosis.why_not_named);
+        let color = verdict_color(&diagnosed, self.palette);
+        row_text_within(ui, row, columns.verdict, &words, BODY_SIZE, color);
+    }
+
+    /// Draws the axis of plausible standard deviations with the value and its interval.
+    fn axis_ui(&self, ui: &Ui, row: Rect, columns: Columns, diagnosed: &DiagnosedParameter<'_>) {
+        let axis = SdAxis::new(row, columns);
+        let plausible = Rect::from_x_y_ranges(
+            axis.place(-1.0)..=axis.place(1.0),
+            row.shrink(1.0).y_range(),
+        );
+        ui.painter()
+            .rect_filled(plausible, 0.0, self.palette.text.gamma_multiply(0.08));
+        ui.painter().vline(
+            axis.place(0.0),
+            row.y_range(),
+            Stroke::new(1.0, self.palette.line),
+        );
+        let z = diagnosed.diagnosis.z as f32;
+        let is_named = diagnosed.diagnosis.is_named();
+        let color = if is_named {
+            self.palette.perturbed
+        } else {
+            self.palette.dim_text
+        };
+        if let Some(half_width) = diagnosed.diagnosis.half_width {
+            let half_width = half_width as f32;
+            ui.painter().hline(
+                axis.place(z - half_width)..=axis.place(z + half_width),
+                row.center().y,
+                Stroke::new(1.5, color),
+            );
+        }
+        let at: Pos2 = pos2(axis.place(z), row.center().y);
+        if is_named {
+            ui.painter().circle_filled(at, DOT, color);
+        } else {
+            ui.painter()
+                .circle(at, DOT, self.palette.panel, Stroke::new(1.3, color));
+        }
+    }
+
+    /// Draws what the parameter explains: alone (pale), and by its step of the stepwise list
+    /// (solid).
+    fn explained_ui(&self, ui: &Ui, row: Rect, columns: Columns, index: usize) {
+        let diagnosis = &self.findings.diagnosis.parameters[index];
+        let Some(ratio_alone) = diagnosis.ratio_alone else {
+            return;
+        };
+        let alone = (1.0 - ratio_alone).clamp(0.0, 1.0) as f32;
+        let by_step = diagnosis.gain.unwrap_or(0.0).clamp(0.0, 1.0) as f32;
+        let left = row.left() + columns.bar;
+        for (share, strength) in [(alone, 0.45), (by_step, 1.0)] {
+            let bar = Rect::from_min_size(
+                pos2(left, row.center().y - 4.0),
+                vec2(FULL_BAR * share, 8.0),
+            );
+            let color = self.palette.perturbed.gamma_multiply(strength);
+            ui.painter().rect_filled(bar, 1.0, color);
+        }
+        let percent = format!("{:.0}", 100.0 * alone);
+        let right = row.with_max_x(row.left() + columns.percent);
+        painted_text(ui, right, AT_RIGHT_END, &percent, body(), self.palette.text);
+    }
+
+    fn off_row_ui(&self, ui: &mut Ui, columns: Columns, name: &str, commands: &mut Vec<Command>) {
+        let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+        self.check_ui(ui, row, columns, name, false, commands);
+        let color = self.palette.dim_text;
+        row_text_within(ui, row, columns.name, name, BODY_SIZE, color);
+        row_text_within(ui, row, columns.verdict, "off", BODY_SIZE, color);
+    }
+
+    /// Draws the box that switches a parameter on or off.
+    fn check_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        columns: Columns,
+        name: &str,
+        is_on: bool,
+        commands: &mut Vec<Command>,
+    ) {
+        let corner = pos2(
+            row.left() + columns.check,
+            row.center().y - 0.5 * CHECK_SIDE,
+        );
+        let place = Rect::from_min_size(corner, vec2(CHECK_SIDE, CHECK_SIDE));
+        let id = ui.scope_id().with(("fitted", name));
+        let response = ui.interact(place, id, Sense::click());
+        let line = if response.hovered() || response.has_focus() {
+            self.palette.accent
+        } else {
+            self.palette.dim_text
+        };
+        let fill = if is_on { line } else { Color32::TRANSPARENT };
+        ui.painter()
+            .rect(place, 2.0, fill, Stroke::new(1.0, line), StrokeKind::Inside);
+        if is_on {
+            let points = [vec2(-3.0, 0.0), vec2(-1.0, 2.5), vec2(3.5, -2.5)]
+                .map(|corner| place.center() + corner)
+                .to_vec();
+            ui.painter()
+                .line(points, Stroke::new(1.5, self.palette.background));
+        }
+        let response = named_switch(response, Role::CheckBox, is_on, format!("Fit {name}"));
+        let decision = Edit::DecideParameter {
+            name: name.to_owned(),
+            decision: ParameterDecision::On(!is_on),
+        };
+        response.asks(decision, commands);
+    }
+}
+
+/// Colour of the words about a parameter: orange where it would have to move beyond the plausible.
+fn verdict_color(diagnosed: &DiagnosedParameter<'_>, palette: &Palette) -> Color32 {
+    match diagnosed.diagnosis.why_not_named {
+        None => palette.text,
+        Some(WhyNotNamed::AtBound { .. }) => palette.warning,
+        Some(_) => palette.dim_text,
+    }
+}

@@ -1,0 +1,72 @@
+//! Physics parameters applied to the physics models: the job that assesses them, and the control in
+//! the page bar.
+
+use egui::{Button, RichText, Ui};
+
+use gdcm_model::number_format::counted;
+use gdcm_study::decisions::physics_settings::PhysicsCorrection;
+use gdcm_study::decisions::setting;
+use gdcm_study::jobs::analysis_jobs::PhysicsJob;
+
+use crate::gui::commands::command::Command;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::controls::button_ui;
+use crate::gui::widgets::palette::Palette;
+
+/// Returns the job that diagnoses and assesses the parameters.
+pub fn physics_job(state: &State) -> PhysicsJob {
+    PhysicsJob {
+        study: state.study.clone(),
+        physics: state.assessed_physics(),
+    }
+}
+
+/// Draws the choice of the parameters applied, and the button that applies the named ones.
+pub fn physics_header_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let shown = state.study.settings.physics;
+    let named = match state.physics() {
+        Some(Some(Ok(assessment))) => match &assessment.applied.findings {
+            Some(findings) => findings.named().len(),
+            None => 0,
+        },
+        _ => 0,
+    };
+    if shown == PhysicsCorrection::Off && named > 0 {
+        let text = format!("Use {}", counted(named, "parameter"));
+        let button =
+            Button::new(RichText::new(text).color(palette.on_accent())).fill(palette.accent);
+        let hint = "Moves the physics models of all conditions by the named parameters, before every \
+            other correction; one step to undo";
+        let command = setting::PHYSICS.to(PhysicsCorrection::Named);
+        button_ui(ui, button, hint, command, commands);
+    }
+    let mut chosen = shown;
+    let choices = [
+        (
+            PhysicsCorrection::Off,
+            "off",
+            "The physics models as in the dataset",
+        ),
+        (
+            PhysicsCorrection::Named,
+            "named",
+            "The named parameters, fitted again with the others off",
+        ),
+        (PhysicsCorrection::All, "all", "All parameters that are on"),
+        (
+            PhysicsCorrection::ByHand,
+            "by hand",
+            "The values set by hand; nothing is fitted",
+        ),
+    ];
+    choice_ui(ui, "Physics parameters applied", &mut chosen, &choices);
+    if chosen != shown {
+        commands.push(setting::PHYSICS.to(chosen).into());
+    }
+}

@@ -1,0 +1,93 @@
+//! Drawer at the bottom of a view: shows the details of a selected item without covering the view.
+
+use egui::{Button, Frame, Margin, Panel, Rect, Response, RichText, Role, Sense, Stroke, Ui, vec2};
+
+use super::controls::named;
+use super::escape_key::take_escape;
+use super::palette::{BODY_SIZE, Palette, medium};
+use super::panel_layout::{in_line_ui, restore_panel_size};
+
+/// Description of a drawer.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawer<'a> {
+    /// Name under which the height is stored, such as "requirement details".
+    pub name: &'static str,
+    /// The item whose details are shown.
+    pub title: &'a str,
+    /// Result about the item in a few words, drawn dim; empty for none.
+    pub verdict: &'a str,
+    /// Height when the drawer is opened for the first time \[pt\].
+    pub default_height: f32,
+    /// Minimum height \[pt\].
+    pub min_height: f32,
+}
+
+/// Height of the drawer's bar \[pt\].
+pub const DRAWER_BAR_HEIGHT: f32 = 36.0;
+
+/// Draws a drawer at the bottom of the remaining space; returns whether it was closed by its button
+/// or by Escape. `tools` draws controls at the right of the bar, from right to left; `content` draws
+/// below the bar.
+///
+/// Call it before the content above the drawer is drawn. The height is remembered; a double click
+/// on the upper edge restores the default.
+pub fn drawer_ui<A: FnOnce(&mut Ui), C: FnOnce(&mut Ui)>(
+    ui: &mut Ui,
+    drawer: Drawer<'_>,
+    palette: &Palette,
+    tools: A,
+    content: C,
+) -> bool {
+    let available = ui.available_height();
+    let most = (available - drawer.min_height).max(0.6 * available);
+    restore_panel_size(ui, drawer.name);
+    let frame = Frame::new().fill(palette.panel);
+    let panel = Panel::bottom(drawer.name)
+        .frame(frame)
+        .resizable(true)
+        .default_size(drawer.default_height)
+        .size_range(drawer.min_height.min(most)..=most);
+    let mut is_closed = false;
+    panel.show(ui, |ui| {
+        let room = ui.available_rect_before_wrap();
+        let bar = Rect::from_min_size(room.min, vec2(room.width(), DRAWER_BAR_HEIGHT));
+        is_closed = bar_ui(ui, bar, drawer, palette, tools).clicked();
+        ui.advance_cursor_after_rect(bar);
+        Frame::new()
+            .inner_margin(Margin::symmetric(12, 4))
+            .show(ui, content);
+        ui.advance_cursor_after_rect(room);
+    });
+    is_closed || take_escape(ui.ctx())
+}
+
+/// Draws the bar with title, verdict, tools and close button; returns the close button.
+fn bar_ui(
+    ui: &mut Ui,
+    bar: Rect,
+    drawer: Drawer<'_>,
+    palette: &Palette,
+    tools: impl FnOnce(&mut Ui),
+) -> Response {
+    ui.allocate_rect(bar, Sense::hover());
+    let line = Stroke::new(1.0, palette.line);
+    ui.painter().hline(bar.x_range(), bar.top(), line);
+    ui.painter().hline(bar.x_range(), bar.bottom(), line);
+    let inner = bar.shrink2(vec2(12.0, 0.0));
+    let right = in_line_ui(ui, inner, true, |ui| {
+        let close = named(
+            ui.add(Button::new("×").frame(false)),
+            Role::Button,
+            "Close the details",
+        )
+        .on_hover_text("Escape closes the details too");
+        tools(ui);
+        close
+    });
+    let rest = inner.with_max_x(right.response.rect.left() - 8.0);
+    in_line_ui(ui, rest, false, |ui| {
+        ui.label(RichText::new(drawer.title).font(medium(BODY_SIZE)));
+        ui.add(egui::Label::new(palette.dim(drawer.verdict)).truncate());
+    });
+    right.inner
+}

@@ -49,5 +49,6 @@ pub fn layout_caution_code(caution: &LayoutCaution) -> &'static str {
         LayoutCaution::Copy { .. } => "duplicate",
         LayoutCaution::Missing { .. } => "missing-samples",
         LayoutCaution::MissingTime { .. } => "missing-time",
+        LayoutCaution::UnitAssumed { .. } => "unit-assumed",
     }
 }

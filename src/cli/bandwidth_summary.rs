@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use gdcm_model::message_text::sanitized;
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::Study;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
@@ -151,7 +152,7 @@ fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
             let finding = findings.iter().find(|finding| finding.role == role);
             cells.push(match finding {
                 Some(finding) => bandwidth_cell(finding),
-                None => "-".to_owned(),
+                None => NO_VALUE.to_owned(),
             });
         }
         table.row(cells);

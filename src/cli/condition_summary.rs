@@ -5,6 +5,7 @@ use gdcm_method::correction::{ChannelCorrection, LeadPrice, Outcome};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 use gdcm_model::message_text::sanitized;
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::{number, s_to_ms, signed};
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::remark_kind::RemarkKind;
@@ -205,7 +206,7 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
         if let Some(price) = &price {
             cells.push(match filter {
                 Some(_) => signed(price.gains_db[channel], 1),
-                None => "-".to_owned(),
+                None => NO_VALUE.to_owned(),
             });
         }
         table.row(cells);

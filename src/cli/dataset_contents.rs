@@ -6,6 +6,7 @@ use gdcm_io::LoadedDataset;
 use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
 use gdcm_model::dataset::{BundleKind, Channel, Dataset, Dynamics, Model};
 use gdcm_model::message_text::sanitized;
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::number;
 use gdcm_words::Table;
 
@@ -96,11 +97,11 @@ fn condition_table(dataset: &Dataset) -> String {
     indented(&table, 2)
 }
 
-/// Formats a number with its unit; "-" for `None`.
+/// Formats a number with its unit; "–" for `None`.
 fn with_unit(value: Option<f64>, unit: &str) -> String {
     match value {
         Some(value) => format!("{} {unit}", number(value)),
-        None => "-".to_owned(),
+        None => NO_VALUE.to_owned(),
     }
 }
 

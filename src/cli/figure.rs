@@ -162,7 +162,7 @@ fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRe
     };
     let channels = chosen_channels(dataset, arguments.channel.as_deref())?;
     let mut request = FigureRequest::new(arguments.view, pairs, channels);
-    request.across_role = arguments.model;
+    request.across_roles.clone_from(&arguments.model);
     request.bode = bode_options(dataset, arguments)?;
     request.measure = if arguments.delays {
         Measure::Delay

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_message};
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_words::Table;
 
 /// Maximum width of a line, in columns.
@@ -120,11 +121,11 @@ pub(super) fn indented_untitled(table: Table) -> String {
     indented(&table, DETAIL_INDENT)
 }
 
-/// Formats a number with `digits` decimals, or with an exponent if it is 1e7 or larger; "-" for
+/// Formats a number with `digits` decimals, or with an exponent if it is 1e7 or larger; "–" for
 /// `None`.
 pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
     let Some(value) = value else {
-        return "-".to_owned();
+        return NO_VALUE.to_owned();
     };
     if value.abs() >= 1e7 || value.is_nan() {
         return format!("{value:.digits$e}");
@@ -139,7 +140,7 @@ pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
 pub(super) fn decimals_or_dash(value: Option<f64>, digits: usize) -> String {
     match value {
         Some(value) => format!("{value:.digits$}"),
-        None => "-".to_owned(),
+        None => NO_VALUE.to_owned(),
     }
 }
 

@@ -9,7 +9,7 @@ use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_model::number_format::counted;
+use gdcm_model::number_format::{NO_VALUE, counted};
 use gdcm_study::Study;
 use gdcm_study::results::missing_finding::MissingFinding;
 use gdcm_study::results::required_modes::KnownPoles;
@@ -18,6 +18,9 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::Table;
 use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
+use gdcm_words::requirement_grid::{
+    OUTSIDE_MARK, RequirementNames, count_details_text, grid_table, met_text,
+};
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
 use super::bandwidth_summary::bandwidth_section;
@@ -61,6 +64,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         requirements: &requirements,
         time_histories: &histories,
         dataset: &analysis.study.dataset,
+        settings: &analysis.study.requirements,
         sha256: &loaded.sha256,
     };
     write_requirements(results, out, outputs)?;
@@ -71,7 +75,8 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         REQUIREMENT_FILES.join(", "),
         sanitized_path(out)
     );
-    let mut text = bandwidth_section(&analysis.study, &requirements);
+    let mut text = grid_section(results);
+    text += &bandwidth_section(&analysis.study, &requirements);
     text += &summary_section(&requirements);
     text += &mode_section(&requirements);
     text += &history_section(&histories);
@@ -130,6 +135,36 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     for shared in shared_messages(messages) {
         note(shared.message.code, &shared.words());
     }
+}
+
+/// Returns the counts of met requirements, and the grid of the own corrections.
+fn grid_section(results: RequirementResults<'_>) -> String {
+    let mut text = String::new();
+    let own = results.grid(RequirementRole::Corrected);
+    let has_schedule = results
+        .requirements
+        .summary
+        .iter()
+        .any(|finding| finding.role == RequirementRole::Scheduled);
+    let count = own.count();
+    let words = format!(
+        "{}, {}; {OUTSIDE_MARK} outside the limit:",
+        met_text(count),
+        count_details_text(count)
+    );
+    text += &line("Requirements", &words);
+    let names = RequirementNames {
+        dataset: results.dataset,
+        tolerances: &results.settings.tolerances,
+    };
+    let mut table = grid_table(&own, names);
+    table.title.clear();
+    text += &indented(&table, 3);
+    if has_schedule {
+        let count = results.grid(RequirementRole::Scheduled).count();
+        text += &line("", &format!("with the schedule: {}", met_text(count)));
+    }
+    text
 }
 
 /// Returns, by role, the on-axis mean of J and the share of the band inside the envelopes.
@@ -238,5 +273,5 @@ fn history_section(histories: &TimeHistories) -> String {
 fn leaves_tolerances(row: &[String]) -> bool {
     row[3..]
         .iter()
-        .any(|share| !matches!(share.as_str(), "100.0" | "-"))
+        .any(|share| !matches!(share.as_str(), "100.0" | NO_VALUE))
 }

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use gdcm_io::export::{EXPORTERS, ExportFormat};
+use gdcm_io::export::EXPORTERS;
+use gdcm_io::export::export_set::CHECKSUMS;
 use gdcm_method::correction::pade::HIGHEST_PADE_ORDER;
 use gdcm_plot::figure::{ColumnWidth, FigureKind, Role};
 use gdcm_study::{AcrossRole, AssessedCorrection};
@@ -65,9 +66,9 @@ pub struct FigureArguments {
     /// Frequencies in Hz instead of rad/s.
     #[arg(long)]
     pub hertz: bool,
-    /// Model of each condition in the figure airspeeds: nominal, representative, corrected or identified.
-    #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
-    pub model: AcrossRole,
+    /// Models of each condition in the figure airspeeds, separated by commas: identified, scheduled, corrected, representative or nominal.
+    #[arg(long, value_name = "MODELS", value_delimiter = ',', default_value = "identified,scheduled", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
+    pub model: Vec<AcrossRole>,
     /// Response, OUTPUT/INPUT, whose zeros are added to the figure poles: zeros of the nominal model and of the representatives.
     #[arg(long, value_name = "PAIR", value_parser = pair_list)]
     pub zeros: Option<PairList>,
@@ -135,15 +136,20 @@ pub struct RequirementsArguments {
 pub struct ExportArguments {
     #[command(flatten)]
     pub study: StudyArguments,
-    /// Format to write.
-    #[arg(long = "as", value_name = "FORMAT", value_parser = export_formats())]
-    pub format: ExportFormat,
+    /// Formats to write, separated by commas; several need --folder.
+    #[arg(long = "as", value_name = "FORMATS", required = true, value_delimiter = ',', value_parser = export_formats())]
+    pub formats: Vec<String>,
     /// Airspeeds of the lookup table in kt, increasing, separated by commas (40,60,80) [default: the airspeeds of the scheduled conditions].
     #[arg(long, value_name = "AIRSPEEDS", value_parser = breakpoints, allow_negative_numbers = true)]
     pub breakpoints: Option<Breakpoints>,
-    /// Condition, by its id, whose corrected model is written [default: all].
-    #[arg(long, value_name = "ID", allow_negative_numbers = true)]
-    pub condition: Option<i64>,
+    /// Conditions, by their ids, separated by commas, whose results and corrected models are written [default: all].
+    #[arg(
+        long,
+        value_name = "IDS",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
+    pub condition: Vec<i64>,
     /// Physics model: nominal, representative, or the name of a model [default: nominal].
     #[arg(long, value_name = "MODEL", allow_hyphen_values = true)]
     pub model: Option<String>,
@@ -154,19 +160,38 @@ pub struct ExportArguments {
     #[arg(long, value_name = "N", value_parser = whole_number::<1, HIGHEST_PADE_ORDER>, allow_negative_numbers = true)]
     pub pade: Option<usize>,
     /// File to write; for corrected models the ending selects the format: .mat, .json or .npz.
-    #[arg(long, value_name = "PATH")]
-    pub out: PathBuf,
-    /// Overwrite an existing file.
+    #[arg(
+        long,
+        value_name = "PATH",
+        required_unless_present = "folder",
+        conflicts_with = "folder"
+    )]
+    pub out: Option<PathBuf>,
+    /// Folder for the files, created if missing; the program names them: corrections.json, correction.m, table.csv, models.mat.
+    #[arg(long, value_name = "DIR")]
+    pub folder: Option<PathBuf>,
+    /// Beginning of the names of the files in --folder.
+    #[arg(
+        long,
+        value_name = "TEXT",
+        requires = "folder",
+        allow_hyphen_values = true
+    )]
+    pub prefix: Option<String>,
+    /// If a file exists in --folder, add the same number to all names: correction_2.m.
+    #[arg(long, requires = "folder", conflicts_with = "force")]
+    pub number: bool,
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
 }
 
-fn export_formats() -> impl TypedValueParser<Value = ExportFormat> {
+fn export_formats() -> PossibleValuesParser {
+    let checksums = PossibleValue::new(CHECKSUMS).help("SHA-256 of the other files");
     let values = EXPORTERS
         .iter()
         .map(|exporter| PossibleValue::new(exporter.name).help(exporter.words));
-    PossibleValuesParser::new(values)
-        .try_map(|name| ExportFormat::named(&name).ok_or("no such format"))
+    PossibleValuesParser::new(values.chain([checksums]))
 }
 
 fn assessed_corrections() -> impl TypedValueParser<Value = AssessedCorrection> {

@@ -5,6 +5,7 @@
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::remark::Remark;
 use gdcm_study::results::remark_kind::RemarkKind;
@@ -185,7 +186,7 @@ fn pair_cell(cautions: &[&Remark], pair: Pair) -> String {
 }
 
 /// Text of an empty cell.
-const NO_ENTRY: &str = "-";
+const NO_ENTRY: &str = NO_VALUE;
 
 /// A column of the table for a recurring caution that does not concern single responses.
 struct RecurringColumn {

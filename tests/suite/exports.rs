@@ -79,6 +79,120 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
 }
 
 #[test]
+fn several_formats_are_written_into_a_folder_together_or_not_at_all() {
+    let desk = Desk::new();
+    let formats = "json,assessment,m,table-csv,state-space-npz,sha256";
+    let line = [
+        "export",
+        "small.json",
+        "--as",
+        formats,
+        "--folder",
+        "out",
+        "--prefix",
+        "uh60_",
+        "--pade",
+        "3",
+    ];
+    desk.gdcm(&line).assert_done();
+    let names = [
+        "uh60_corrections.json",
+        "uh60_assessment.csv",
+        "uh60_correction.m",
+        "uh60_table.csv",
+        "uh60_models.npz",
+        "uh60_checksums.sha256",
+    ];
+    for name in names {
+        assert!(desk.path("out").join(name).exists(), "{name}");
+    }
+    assert!(
+        desk.read("out/uh60_correction.m")
+            .contains("= uh60_correction(airspeed_kt")
+    );
+    assert_eq!(desk.read("out/uh60_checksums.sha256").lines().count(), 5);
+    desk.gdcm(&[
+        "export",
+        "small.json",
+        "--as",
+        "json",
+        "--out",
+        "alone.json",
+    ])
+    .assert_done();
+    assert_eq!(
+        desk.read("out/uh60_corrections.json"),
+        desk.read("alone.json")
+    );
+
+    fs::remove_file(desk.path("out/uh60_models.npz")).unwrap();
+    desk.messages(&line)
+        .assert_code("output-exists", &["uh60_correction.m", "--force"]);
+    assert!(!desk.path("out/uh60_models.npz").exists());
+    desk.gdcm(&[&line[..], &["--number"]].concat())
+        .assert_done();
+    assert!(
+        desk.read("out/uh60_correction_2.m")
+            .contains("= uh60_correction_2(airspeed_kt")
+    );
+    desk.gdcm(&[&line[..], &["--force"]].concat()).assert_done();
+    assert!(desk.path("out/uh60_models.npz").exists());
+
+    let wrong: [(&[&str], &str, &[&str]); 4] = [
+        (
+            &["json,m", "--out", "a"],
+            "several-formats",
+            &["--out", "--folder"],
+        ),
+        (&["sha256", "--folder", "b"], "no-format", &["--as"]),
+        (
+            &["m", "--folder", "b", "--prefix", "2"],
+            "function-name",
+            &["2correction.m"],
+        ),
+        (
+            &["m", "--folder", "b", "--pade", "2"],
+            "misplaced-option",
+            &["--pade"],
+        ),
+    ];
+    for (options, code, parts) in wrong {
+        let line = [&["export", "small.json", "--as"], options].concat();
+        desk.messages(&line).assert_code(code, parts);
+    }
+    assert!(!desk.path("b").exists());
+}
+
+#[test]
+fn what_exported_files_omit_is_noted_with_codes() {
+    let desk = desk_with_lagging_flight();
+    let ended = desk.gdcm(&[
+        "export",
+        "lagging.json",
+        "--schedule-delays",
+        "never",
+        "--as",
+        "json,h",
+        "--condition",
+        "7",
+        "--folder",
+        "out",
+        "--json",
+    ]);
+    ended.assert_done();
+    let messages: Value = serde_json::from_str(&ended.out).unwrap();
+    let codes: Vec<&str> = entries(&messages["note_codes"])
+        .iter()
+        .filter_map(Value::as_str)
+        .collect();
+    for code in ["conditions-not-chosen", "delays-not-scheduled"] {
+        assert!(codes.contains(&code), "{codes:?}");
+    }
+    let written = crate::read_json(&desk.path("out/corrections.json"));
+    assert_eq!(entries(&written["conditions"]).len(), 1);
+}
+
+#[test]
 fn every_export_stands_in_the_documentation() {
     let text = fs::read_to_string(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -371,15 +485,10 @@ fn every_export_states_what_it_contains() {
             &name,
         ]);
         ended.assert_done();
-        let delays = if ["mat", "csv", "json", "state-space"].contains(&format) {
+        let delays = if ["mat", "csv", "json", "assessment"].contains(&format) {
             "delays own"
         } else {
             "delays none"
-        };
-        let delays = if format == "state-space" {
-            "delays none"
-        } else {
-            delays
         };
         let line = ended
             .out

@@ -12,7 +12,10 @@ use gdcm_io::{FileError, load_dataset, save_study};
 use gdcm_study::Study;
 
 use crate::commands::{Desk, Ended, SMALL};
-use crate::window::{Window, click, export_to, save_as, settle, state, window};
+use crate::window::{
+    click, export_to, open_export, press_export, save_as, settle, state, wait_for_export_plan,
+    window,
+};
 
 const RESULTS: [&str; 4] = [
     "assessment.csv",
@@ -369,43 +372,38 @@ fn what_a_killed_run_left_is_removed_by_the_next() {
 }
 
 #[test]
-fn an_export_over_existing_files_asks_first() {
-    fn shown(window: &Window, label: &str) -> bool {
-        window.query_by_label(label).is_some()
-    }
-
+fn an_export_keeps_existing_files_unless_they_may_be_overwritten() {
     let mut window = window();
     let folder = tempfile::tempdir().unwrap();
     export_to(&mut window, folder.path());
     let csv = folder.path().join("corrections.csv");
     fs::write(&csv, "mine").unwrap();
-    click(&mut window, "Export corrections…");
-    click(&mut window, "Export");
-    let existing = state(&window).forms.existing.clone();
-    assert!(
-        existing.len() == 4 && existing[1].ends_with("corrections.csv"),
-        "{existing:?}"
+    // The files are announced before they are written.
+    open_export(
+        &mut window,
+        folder.path(),
+        "",
+        &["json", "csv", "assessment"],
     );
-    assert!(shown(&window, "These files exist already") && shown(&window, &existing[1]));
+    let plan = state(&window).current_export_plan().unwrap();
+    assert_eq!((plan.existing.len(), plan.number.as_str()), (3, "_2"));
+    press_export(&mut window);
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
+    let numbered = fs::read_to_string(folder.path().join("corrections_2.csv")).unwrap();
+    assert!(numbered.starts_with("condition,"));
 
-    click(&mut window, "Cancel");
-    assert!(
-        !shown(&window, "Overwrite") && shown(&window, "Export folder"),
-        "back at what was being asked for"
+    open_export(
+        &mut window,
+        folder.path(),
+        "",
+        &["json", "csv", "assessment"],
     );
-    assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
-
-    // The form is larger than the question, and needs some frames to be placed.
-    window.run_steps(10);
-    click(&mut window, "Export");
-    click(&mut window, "Overwrite");
-    assert_eq!(
-        state(&window).notice.as_ref().map(|notice| notice.kind),
-        Some(NoticeKind::Done)
-    );
+    click(&mut window, "Overwrite existing files");
+    wait_for_export_plan(&mut window);
+    press_export(&mut window);
     assert!(state(&window).forms.shown.is_none());
     assert!(fs::read_to_string(&csv).unwrap().starts_with("condition,"));
+    assert!(!folder.path().join("corrections_3.csv").exists());
 }
 
 #[test]
@@ -425,7 +423,7 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
     settle(&mut window);
     assert!(state(&window).forms.existing.is_empty());
     assert_eq!(
-        state(&window).notice.as_ref().map(|notice| notice.kind),
+        state(&window).notices.newest().map(|notice| notice.kind),
         Some(NoticeKind::Done)
     );
 }

@@ -491,8 +491,8 @@ fn the_window_writes_the_report_beside_and_asks_before_it_overwrites() {
     click(&mut window, "Overwrite");
     crate::window::wait_until(&mut window, "the report", |window| {
         state(window)
-            .notice
-            .as_ref()
+            .notices
+            .newest()
             .is_some_and(|notice| notice.code == "report-written")
     });
     settle(&mut window);

@@ -203,7 +203,7 @@ fn what_leads_make_above_the_band_is_refused_and_not_given() {
     );
 }
 
-const RECORDS: &str = concat!(
+pub(crate) const RECORDS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/assets/example-records-3-and-10.zip"
 );

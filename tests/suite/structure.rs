@@ -123,6 +123,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ),
             ("lead_price", &[]),
             ("leads", &["remark", "lead_price"]),
+            ("export", &["lead_price", "schedule"]),
             ("couplings", &["coupling_remark", "table"]),
             ("physics", &["couplings", "table"]),
             ("suggested_runs", &[]),
@@ -134,7 +135,10 @@ const CRATES: &[(&str, ModuleTable)] = &[
                 "requirements",
                 &["missing_results", "table", "time_histories"],
             ),
-            ("requirements_overview", &["table", "time_histories"]),
+            (
+                "requirement_grid",
+                &["missing_results", "table", "time_histories"],
+            ),
             (
                 "derivation",
                 &["assessment", "uncertainty", "leads", "solution_details"],

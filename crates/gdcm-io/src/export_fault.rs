@@ -1,5 +1,7 @@
 //! Reasons why an export is impossible.
 
+use std::io;
+
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::quoted;
@@ -80,9 +82,18 @@ pub enum ExportFault {
         /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
         words: String,
     },
+    #[error("the contents of the file cannot be written: {reason}")]
+    Contents { reason: String },
 }
 
 impl ExportFault {
+    /// Returns the fault of contents that cannot be written.
+    pub(crate) fn contents(error: &io::Error) -> Self {
+        Self::Contents {
+            reason: error.to_string(),
+        }
+    }
+
     /// Returns the stable code by which scripts and tests distinguish the reasons.
     pub fn code(&self) -> &'static str {
         match self {
@@ -99,6 +110,7 @@ impl ExportFault {
             Self::NoModel { .. } => "unknown-model",
             Self::NoMatrices { .. } => "no-matrices",
             Self::Model { .. } => "corrected-model",
+            Self::Contents { .. } => "export-contents",
         }
     }
 

@@ -17,12 +17,16 @@
 //! | [`decimals`], [`decimals_or_dash`] | given decimals | true |
 //! | [`signed`] | given decimals, with plus sign | true |
 //! | [`telling`] | given decimals; of a smaller nonzero value, 2 significant | hyphen |
+//! | [`conjugate_pair`] | given decimals, real and imaginary part | true |
 //! | [`told_apart`] | given decimals, or as many as distinguish two values | hyphen |
 //!
 //! Counts with their nouns: [`counted`].
 
 /// The true minus sign, which is as wide as a plus sign.
 const MINUS: char = '\u{2212}';
+
+/// Sign of a missing value in tables and lists.
+pub const NO_VALUE: &str = "–";
 
 /// Formats a number for a message: the shortest text that parses to the same number. A very large
 /// or small number has an exponent (1e300, 2.5e-12).
@@ -123,12 +127,26 @@ pub fn decimals(value: f64, count: usize) -> String {
     with_minus_sign(without_sign_of_zero(&format!("{value:.count$}")))
 }
 
-/// Formats a value with `count` decimals and a true minus sign; a missing value becomes a hyphen.
+/// Formats a value with `count` decimals and a true minus sign; a missing value becomes
+/// [`NO_VALUE`].
 pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
     match value {
         Some(value) => with_minus_sign(&format!("{value:.count$}")),
-        None => "-".to_owned(),
+        None => NO_VALUE.to_owned(),
     }
+}
+
+/// Formats a real number, or a number and its complex conjugate: "−2.54 ± j1.26". The j comes
+/// before the imaginary part, because "−2.54 ± 1.26j" reads like a value with its error. Each part
+/// has the decimals of [`telling`].
+pub fn conjugate_pair(re: f64, im: f64, decimals: usize) -> String {
+    let real = telling(re, decimals);
+    let real = with_minus_sign(without_sign_of_zero(&real));
+    if im == 0.0 {
+        return real;
+    }
+    let imaginary = with_minus_sign(&telling(im.abs(), decimals));
+    format!("{real} ± j{imaginary}")
 }
 
 /// Replaces hyphens by true minus signs.
@@ -324,6 +342,14 @@ mod tests {
         ] {
             assert_eq!(compact(value), text);
         }
+    }
+
+    #[test]
+    fn a_pair_of_complex_numbers_is_no_value_with_an_error_bar() {
+        assert_eq!(conjugate_pair(-2.54, 1.26, 2), "\u{2212}2.54 ± j1.26");
+        assert_eq!(conjugate_pair(0.3, -1.2, 3), "0.300 ± j1.200");
+        assert_eq!(conjugate_pair(-0.5, 0.0, 2), "\u{2212}0.50");
+        assert_eq!(conjugate_pair(-0.0, 0.012, 1), "0.0 ± j0.012");
     }
 
     #[test]

@@ -7,8 +7,7 @@ use nalgebra::Complex;
 use gdcm_method::couplings::Unknown;
 use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
 use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_model::number_format::counted;
-use gdcm_model::number_format::with_minus_sign;
+use gdcm_model::number_format::{conjugate_pair, counted, with_minus_sign};
 use gdcm_model::units::{number, signed, telling};
 use gdcm_study::results::coupling_remark::{
     CostSource, CouplingRemark, FeedbackMeaning, OffAxisBenefit,
@@ -319,15 +318,9 @@ fn unstable_place(condition: ConditionId, poles: &[&UnstablePole]) -> String {
     format!("condition {condition}{models} at {frequencies} rad/s")
 }
 
-/// Formats a pole: "−0.30 ± 1.20j rad/s".
+/// Formats a pole: "−0.30 ± j1.20 rad/s".
 fn pole_words(pole: Complex<f64>) -> String {
-    let imaginary = pole.im.abs();
-    let imaginary = if imaginary > 0.0 {
-        format!(" ± {}j", telling(imaginary, 2))
-    } else {
-        String::new()
-    };
-    format!("{}{imaginary} rad/s", signed(pole.re, 3))
+    format!("{} rad/s", conjugate_pair(pole.re, pole.im, 2))
 }
 
 #[cfg(test)]

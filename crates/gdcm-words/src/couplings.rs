@@ -4,8 +4,7 @@ use nalgebra::{Complex, DMatrix};
 
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Channel, Dataset};
-use gdcm_model::number_format::counted;
-use gdcm_model::number_format::with_minus_sign;
+use gdcm_model::number_format::{NO_VALUE, conjugate_pair, counted, with_minus_sign};
 use gdcm_model::units::{number, telling};
 use gdcm_study::results::couplings_assessment::{
     AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment,
@@ -51,7 +50,7 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
 pub(crate) fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     let cell = |cost: Option<f64>| match cost {
         Some(cost) => format!("{cost:.1}"),
-        None => "-".to_owned(),
+        None => NO_VALUE.to_owned(),
     };
     [
         name.to_owned(),
@@ -159,11 +158,11 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
         for shift in shifts {
             let before = match shift.before {
                 Some(before) => pole_cell(before),
-                None => "-".to_owned(),
+                None => NO_VALUE.to_owned(),
             };
             let distance = match shift.distance_rad_s() {
                 Some(distance_rad_s) => telling(distance_rad_s, 3),
-                None => "-".to_owned(),
+                None => NO_VALUE.to_owned(),
             };
             table.row([id.to_string(), before, pole_cell(shift.after), distance]);
         }
@@ -171,12 +170,7 @@ pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     table
 }
 
-/// Formats a pole in a table: "−0.300 ± 1.200j".
+/// Formats a pole in a table: "−0.300 ± j1.200".
 fn pole_cell(pole: Complex<f64>) -> String {
-    let imaginary = if pole.im == 0.0 {
-        String::new()
-    } else {
-        format!(" ± {}j", telling(pole.im.abs(), 3))
-    };
-    format!("{}{imaginary}", with_minus_sign(&telling(pole.re, 3)))
+    conjugate_pair(pole.re, pole.im, 3)
 }

@@ -87,7 +87,7 @@ fn requirement_part_text(part: RequirementPart) -> &'static str {
         RequirementPart::Levels => "levels",
         RequirementPart::Tolerances => "tolerances",
         RequirementPart::ModeTolerances => "tolerances of modes",
-        RequirementPart::OverviewLimits => "limits of the overview",
+        RequirementPart::OverviewLimits => "limits of bandwidth and summary",
         RequirementPart::TestShape => "shape of the test input",
         RequirementPart::TestSize => "size of the test input",
         RequirementPart::TestDuration => "duration of the test input",

@@ -10,9 +10,10 @@
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
 //! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
-//! [`decision_differences`] and [`dataset_differences`]; [`flight_plan`] for further flights, [`suggested_runs`] for
-//! further runs of the physics model.
-//! Settings: [`setting_words`]. Tables: [`table`], [`requirements`], [`requirements_overview`],
+//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files;
+//! [`identification_caution`] for identified models; [`flight_plan`] for further flights,
+//! [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`]. Tables:
+//! [`table`], [`requirements`], [`requirement_grid`],
 //! [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
@@ -36,14 +37,16 @@ pub mod dataset_differences;
 pub mod decision_differences;
 pub mod derivation;
 pub mod edit;
+pub mod export;
 pub mod flight_plan;
+pub mod identification_caution;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
 pub mod physics;
 pub mod remark;
+pub mod requirement_grid;
 pub mod requirements;
-pub mod requirements_overview;
 pub mod schedule;
 pub mod sensitivity;
 pub mod setting_words;

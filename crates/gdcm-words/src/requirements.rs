@@ -2,7 +2,7 @@
 
 use gdcm_method::requirements::{BandwidthRule, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_model::number_format::decimals_or_dash;
+use gdcm_model::number_format::{NO_VALUE, decimals_or_dash};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
@@ -236,7 +236,7 @@ fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
             telling(finding.airspeed_kt, 0),
             role.name().to_owned(),
         ];
-        row.extend(["-"; 4].map(str::to_owned));
+        row.extend([NO_VALUE; 4].map(str::to_owned));
         row.extend(cost_cells(histories, finding.condition, role));
         if !table.rows.contains(&row) {
             table.row(row);

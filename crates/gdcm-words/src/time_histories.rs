@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use gdcm_method::requirements::Tolerance;
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::number_format::{decimals_or_dash, with_minus_sign};
+use gdcm_model::number_format::{NO_VALUE, decimals_or_dash, with_minus_sign};
 use gdcm_model::units::{number, telling};
 use gdcm_study::results::record_comparison::Trend;
 use gdcm_study::results::record_history::RecordHistory;
@@ -125,7 +125,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
             ];
             cells.extend(found.map(|finding| match finding {
                 Some(finding) => excess_words(finding),
-                None => "-".to_owned(),
+                None => NO_VALUE.to_owned(),
             }));
             table.row(cells);
         }

@@ -3,14 +3,12 @@
 use gdcm_method::uncertainty::bar::BarRemark;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::Dataset;
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::signed;
 use gdcm_study::Analysis;
 use gdcm_study::results::uncertainty::{AirspeedDifference, SecondVariableTest, Uncertainty};
 
 use crate::table::Table;
-
-/// Placeholder for a missing value.
-const NONE: &str = "–";
 
 /// Returns the remarks on an error bar in words.
 pub fn bar_remark_texts(bar: &Bar) -> Vec<&'static str> {
@@ -111,7 +109,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
-        None => NONE.to_owned(),
+        None => NO_VALUE.to_owned(),
     }
 }
 
@@ -122,7 +120,7 @@ fn percent(deviation: Option<f64>) -> String {
 
 fn probability(p: Option<f64>) -> String {
     match p {
-        None => NONE.to_owned(),
+        None => NO_VALUE.to_owned(),
         Some(p) if p < 0.001 => "< 0.001".to_owned(),
         Some(p) => format!("{p:.3}"),
     }
@@ -182,7 +180,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
         ];
         match &test.effect {
             Err(error) => {
-                cells.extend([NONE; 5].map(str::to_owned));
+                cells.extend([NO_VALUE; 5].map(str::to_owned));
                 cells.push(error.to_string());
             }
             Ok(effect) => cells.extend([
@@ -240,7 +238,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
 fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
     match decomposition.unexplained_interval(level) {
         Some([low, high]) => format!("{} to {}", percent(Some(low)), percent(Some(high))),
-        None => NONE.to_owned(),
+        None => NO_VALUE.to_owned(),
     }
 }
 

@@ -122,8 +122,8 @@ impl GdcmApp {
                 self.state.assembling = None;
                 self.open(path, None);
             }
-            Err(error) => self.notify_written(
-                Err(error),
+            Err(error) => self.notify_not_written(
+                error,
                 FormKind::Models,
                 AssemblingCommand::MakeDataset(path).into(),
             ),

@@ -9,6 +9,8 @@
 //! | live   | live analysis                          | follows every drag                  |
 //! | short  | curves, modes                          | first picture of the condition      |
 //! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
+//! | short  | trade-off of α                         | plot beside its slider              |
+//! | short  | dry run of an export                   | list of files in the dialog         |
 //! | short  | test input, record history, simulation | time responses in visible views     |
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
@@ -32,10 +34,11 @@ use super::job_pool::{JobPool, LaneClass};
 use super::job_queue::JobQueue;
 use super::threads::ReplySender;
 use super::wanted_jobs::{
-    curves_job, keep_wanted, needs, proof_jobs, toggles_job, uncertainty_job,
+    curves_job, keep_wanted, needs, proof_jobs, toggles_job, trade_off_job, uncertainty_job,
 };
 use crate::executor::Pool;
 use crate::gui::state::background::Background;
+use crate::gui::state::view::View;
 use crate::gui::views::need::Need;
 
 /// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
@@ -164,11 +167,23 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app, job, curves| app.state.results.across = Some((job, curves)),
     );
     kinds.add(LaneClass::Short, no_tools, across);
+    let trade_offs = JobKind::new(
+        |app| trade_off_job(&app.state).into_iter().collect(),
+        |app, job, trade_off| app.state.results.trade_off = Some((job, trade_off)),
+    )
+    .with_report(|_, _| {});
+    kinds.add(LaneClass::Short, no_tools, trade_offs);
     let requirements = JobKind::new(
         |app| needed_jobs!(app, Requirements),
         |app, job, tables| app.state.results.requirements = Some((job, tables)),
     );
     kinds.add(LaneClass::Short, cores, requirements);
+    let export_plans = JobKind::new(
+        |app| app.state.export_plan_job().into_iter().collect(),
+        GdcmApp::take_export_plan,
+    )
+    .with_report(|_, _| {});
+    kinds.add(LaneClass::Short, no_tools, export_plans);
     let test_answers = JobKind::new(
         |app| needed_jobs!(app, TestAnswers),
         |app, job, answers| app.state.results.test_answers = Some((job, answers)),
@@ -231,7 +246,8 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         GdcmApp::identified,
     )
     .with_report(|queue, background| background.identification = queue.progress())
-    .with_withdrawal(GdcmApp::stop_identifying);
+    .with_withdrawal(GdcmApp::stop_identifying)
+    .with_own_stop(|app| app.state.shows_view(View::Records));
     kinds.add(LaneClass::Long, cores, identifications);
 }
 
@@ -274,7 +290,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops every job.
+    /// Stops every job, except those with a *Stop* of their own in a view in front.
     pub(super) fn stop_jobs(&mut self) {
         let kinds = Rc::clone(&self.work.jobs.kinds);
         for kind in kinds.iter() {

@@ -28,6 +28,8 @@ pub(super) struct BackgroundWork {
     pub(super) newest_request: Option<(Study, ConditionId)>,
     /// Report that is being written.
     pub(super) report_job: Option<ReportJob>,
+    /// Number of reports that were started.
+    pub(super) report_number: u64,
     pub(super) replies: ReplySender,
     /// Replies from threads.
     pub(super) reply_receiver: Receiver<Reply>,
@@ -42,6 +44,10 @@ impl GdcmApp {
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.work.jobs.running_work();
+        // The queue follows the request only after the next frame.
+        if self.work.report_job.is_none() {
+            results.background.report = None;
+        }
         for proof in &self.work.new_proofs {
             results.background.proofs.push(Arc::clone(&proof.problem));
         }

@@ -1,5 +1,7 @@
 //! Commands that stop and resume the computation.
 
+use gdcm_model::dataset::ConditionId;
+
 use super::GdcmApp;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::message::Message;
@@ -22,8 +24,11 @@ impl GdcmApp {
         self.readers.opener.give_up();
         self.readers.record_reader.give_up();
         if records.is_some() {
-            // This entry, even if it is empty, prevents another automatic search for records.
-            self.records_of(self.state.condition().id());
+            // These entries, even if they are empty, prevent another automatic search for records.
+            let ids: Vec<ConditionId> = self.state.study.dataset.ids().collect();
+            for id in ids {
+                self.records_of(id);
+            }
         }
         let text = format!("stopped reading {name}; the open study is unchanged");
         self.notify_done(Message::new("reading-stopped", text));

@@ -24,15 +24,26 @@ impl GdcmApp {
             DisplayCommand::ShowBars(shown) => display.gains.hide_bars = !shown,
             DisplayCommand::Overlay(variant) => display.judging.overlaid = variant,
             DisplayCommand::ShowEvidence(shown) => display.gains.show_evidence = shown,
-            DisplayCommand::ShowAcross(role) => display.frequency.across_role = role,
+            DisplayCommand::ShowAcross(role, is_shown) => {
+                display.frequency.across_display.show(role, is_shown);
+            }
+            DisplayCommand::ShowAcrossAlone(role) => {
+                display.frequency.across_display.roles = vec![role];
+            }
+            DisplayCommand::ShowAcrossConditions(conditions) => {
+                display.frequency.across_display.conditions = conditions;
+            }
+            DisplayCommand::ShowAcrossPage(page) => display.frequency.across_display.page = page,
             DisplayCommand::Assess(figures) => display.judging.assessed = figures,
             DisplayCommand::ShowParameter(name) => display.physics.selected = Some(name),
             DisplayCommand::ShowPhysics(page) => display.physics.page = page,
-            DisplayCommand::ShowRequirements(page) => {
-                display.judging.requirements_page = page;
-                display.judging.requirements_sorting = Default::default();
-                // Discard the zoom: another page has other plots.
-                display.figures.remove(&View::Requirements);
+            DisplayCommand::ShowRequirements(requirements) => {
+                if display.judging.requirements.selected != requirements.selected {
+                    // Discard the zoom: another requirement has other plots.
+                    display.figures.remove(&View::Requirements);
+                    display.judging.history_figure = Default::default();
+                }
+                display.judging.requirements = requirements;
             }
             DisplayCommand::SetFrequencyUnit(unit) => display.curves.unit = unit,
             DisplayCommand::SetLooks(looks) => display.curves.looks = looks,
@@ -41,10 +52,11 @@ impl GdcmApp {
                 for figure in display.figures.values_mut() {
                     figure.request_fit();
                 }
+                display.judging.history_figure.request_fit();
             }
             DisplayCommand::ShowTest(shown) => {
                 display.judging.shows_test = shown;
-                display.figures.remove(&View::Requirements);
+                display.judging.history_figure = Default::default();
             }
         }
     }

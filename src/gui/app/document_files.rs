@@ -40,6 +40,8 @@ pub(super) struct DocumentFiles {
     pub(super) earlier: Vec<LoadedDataset>,
     /// Dataset most recently made from records.
     pub(super) made_of_records: Option<DatasetOfRecords>,
+    /// Folder of the last written files.
+    pub(super) last_folder: Option<PathBuf>,
     pub(super) disk: DiskWatch,
     /// Directory for the recent-files list; without it the list is not kept.
     pub(super) directory: Option<PathBuf>,
@@ -53,12 +55,44 @@ impl DocumentFiles {
         at_home(&typed, self.home.as_deref())
     }
 
-    /// Returns a proposed file name for the study.
+    /// Returns the folder that save dialogs propose: that of the last written files, of the study,
+    /// or of the dataset; otherwise the home directory.
+    pub(super) fn proposed_folder(&self) -> Option<PathBuf> {
+        let study = self.saved.path.as_deref().and_then(Path::parent);
+        let dataset = self.loaded.path().and_then(Path::parent);
+        let folders = [
+            self.last_folder.as_deref(),
+            study,
+            dataset,
+            self.home.as_deref(),
+        ];
+        let folder = folders
+            .into_iter()
+            .flatten()
+            .find(|folder| !folder.as_os_str().is_empty())?;
+        Some(folder.to_owned())
+    }
+
+    /// Returns the path that a form proposes for a file called `name`: in the folder typed before,
+    /// otherwise in the proposed folder.
+    pub(super) fn proposed_path(&self, typed: &str, name: &str) -> String {
+        let typed = Path::new(typed.trim());
+        let path = match typed.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.join(name),
+            _ => match self.proposed_folder() {
+                Some(folder) => folder.join(name),
+                None => PathBuf::from(name),
+            },
+        };
+        path.display().to_string()
+    }
+
+    /// Returns a proposed path for the study.
     pub(super) fn proposed_name(&self) -> String {
         if let Some(path) = &self.saved.path {
             return path.display().to_string();
         }
-        format!("{}.{STUDY_EXTENSION}", self.stem())
+        self.proposed_path("", &format!("{}.{STUDY_EXTENSION}", self.stem()))
     }
 
     /// Returns the stem from which names of files with results are formed.

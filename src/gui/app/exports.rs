@@ -1,101 +1,178 @@
-//! Exports of the corrections: as files of this program, and in formats for other tools.
+//! Exports of the corrections: the dialog's dry run, the written files, and what follows.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::export::{ExportFormat, ExportRequest, ExportSource, export_contents, write_export};
-use gdcm_io::files::corrections_file::write_results;
+use gdcm_io::Existing;
+use gdcm_io::FileError;
+use gdcm_io::export::ExportSource;
+use gdcm_io::export::export_set::ExportPlan;
+use gdcm_io::output_set::OutputSet;
+use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
 use gdcm_study::Analysis;
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::results::export_note::ExportRemedy;
 
 use super::GdcmApp;
-use crate::gui::commands::command::Command;
-use crate::gui::commands::output::OutputCommand;
-use crate::gui::state::forms::FormKind;
+use super::export_command_line::{CommandSource, export_command_line};
+use crate::gui::state::export_form::{ExportForm, ExportPlanJob};
+use crate::gui::state::notices::Activity;
 use crate::message::Message;
 
+/// Degree over airspeed that lets signed delays vary.
+const SIGNED_DELAY_DEGREE: usize = 1;
+
 impl GdcmApp {
-    /// Writes the corrections of the conditions selected in the form.
-    pub(super) fn export(&mut self) {
-        let Some(analysis) = self.complete_results() else {
-            return;
+    /// Fills the export dialog with the choices of the last export.
+    pub(super) fn open_export_form(&mut self) {
+        let study = self.files.saved.path.as_deref();
+        let file = study.or(self.files.loaded.path());
+        let folder = match self.files.proposed_folder() {
+            Some(folder) => folder.display().to_string(),
+            None => String::new(),
         };
-        let chosen = self.state.forms.exported.clone();
-        let folder = PathBuf::from(self.state.forms.typed_in(FormKind::Export).trim());
-        let folder = self.files.at_home(folder);
-        let written = write_results(
-            &analysis,
-            &self.files.loaded.sha256,
-            &chosen,
-            &folder,
-            self.outputs(),
-        );
-        let absent = absent_bars_suffix(self.absent_bars(analysis.uncertainty.is_some()));
-        let text = format!(
-            "exported {} to {}{absent}",
-            counted(chosen.len(), "condition"),
-            sanitized_path(&folder)
-        );
-        self.notify_written(
-            written.map(|()| Message::new("exported", text)),
-            FormKind::Export,
-            Command::Output(OutputCommand::Export),
-        );
+        let name = self.files.stem();
+        let state = &self.state;
+        let mut form = ExportForm::new(&state.study.exports, state.dataset(), &folder, &name);
+        form.default_breakpoints_kt = state.scheduled_airspeeds_kt();
+        form.home.clone_from(&self.files.home);
+        form.source = Some(ExportSource::new(file, &self.files.loaded.sha256));
+        self.state.forms.export = form;
     }
 
-    /// Proposes a name for an export to other tools if none was typed.
-    pub(super) fn propose_export_name(&mut self) {
-        let stem = self.files.stem();
-        let extension = self.state.forms.export_format.extension;
-        let path = self.state.forms.typed_in(FormKind::ExportAs);
-        if path.is_empty() {
-            *path = format!("{stem}.{extension}");
+    /// Stores the outcome of a dry run; writes the files if the engineer has asked for it
+    /// meanwhile.
+    pub(super) fn take_export_plan(&mut self, job: ExportPlanJob, plan: ExportPlan) {
+        self.state.forms.export.plan = Some((job, plan));
+        if std::mem::take(&mut self.state.forms.export.is_awaited) {
+            self.export();
         }
     }
 
-    /// Writes all corrections in a format for other tools; asks before overwriting.
-    pub(super) fn export_as(&mut self, format: ExportFormat, path: PathBuf) {
-        let Some(analysis) = self.complete_results() else {
+    /// Writes the files of the export dialog, once its dry run has ended. Errors stay in the
+    /// dialog.
+    pub(super) fn export(&mut self) {
+        let form = &mut self.state.forms.export;
+        form.error = None;
+        if let Err(message) = form.set() {
+            form.error = Some(message);
+            return;
+        }
+        if let Some(message) = self.state.incomplete_results() {
+            self.state.forms.export.error = Some(message);
+            return;
+        }
+        let Some(plan) = self.state.current_export_plan() else {
+            self.state.forms.export.is_awaited = true;
             return;
         };
-        let path = self.files.at_home(path);
-        let source = ExportSource {
-            name: self.state.study_name.clone(),
-            sha256: self.files.loaded.sha256.clone(),
+        let plan = plan.clone();
+        let folder = self.state.forms.export.folder_path();
+        let existing = if self.state.forms.export.choices.replaces {
+            Existing::Replace
+        } else {
+            Existing::Keep
         };
-        let request = ExportRequest {
-            format,
-            ..ExportRequest::default()
-        };
-        let contents = export_contents(&analysis, &request);
-        let left_out = contents.left_out_words(&analysis.study.dataset);
-        let written = write_export(&analysis, &source, &request, &path, self.outputs());
-        let absent = absent_bars_suffix(self.absent_bars(analysis.uncertainty.is_some()));
-        let message = written.map(|remarks| {
-            let text = format!(
-                "exported {}: {}{}{}{absent}",
-                sanitized_path(&path),
-                contents.words(),
-                left_out_suffix(&left_out),
-                remarks_suffix(&remarks)
-            );
-            Message::new("exported", text)
-        });
-        self.notify_written(
-            message,
-            FormKind::ExportAs,
-            Command::Output(OutputCommand::ExportAs(format, path.clone())),
-        );
+        match self.write_export(&plan, existing) {
+            Ok(paths) => self.exported(&plan, folder, paths.len(), existing),
+            Err(error) => {
+                let form = &mut self.state.forms.export;
+                form.error = Some(error.into());
+                // Files in the folder may have changed since the dry run.
+                form.revision += 1;
+            }
+        }
     }
 
-    /// Returns the complete analysis of the current study, with optimality proofs and the error
-    /// bars computed so far. Reports an error if it is incomplete.
-    fn complete_results(&mut self) -> Option<Arc<Analysis>> {
-        let analysis = self.value_or_notify(self.analysis_to_write("export"))?;
-        match self.state.analysis_with_error_bars() {
-            Some(with_bars) if with_bars.study == analysis.study => Some(Arc::new(with_bars)),
-            _ => Some(analysis),
+    fn write_export(
+        &self,
+        plan: &ExportPlan,
+        existing: Existing,
+    ) -> Result<Vec<PathBuf>, FileError> {
+        let folder = self.state.forms.export.folder_path();
+        let outputs = OutputSet::new(existing, self.files.inputs());
+        if let Some(name) = &plan.report {
+            outputs.check(&[folder.join(name)])?;
+        }
+        plan.write(&folder, outputs)
+    }
+
+    /// Closes the dialog after the files were written, reports them, remembers the choices, and
+    /// starts the report if it is among the files.
+    fn exported(&mut self, plan: &ExportPlan, folder: PathBuf, count: usize, existing: Existing) {
+        self.state.forms.shown = None;
+        let form = &self.state.forms.export;
+        if form.remembers {
+            self.state.study.exports = Arc::new(form.all_choices());
+            self.study_changed();
+        }
+        self.state.forms.export.plan = None;
+        self.files.last_folder = Some(folder.clone());
+        if count > 0 {
+            let text = format!(
+                "exported {} to {}",
+                counted(count, "file"),
+                sanitized_path(&folder)
+            );
+            let any_file = folder.join("file");
+            self.notify_written_to(Activity::Export, Message::new("exported", text), &any_file);
+        }
+        if let Some(name) = &plan.report {
+            self.start_report(folder.join(name), existing);
+        }
+    }
+
+    /// Carries out a remedy that the dialog offers; a change of the study starts a new analysis, and
+    /// a new dry run follows.
+    pub(super) fn apply_export_remedy(&mut self, remedy: ExportRemedy) {
+        if self.state.forms.export.apply_remedy(remedy) {
+            return;
+        }
+        match remedy {
+            ExportRemedy::ScheduleDelays => {
+                self.decide(&setting::SCHEDULE_DELAYS.to(DelayScheduling::Always));
+            }
+            ExportRemedy::SignedDelaysOverAirspeed => {
+                self.decide(&setting::TAU_DEGREE.to(Value::Choice(SIGNED_DELAY_DEGREE)));
+            }
+            _ => {}
+        }
+    }
+
+    /// Copies the command line that writes the same files.
+    pub(super) fn copy_export_command(&mut self) {
+        match self.export_command() {
+            Ok(line) => {
+                self.ctx.copy_text(line);
+                let text = "copied the equivalent command line";
+                self.notify_done(Message::new("command-line-copied", text));
+            }
+            Err(message) => self.state.forms.export.error = Some(message),
+        }
+    }
+
+    /// Returns the command line that writes the files of the export dialog.
+    ///
+    /// # Errors
+    /// A message if the form is incomplete, or if the study must be saved first because options
+    /// cannot express its decisions.
+    pub fn export_command(&self) -> Result<String, Message> {
+        let source = CommandSource::from_files(&self.files);
+        export_command_line(&self.state.study, &source, &self.state.forms.export)
+    }
+
+    /// Returns the complete analysis for the current decisions, or a message that explains why
+    /// there is none.
+    pub(super) fn analysis_to_write(&self) -> Result<Arc<Analysis>, Message> {
+        if let Some(message) = self.state.incomplete_results() {
+            return Err(message);
+        }
+        match &self.state.results.analysis {
+            Some(analysis) => Ok(Arc::clone(analysis)),
+            None => Err(self.state.after_stop()),
         }
     }
 
@@ -110,35 +187,6 @@ impl GdcmApp {
             Some(AbsentBars::Stopped)
         } else {
             Some(AbsentBars::StillComputed)
-        }
-    }
-
-    /// Returns the complete analysis for the current decisions, or a message that explains why
-    /// there is none and asks the engineer to repeat `action` later.
-    pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, Message> {
-        let results = &self.state.results;
-        if results.stopped {
-            let text = format!(
-                "{}: the computation was stopped; choose Compute first",
-                self.state.after_stop().text
-            );
-            return Err(Message::new("computation-stopped", text));
-        }
-        if !results.background.proofs.is_empty() {
-            let text = format!(
-                "the gains are still being proven optimal; {action} again in a moment, or stop \
-                the proof"
-            );
-            return Err(Message::new("proof-running", text));
-        }
-        match &results.analysis {
-            Some(analysis) if !results.is_waiting() => Ok(Arc::clone(analysis)),
-            _ => {
-                let text = format!(
-                    "the newest results are still being computed; {action} again in a moment"
-                );
-                Err(Message::new("computation-running", text))
-            }
         }
     }
 }
@@ -156,20 +204,5 @@ pub(super) fn absent_bars_suffix(absent: Option<AbsentBars>) -> &'static str {
         None => "",
         Some(AbsentBars::Stopped) => "; without error bars: their computation was stopped",
         Some(AbsentBars::StillComputed) => "; without error bars, which are still being computed",
-    }
-}
-
-fn left_out_suffix(parts: &[String]) -> String {
-    if parts.is_empty() {
-        return String::new();
-    }
-    format!("; left out: {}", parts.join(", "))
-}
-
-fn remarks_suffix(remarks: &[String]) -> String {
-    match remarks {
-        [] => String::new(),
-        [remark] => format!(" ({remark})"),
-        several => format!(" ({} remarks; see the file)", several.len()),
     }
 }

@@ -1,6 +1,6 @@
 //! Copies and saves the figures and the tables of the views.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_io::csv_text::{csv_text, save_tables};
@@ -15,14 +15,14 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::view::View;
-use crate::gui::views::figure_button::tables_in_place;
+use crate::gui::views::figure_button::tables_of_view;
 use crate::gui::views::figures::{figure_name, figure_of};
 use crate::message::Message;
 
 impl GdcmApp {
     /// Copies the values shown by a view to the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
-        let tables = match tables_in_place(&self.state, view) {
+        let tables = match tables_of_view(&self.state, view) {
             Some(tables) => tables,
             None => match self.figure_of(view) {
                 Some(figure) => figure.tables(),
@@ -46,38 +46,21 @@ impl GdcmApp {
 
     /// Asks where to save a view; proposes the folder in which the previous figure was saved.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
-        // Tables are saved as CSV, whatever the figure format.
-        let format = if tables_in_place(&self.state, view).is_some() {
-            FigureFormat::Csv
-        } else {
-            format
-        };
         let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
         self.state.forms.figure = Some(view);
         let path = self.state.forms.typed_in(FormKind::SaveFigure);
-        *path = Path::new(path.trim())
-            .with_file_name(name)
-            .display()
-            .to_string();
+        *path = self.files.proposed_path(path, &name);
         self.state.forms.shown = Some(FormKind::SaveFigure);
     }
 
     /// Saves a view; asks before overwriting.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
         let path = self.files.at_home(path);
-        let written = match tables_in_place(&self.state, view) {
+        let written = match tables_of_view(&self.state, view) {
             Some(tables) if matches!(figure_format(&path), Ok(FigureFormat::Csv)) => {
                 save_tables(&tables, &path, self.outputs())
             }
-            Some(_) => {
-                let found = sanitized_path(&path);
-                let text = format!(
-                    "{} shows tables here: expected a name that ends in .csv, found {found}",
-                    view.name()
-                );
-                return self.notify_error(Message::new("tables-as-csv", text));
-            }
-            None => {
+            _ => {
                 let Some(figure) = self.figure_of(view) else {
                     return;
                 };
@@ -91,7 +74,12 @@ impl GdcmApp {
         );
         let message = Message::new("saved", text);
         let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
-        self.notify_written(written.map(|()| message), FormKind::SaveFigure, again);
+        self.notify_file(
+            written.map(|()| message),
+            &path,
+            FormKind::SaveFigure,
+            again,
+        );
     }
 
     /// Returns the figure of a view; reports an error if the view has none yet.
@@ -123,7 +111,9 @@ impl GdcmApp {
             .filter(|letter| letter.is_alphanumeric() || *letter == ' ')
             .collect();
         self.state.forms.table = Some(table);
-        *self.state.forms.typed_in(FormKind::SaveTable) = format!("{}.csv", name.replace(' ', "-"));
+        let name = format!("{}.csv", name.replace(' ', "-"));
+        let path = self.state.forms.typed_in(FormKind::SaveTable);
+        *path = self.files.proposed_path(path, &name);
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 

@@ -1,6 +1,6 @@
 //! File dialogs of the desktop, each in a thread, and what follows the engineer's choice.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gdcm_io::Existing;
 
@@ -18,6 +18,7 @@ pub(super) enum DialogPurpose {
     SaveStudy,
     ExportFolder,
     ModelFolder,
+    RecordFiles,
     RecordFolder,
     RequirementTable(RequirementTable),
 }
@@ -31,10 +32,21 @@ impl GdcmApp {
         self.is_dialog_open = true;
         // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
         // a choice.
-        let ask = move || caught(|| show_dialog(purpose, &file_name)).ok().flatten();
+        let folder = match purpose {
+            DialogPurpose::ExportFolder => Some(self.state.forms.export.folder_path()),
+            _ => self.files.proposed_folder(),
+        };
+        let ask = move || {
+            caught(|| show_dialog(purpose, &file_name, folder.as_deref())).unwrap_or_default()
+        };
         self.in_thread("the dialog", ask, move |app, chosen| {
             app.is_dialog_open = false;
-            match chosen.flatten() {
+            let mut chosen = chosen.unwrap_or_default();
+            if purpose == DialogPurpose::RecordFiles && !chosen.is_empty() {
+                app.carry_out_records(RecordsCommand::Add(chosen));
+                return;
+            }
+            match chosen.pop() {
                 Some(path) => app.path_chosen(purpose, path),
                 None => app.nothing_chosen(purpose),
             }
@@ -55,12 +67,14 @@ impl GdcmApp {
                 self.save_as(path, existing);
             }
             DialogPurpose::ExportFolder => {
-                *self.state.forms.typed_in(FormKind::Export) = path.display().to_string()
+                self.state.forms.export.folder = path.display().to_string()
             }
             DialogPurpose::ModelFolder => {
                 self.carry_out_assembling(AssemblingCommand::Add(vec![path]))
             }
-            DialogPurpose::RecordFolder => self.carry_out_records(RecordsCommand::Add(vec![path])),
+            DialogPurpose::RecordFiles | DialogPurpose::RecordFolder => {
+                self.carry_out_records(RecordsCommand::Add(vec![path]))
+            }
             DialogPurpose::RequirementTable(table) => self.read_requirement_table(table, path),
         }
     }
@@ -77,17 +91,29 @@ impl GdcmApp {
             DialogPurpose::RequirementTable(table) => {
                 self.state.forms.shown = Some(FormKind::ReadRequirementTable(table));
             }
-            DialogPurpose::ExportFolder
-            | DialogPurpose::ModelFolder
-            | DialogPurpose::RecordFolder => {}
+            DialogPurpose::RecordFiles | DialogPurpose::RecordFolder => {
+                self.state.forms.shown = Some(FormKind::AddRecords);
+            }
+            DialogPurpose::ExportFolder | DialogPurpose::ModelFolder => {}
         }
     }
 }
 
-/// Shows a desktop file dialog; returns `None` if nothing was chosen.
-fn show_dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
-    let dialog = rfd::FileDialog::new();
-    match purpose {
+/// Shows a desktop file dialog, which begins in `folder` if that exists; returns the chosen paths,
+/// at most one except for record files.
+fn show_dialog(purpose: DialogPurpose, file_name: &str, folder: Option<&Path>) -> Vec<PathBuf> {
+    let mut dialog = rfd::FileDialog::new();
+    if let Some(folder) = folder
+        && folder.is_dir()
+    {
+        dialog = dialog.set_directory(folder);
+    }
+    // A save dialog takes the name alone; the folder is set above.
+    let file_name = match Path::new(file_name).file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => file_name.to_owned(),
+    };
+    let chosen = match purpose {
         DialogPurpose::Open => dialog
             .set_title("Open a dataset or a study")
             .add_filter("datasets and studies", &["json", "gz"])
@@ -101,6 +127,12 @@ fn show_dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
         DialogPurpose::ModelFolder => dialog
             .set_title("Choose a folder with model files")
             .pick_folder(),
+        DialogPurpose::RecordFiles => {
+            let files = dialog
+                .set_title("Choose flight records: files and archives")
+                .pick_files();
+            return files.unwrap_or_default();
+        }
         DialogPurpose::RecordFolder => dialog
             .set_title("Choose a folder with flight records")
             .pick_folder(),
@@ -117,5 +149,6 @@ fn show_dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
         DialogPurpose::ExportFolder => dialog
             .set_title("Export corrections to a folder")
             .pick_folder(),
-    }
+    };
+    chosen.into_iter().collect()
 }

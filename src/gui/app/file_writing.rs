@@ -9,6 +9,7 @@ use gdcm_model::message_text::sanitized_path;
 use super::GdcmApp;
 use crate::gui::commands::command::Command;
 use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::Activity;
 use crate::message::Message;
 
 impl GdcmApp {
@@ -31,26 +32,35 @@ impl GdcmApp {
         outputs.persist()
     }
 
-    /// Reports the written files, or why none was written. If files exist, asks whether the command
-    /// `again` may overwrite them.
-    pub(super) fn notify_written(
+    /// Reports why files were not written. If files exist, asks whether the command `again` may
+    /// overwrite them.
+    pub(super) fn notify_not_written(&mut self, error: FileError, form: FormKind, again: Command) {
+        match error {
+            FileError::Exists { paths } => self.ask_to_overwrite(&paths, form, again),
+            error => self.notify_error(error),
+        }
+    }
+
+    /// Reports a written file with its folder, or the error. If the file exists, asks whether the
+    /// command `again` may overwrite it.
+    pub(super) fn notify_file(
         &mut self,
         written: Result<Message, FileError>,
+        path: &Path,
         form: FormKind,
         again: Command,
     ) {
         match written {
             Ok(message) => {
                 self.state.forms.shown = None;
-                self.notify_done(message);
+                self.files.last_folder = path.parent().map(Path::to_owned);
+                self.notify_written_to(Activity::Other, message, path);
             }
-            Err(FileError::Exists { paths }) => self.ask_to_overwrite(&paths, form, again),
-            Err(error) => self.notify_error(error),
+            Err(error) => self.notify_not_written(error, form, again),
         }
     }
 
-    /// Reports a single saved file, or the error. If the file exists, asks whether the command
-    /// `again` may overwrite it.
+    /// Like [`Self::notify_file`], with the message that the file is saved.
     pub(super) fn notify_saved(
         &mut self,
         saved: Result<(), FileError>,
@@ -58,10 +68,7 @@ impl GdcmApp {
         form: FormKind,
         again: Command,
     ) {
-        self.notify_written(
-            saved.map(|()| Message::new("saved", format!("saved {}", sanitized_path(path)))),
-            form,
-            again,
-        );
+        let message = Message::new("saved", format!("saved {}", sanitized_path(path)));
+        self.notify_file(saved.map(|()| message), path, form, again);
     }
 }

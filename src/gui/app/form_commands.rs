@@ -20,7 +20,9 @@ impl GdcmApp {
                 self.decide(&edit);
             }
             FormCommand::Refuse(why) => self.notify_error(why),
-            FormCommand::DismissNotice => self.state.notice = None,
+            FormCommand::DismissToast(number) => self.state.notices.dismiss(number),
+            FormCommand::ListToasts(is_open) => self.state.notices.is_list_open = is_open,
+            FormCommand::HoldToasts => self.state.notices.is_held = true,
             FormCommand::CloseBar(bar) => self.state.message_bars.retain(|shown| *shown != bar),
             FormCommand::Overwrite => self.overwrite(),
             FormCommand::SaveAndGoOn => self.save_and_go_on(),
@@ -33,13 +35,9 @@ impl GdcmApp {
 
     fn show_form(&mut self, form: Option<FormKind>) {
         match form {
-            Some(FormKind::Export) => {
-                let conditions = self.state.study.dataset.conditions();
-                let ids = conditions.iter().map(|condition| condition.id());
-                self.state.forms.exported = ids.collect();
-            }
-            Some(FormKind::ExportAs) => self.propose_export_name(),
-            _ => {}
+            Some(FormKind::Export) => self.open_export_form(),
+            // The dry run holds the bytes of all files.
+            _ => self.state.forms.export.plan = None,
         }
         // Keep the postponed action if it is to continue after this form, which asks for a path to
         // save to.

@@ -20,6 +20,9 @@ pub(super) struct JobKind<J: Job> {
     /// Withdraws the request after a stop or a fault, if the kind has its own trigger; then only
     /// that trigger, not "Compute", starts it again.
     pub(super) withdraw: Option<fn(&mut GdcmApp)>,
+    /// Returns whether a view in front has a *Stop* of its own for this kind; the *Stop* in the
+    /// status bar then leaves it running.
+    pub(super) has_own_stop: fn(&GdcmApp) -> bool,
 }
 
 impl<J: Job> JobKind<J> {
@@ -34,6 +37,7 @@ impl<J: Job> JobKind<J> {
             store,
             report: |queue, background| background.views += queue.unfinished().len(),
             withdraw: None,
+            has_own_stop: |_| false,
         }
     }
 
@@ -48,13 +52,19 @@ impl<J: Job> JobKind<J> {
         self.withdraw = Some(withdraw);
         self
     }
+
+    /// Gives the kind a *Stop* of its own, beside its progress in a view.
+    pub(super) fn with_own_stop(mut self, has_own_stop: fn(&GdcmApp) -> bool) -> Self {
+        self.has_own_stop = has_own_stop;
+        self
+    }
 }
 
 /// Interface common to all kinds of jobs.
 pub(super) trait AnyJobKind {
     /// Requests exactly the jobs that the display needs.
     fn want(&self, app: &mut GdcmApp);
-    /// Cancels the running job and the waiting ones.
+    /// Cancels the running job and the waiting ones, unless a view in front has its own *Stop*.
     fn stop(&self, app: &mut GdcmApp);
     /// Allows stopped jobs to start again.
     fn resume(&self);
@@ -74,6 +84,9 @@ impl<J: Job> AnyJobKind for QueuedKind<J> {
     }
 
     fn stop(&self, app: &mut GdcmApp) {
+        if (self.kind.has_own_stop)(app) {
+            return;
+        }
         self.queue.stop();
         if let Some(withdraw) = self.kind.withdraw {
             withdraw(app);

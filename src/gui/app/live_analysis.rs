@@ -26,6 +26,7 @@ impl GdcmApp {
     /// Requests the results for the current study and condition, unless they have been requested
     /// already.
     pub(super) fn request_results(&mut self) {
+        self.follow_settings_panel();
         let now = self.now();
         let study = &self.state.study;
         let condition = self.state.condition().id();
@@ -41,6 +42,17 @@ impl GdcmApp {
         results.stopped = false;
         results.waiting_since.get_or_insert(now);
         self.start_live_analysis();
+    }
+
+    /// Begins and ends the session of the settings panel as the panel is opened and closed, by
+    /// whichever command.
+    fn follow_settings_panel(&mut self) {
+        let is_open = self.state.display.layout.settings_open;
+        match (is_open, self.state.settings_session.is_some()) {
+            (true, false) => self.state.begin_settings_session(),
+            (false, true) => self.state.end_settings_session(),
+            _ => {}
+        }
     }
 
     /// Starts the live analysis for the latest request, with all available proofs.
@@ -81,8 +93,15 @@ impl GdcmApp {
             results.elapsed_ms = timed.elapsed_ms;
         }
         results.received = job.request;
-        results.analysis = Some(timed.analysis);
+        results.analysis = Some(Arc::clone(&timed.analysis));
         results.first = None;
+        if let Some(session) = &mut self.state.settings_session
+            && session.analysis.is_none()
+            && session.settings == timed.analysis.study.settings
+        {
+            session.analysis = Some(timed.analysis);
+        }
+        let results = &mut self.state.results;
         results.stopped &= results.is_behind();
         results.waiting_since = if results.is_waiting() {
             Some(now)

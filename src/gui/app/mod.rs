@@ -15,6 +15,7 @@ mod curve_commands;
 mod disk_watch;
 mod display_commands;
 mod document_files;
+mod export_command_line;
 mod exports;
 pub mod faults;
 mod figure_saving;

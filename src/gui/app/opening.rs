@@ -21,7 +21,7 @@ use super::GdcmApp;
 use super::document_files::{ReadFor, SavedStudy, study_name};
 use super::postponed_actions::PendingAction;
 use crate::gui::state::forms::FormKind;
-use crate::gui::state::notices::MessageBar;
+use crate::gui::state::notices::{Activity, MessageBar, NoticeAction};
 use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::State;
 use crate::message::Message;
@@ -58,8 +58,16 @@ impl GdcmApp {
     pub(super) fn show(&mut self, opened: Opened) {
         let (mut state, loaded, saved) = Self::parts_of(opened);
         let requested = self.state.results.requested;
-        let name = loaded.origin.to_string();
+        let name = match &saved.path {
+            Some(path) => sanitized_path(path),
+            None => match loaded.origin.example() {
+                Some(example) => format!("the {}", example.name()),
+                None => loaded.origin.to_string(),
+            },
+        };
         state.recent = std::mem::take(&mut self.state.recent);
+        state.notices = std::mem::take(&mut self.state.notices);
+        state.notices.follow_decision();
         Preferences::from_display(&self.state.display).apply(&mut state.display);
         // Keep the offers to restore lost decisions; the other bars concern the previous study.
         state.message_bars = std::mem::take(&mut self.state.message_bars);
@@ -75,7 +83,8 @@ impl GdcmApp {
         self.files.earlier.clear();
         self.files.saved = saved;
         self.keep_unsaved();
-        self.notify_done(Message::new("opened", format!("opened {name}")));
+        let message = Message::new("opened", format!("opened {name}"));
+        self.notify_done_with(Activity::Opening, message, None);
     }
 
     /// Opens a dataset or a study; the open study remains until the file is read. `moved` is the
@@ -89,7 +98,9 @@ impl GdcmApp {
                 "{path}: neither a dataset nor a study; to make a dataset from model files, use \
                 Import models in the menu File"
             );
-            return self.notify_error(Message::new("model-file", text));
+            let message = Message::new("model-file", text);
+            let remedy = Some(NoticeAction::OpenAnother);
+            return self.notify_error_of(Activity::Opening, message, remedy);
         }
         let purpose = match self.recovery.offer_of(&path) {
             Some(offer) => ReadFor::Restoring(offer),
@@ -138,7 +149,7 @@ impl GdcmApp {
         };
         self.show(Opened::Dataset(example));
         self.state.on_start_page = true;
-        self.state.notice = None;
+        self.state.notices.dismiss_all();
         self.read_recent(None);
     }
 
@@ -172,7 +183,10 @@ impl GdcmApp {
                 self.state.forms.lost_dataset = Some((path, dataset.to_string()));
                 self.state.forms.shown = Some(FormKind::FindDataset);
             }
-            error => self.notify_error(error),
+            error => {
+                let remedy = Some(NoticeAction::OpenAnother);
+                self.notify_error_of(Activity::Opening, error, remedy);
+            }
         }
     }
 }

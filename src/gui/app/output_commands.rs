@@ -30,9 +30,11 @@ impl GdcmApp {
             OutputCommand::AskExportFolder => {
                 self.ask_path(DialogPurpose::ExportFolder, String::new())
             }
+            OutputCommand::ShowFolder(folder) => self.show_folder(folder),
+            OutputCommand::ApplyExportRemedy(remedy) => self.apply_export_remedy(remedy),
+            OutputCommand::CopyExportCommand => self.copy_export_command(),
             OutputCommand::CopyText(text) => self.ctx.copy_text(text),
             OutputCommand::Export => self.export(),
-            OutputCommand::ExportAs(format, path) => self.export_as(format, path),
         }
     }
 }

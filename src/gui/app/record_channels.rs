@@ -12,7 +12,7 @@ impl GdcmApp {
     /// the identification band requires.
     pub(super) fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
-        let [_, end] = self.identified_band(condition);
+        let [_, end] = self.state.identified_band(condition);
         channels.resampling.band_end = Some(end);
         let Some(made) = self.made_of_records() else {
             return channels;
@@ -31,7 +31,7 @@ impl GdcmApp {
     /// Resamples the topics of a condition if its identification band has changed and requires
     /// another sample rate.
     pub(super) fn follow_band(&mut self, condition: ConditionId) {
-        let [_, end] = self.identified_band(condition);
+        let [_, end] = self.state.identified_band(condition);
         let Some(records) = self.state.records.conditions.get(&condition) else {
             return;
         };

@@ -1,12 +1,14 @@
 //! Commands of the Records view. Edits are in `record_edits.rs` and `record_layout_edits.rs`.
 
-use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
 
 use super::GdcmApp;
 use super::file_dialogs::DialogPurpose;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::column_groups::RecordPlace;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::records::RecordsFold;
 use crate::gui::state::records_page::RecordsPage;
 
 impl GdcmApp {
@@ -18,52 +20,64 @@ impl GdcmApp {
             RecordsCommand::Add(paths) => self.add_records(paths),
             RecordsCommand::AskDataset => self.ask_record_dataset(),
             RecordsCommand::MakeDataset => self.make_record_dataset(),
-            RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFolder, String::new()),
+            RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFiles, String::new()),
+            RecordsCommand::AskFolder => self.ask_path(DialogPurpose::RecordFolder, String::new()),
+            RecordsCommand::AskPath => self.state.forms.shown = Some(FormKind::AddRecords),
+            RecordsCommand::Assign(indices, id) => self.assign_records(&indices, id),
+            RecordsCommand::Discard(index) => self.discard_record(index),
+            RecordsCommand::ShowFold(fold) => records.open_fold = fold,
             RecordsCommand::Show(page) => records.page = page,
-            RecordsCommand::ChooseParts(chooses) => records.chooses_parts = chooses,
             RecordsCommand::ShowSpectrogram(input) => records.spectrogram = input,
-            RecordsCommand::ShowTimeModel(model, true) => {
-                records.time_models.insert(model);
+            RecordsCommand::ShowTimeRole(role, true) => {
+                records.hidden_roles.remove(&role);
             }
-            RecordsCommand::ShowTimeModel(model, false) => {
-                records.time_models.remove(&model);
+            RecordsCommand::ShowTimeRole(role, false) => {
+                records.hidden_roles.insert(role);
             }
+            RecordsCommand::ShowOutputs(outputs) => records.more_outputs = Some(outputs),
             RecordsCommand::Identify => self.identify_conditions(&[condition]),
             RecordsCommand::IdentifyAll => {
-                let conditions = records.conditions_in_use();
+                let conditions = self.state.conditions_to_identify();
                 self.identify_conditions(&conditions);
             }
             RecordsCommand::Stop => self.stop_identifying(),
             RecordsCommand::Take(offered) => self.take_identified(&[condition], offered),
             RecordsCommand::TakeAll(offered) => {
-                let conditions: Vec<ConditionId> = records.conditions.keys().copied().collect();
+                let conditions = self.state.unused_fits();
                 self.take_identified(&conditions, offered);
             }
             RecordsCommand::Return => self.decide(&Edit::ReturnModels { condition }),
-            RecordsCommand::ShowAdvanced(field) => records.advanced_field = Some(field),
+            RecordsCommand::ShowAdvanced(field) => {
+                records.open_fold = Some(RecordsFold::Settings);
+                records.advanced_field = Some(field);
+            }
+            RecordsCommand::AdvancedFocused => records.advanced_field = None,
             RecordsCommand::Choose(index) => {
                 if let Some(records) = records.conditions.get_mut(&condition) {
                     records.choose(index);
+                    records.is_chosen = true;
                 }
             }
             RecordsCommand::SetLayout(index, layout) => self.set_layout(condition, index, layout),
-            RecordsCommand::TakeDatasetUnits => self.take_dataset_units(),
-            RecordsCommand::ShowUnclear => self.show_unclear(),
+            RecordsCommand::ConfirmUnits => self.confirm_units(),
+            RecordsCommand::CheckUnits => {
+                if let Some(place) = records.assumed_units().and_then(|units| units.first) {
+                    self.show_columns(place);
+                }
+            }
+            RecordsCommand::ShowColumns(place) => self.show_columns(place),
             // Every other command changes the records of the displayed condition; see `apply_edit`.
             edit => self.edit_records(condition, edit),
         }
     }
 
-    /// Shows the first record with missing units, on the Columns page.
-    fn show_unclear(&mut self) {
-        let Some(id) = self.state.records.open_units().and_then(|open| open.first) else {
-            return;
-        };
-        if let Some(records) = self.state.records.conditions.get_mut(&id) {
-            let unclear = records.rows.iter().position(|row| !row.problems.is_empty());
-            records.choose(unclear.unwrap_or(records.chosen));
+    /// Shows the columns of a record.
+    fn show_columns(&mut self, place: RecordPlace) {
+        if let Some(records) = self.state.records.conditions.get_mut(&place.condition) {
+            records.choose(place.row);
+            records.is_chosen = true;
         }
         self.state.records.page = RecordsPage::Columns;
-        self.dispatch(SelectionCommand::SelectCondition(id));
+        self.dispatch(SelectionCommand::SelectCondition(place.condition));
     }
 }

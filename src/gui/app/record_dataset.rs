@@ -44,19 +44,22 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Opens the form for the channels of a new dataset, with a proposal based on the displayed
-    /// record.
+    /// Opens the form for the channels of a new dataset, with a proposal based on the records that
+    /// do not fit the open dataset.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
-        let Some(records) = self.state.records.conditions.get(&condition) else {
-            return;
-        };
+        let mut rows: Vec<&LaidOutRecord> = self.state.records.unassigned.iter().collect();
+        if let Some(records) = self.state.records.conditions.get(&condition) {
+            rows.extend(&records.rows);
+        }
+        // Records that fit the open dataset need no other.
+        rows.retain(|row| row.flight.is_none());
         let path = match self.state.records.sources.first() {
             Some(source) => source.with_extension("json.gz").display().to_string(),
             None => String::new(),
         };
         self.state.records.wanted =
-            WantedDataset::proposed(records, self.state.study.settings.band, path);
+            WantedDataset::proposed(rows, self.state.study.settings.band, path);
         self.state.forms.shown = Some(FormKind::RecordDataset);
     }
 
@@ -105,8 +108,8 @@ impl GdcmApp {
                 self.open(origin.path.clone(), None);
                 self.files.made_of_records = Some(origin);
             }
-            Err(error) => self.notify_written(
-                Err(error),
+            Err(error) => self.notify_not_written(
+                error,
                 FormKind::RecordDataset,
                 RecordsCommand::MakeDataset.into(),
             ),

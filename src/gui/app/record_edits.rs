@@ -4,7 +4,7 @@
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::simulation::Signal;
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, leave_out_copies};
 
 use super::GdcmApp;
 use crate::gui::commands::records::RecordsCommand;
@@ -36,11 +36,61 @@ impl GdcmApp {
         }
     }
 
+    /// Moves added records without a condition to a condition; this can be undone.
+    pub(super) fn assign_records(&mut self, indices: &[usize], condition: ConditionId) {
+        let mut before = self.state.records.before([condition]);
+        before.unassigned = Some(self.state.records.unassigned.clone());
+        let mut rows = Vec::new();
+        let mut others = Vec::new();
+        for (index, row) in std::mem::take(&mut self.state.records.unassigned)
+            .into_iter()
+            .enumerate()
+        {
+            if indices.contains(&index) {
+                rows.push(row);
+            } else {
+                others.push(row);
+            }
+        }
+        self.state.records.unassigned = others;
+        let count = rows.len();
+        if count == 0 {
+            return;
+        }
+        let read_from = self.state.records.read_from.clone();
+        let records = self.records_of(condition);
+        for row in rows {
+            records.add_row(row, &read_from);
+        }
+        leave_out_copies(&mut records.rows);
+        records.changed = true;
+        // The common clock of topics was chosen for another condition.
+        records.clock_band_end = None;
+        let change = RecordChange::Assign {
+            records: count,
+            condition,
+        };
+        self.record_edited(change, before);
+        self.follow_band(condition);
+    }
+
+    /// Removes an added record without a condition; this can be undone.
+    pub(super) fn discard_record(&mut self, index: usize) {
+        let mut before = self.state.records.before([]);
+        before.unassigned = Some(self.state.records.unassigned.clone());
+        if index >= self.state.records.unassigned.len() {
+            return;
+        }
+        let row = self.state.records.unassigned.remove(index);
+        let record = row.table.name.clone();
+        self.record_edited(RecordChange::Discard { record }, before);
+    }
+
     /// Adds an edit of records to the undo history.
     pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsBefore) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, change, before);
-        self.state.notice = None;
+        self.state.notices.follow_decision();
     }
 }
 
@@ -74,6 +124,9 @@ fn described_edit(records: &ConditionRecords, command: &RecordsCommand) -> Condi
         RecordsCommand::AddPart(index, _) => ConditionRecordChange::AddPart {
             record: record_name(records, *index),
         },
+        RecordsCommand::MovePart(index, _) => ConditionRecordChange::MovePart {
+            record: record_name(records, *index),
+        },
         RecordsCommand::RemovePart(index) => ConditionRecordChange::RemovePart {
             record: record_name(records, *index),
         },
@@ -100,6 +153,7 @@ fn apply_edit(
     match command {
         RecordsCommand::SetUsed(index, used) => return Ok(records.set_used(index, used)),
         RecordsCommand::AddPart(index, part_s) => records.add_part(index, part_s, channels)?,
+        RecordsCommand::MovePart(index, part_s) => records.move_part(index, part_s, channels)?,
         RecordsCommand::RemovePart(index) => return Ok(records.remove_part(index)),
         RecordsCommand::SetKind(index, kind) => {
             if let Some(row) = records.rows.get_mut(index) {

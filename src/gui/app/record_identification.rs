@@ -11,21 +11,10 @@ use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
-use crate::gui::state::records_page::RecordsPage;
+use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
-    /// otherwise the study's.
-    pub(super) fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
-        let records = self.state.records.conditions.get(&condition);
-        if let Some(own) = records.and_then(|records| records.band) {
-            return own;
-        }
-        let band = self.state.study.settings.band;
-        [band.min(), band.max()]
-    }
-
     /// Requests identification in these conditions; replaces a waiting job for the same condition.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
@@ -34,7 +23,7 @@ impl GdcmApp {
         let mut refusal = None;
         for id in conditions {
             self.follow_band(*id);
-            let band = self.identified_band(*id);
+            let band = self.state.identified_band(*id);
             let channels = self.record_channels(*id);
             let Some(records) = self.state.records.conditions.get(id) else {
                 continue;
@@ -46,10 +35,6 @@ impl GdcmApp {
                     refusal = Some(Message::new(problem.code, text));
                 }
             }
-        }
-        let page = &mut self.state.records.page;
-        if let RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs = page {
-            *page = RecordsPage::Response;
         }
         if let Some(refusal) = refusal {
             self.notify_error(refusal);
@@ -81,7 +66,6 @@ impl GdcmApp {
         if self.state.records.running.is_empty() && requested > 1 {
             let text = format!("finished: models of {requested} conditions identified");
             self.notify_done(Message::new("identification-finished", text));
-            self.state.records.page = RecordsPage::Conditions;
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
             records.changed = false;
@@ -114,7 +98,8 @@ impl GdcmApp {
             };
             let names = names.join(", ");
             let text = format!("adopted {models} in {conditions} {names}");
-            self.notify_done(Message::new("models-adopted", text));
+            let message = Message::new("models-adopted", text);
+            self.notify_done_with(Activity::Other, message, Some(NoticeAction::Undo));
         }
     }
 

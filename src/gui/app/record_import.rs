@@ -15,8 +15,9 @@ use super::GdcmApp;
 use super::readers::SilentProgress;
 use super::record_reading::{AddedFiles, OwnRecords, ReadRecords};
 use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
+use crate::gui::state::forms::FormKind;
 use crate::gui::state::record_change::RecordChange;
-use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::records::RecordsFold;
 use crate::gui::state::view::View;
 use crate::message::Message;
 
@@ -30,38 +31,65 @@ struct ReadingStart {
 }
 
 impl GdcmApp {
-    /// Reads the records of the displayed condition once a view that needs them is shown.
+    /// Reads the records of the displayed condition once a view that needs them is shown, then
+    /// those of the other conditions.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
-        let records = &self.state.records;
-        if !self.shows_records()
-            || records.reading.is_some()
-            || records.conditions.contains_key(&id)
+        let shown_input = self.state.display.selection.pair.input;
+        if self.state.shows_view(View::Records)
+            && let Some(records) = self.state.records.conditions.get_mut(&id)
         {
+            records.open_on_input(shown_input);
+        }
+        if !self.shows_records() || self.state.records.reading.is_some() {
+            return;
+        }
+        let ids = self.unread_conditions();
+        if ids.is_empty() {
             return;
         }
         self.state.records.example = self.files.loaded.origin.example();
         let own = self.own_records();
-        if !own.has_some(id) {
-            self.records_of(id);
+        if !ids.iter().any(|id| own.has_some(*id)) {
+            for id in ids {
+                self.records_of(id);
+            }
             return;
         }
-        let name = format!("the records of condition {id}");
+        let name = match ids.as_slice() {
+            [only] => format!("the records of condition {only}"),
+            _ => "the records of the other conditions".to_owned(),
+        };
         let sources = self.state.records.sources.clone();
-        self.read_records_in_thread(name, sources, move |channels, stop| {
+        let searched = ids.clone();
+        self.read_records_in_thread(name, sources, searched, move |channels, stop| {
             let mut found = ReadRecords::default();
-            own.read(&[id], channels, &stop, &mut found)?;
+            own.read(&ids, channels, &stop, &mut found)?;
             Ok(found)
         });
     }
 
+    /// Returns the conditions whose own records are to be read next: the displayed one, then all
+    /// others, which the views *Records* and *Requirements* show too.
+    fn unread_conditions(&self) -> Vec<ConditionId> {
+        let known = &self.state.records.conditions;
+        let shown = self.state.condition().id();
+        if !known.contains_key(&shown) {
+            return vec![shown];
+        }
+        let mut unread = Vec::new();
+        for id in self.state.study.dataset.ids() {
+            if !known.contains_key(&id) {
+                unread.push(id);
+            }
+        }
+        unread
+    }
+
     fn shows_records(&self) -> bool {
-        let display = &self.state.display;
-        let arrangement = &display.layout.arrangement;
-        let is_compared = display.judging.requirements_page == RequirementsPage::Histories;
-        arrangement.is_shown(View::Records)
-            || arrangement.is_shown(View::Requirements) && is_compared
+        let arrangement = &self.state.display.layout.arrangement;
+        arrangement.is_shown(View::Records) || arrangement.is_shown(View::Requirements)
     }
 
     /// Returns the source of the conditions' own records.
@@ -78,6 +106,10 @@ impl GdcmApp {
             .into_iter()
             .map(|path| self.files.at_home(path))
             .collect();
+        if self.state.forms.shown == Some(FormKind::AddRecords) {
+            self.state.forms.shown = None;
+            self.state.forms.typed.remove(&FormKind::AddRecords);
+        }
         let sources = self.state.records.sources.clone();
         self.state.records.sources.extend(paths.iter().cloned());
         let name = match paths.first() {
@@ -87,19 +119,20 @@ impl GdcmApp {
         let files = AddedFiles {
             paths,
             own: self.own_records(),
-            shown: self.state.condition().id(),
             loaded: self.state.records.conditions.keys().copied().collect(),
         };
-        self.read_records_in_thread(name, sources, move |channels, stop| {
+        self.read_records_in_thread(name, sources, Vec::new(), move |channels, stop| {
             files.read(channels, &SilentProgress(stop))
         });
     }
 
-    /// Reads records in a thread; `sources` are the files and folders that were added earlier.
+    /// Reads records in a thread; `sources` are the files and folders that were added earlier,
+    /// `searched` the conditions whose own records are read.
     fn read_records_in_thread(
         &mut self,
         name: String,
         sources: Vec<PathBuf>,
+        searched: Vec<ConditionId>,
         read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError>
         + Send
         + 'static,
@@ -110,7 +143,7 @@ impl GdcmApp {
             sources,
         };
         let dataset = Arc::clone(self.state.study.file_dataset());
-        self.state.records.reading = Some(name);
+        self.state.records.reading = Some(name.clone());
         let reading = self.readers.record_reader.join();
         let number = reading.number;
         let read = move || read(&channels, reading.stop);
@@ -120,12 +153,17 @@ impl GdcmApp {
             {
                 return;
             }
-            app.state.records.reading = None;
+            // Another reading may have begun in the meantime.
+            if app.state.records.reading.as_ref() == Some(&name) {
+                app.state.records.reading = None;
+            }
             if let Some(found) = found.and_then(|found| app.value_or_notify(found)) {
                 app.take_records(found, start);
             }
-            // Create an entry, even without records, to prevent a repeated search.
-            app.records_of(app.state.condition().id());
+            // Create entries, even without records, to prevent a repeated search.
+            for id in searched {
+                app.records_of(id);
+            }
         });
     }
 
@@ -143,18 +181,21 @@ impl GdcmApp {
         let ReadRecords {
             own,
             added,
+            unassigned,
             mut faults,
             read_from,
         } = found;
         if let Some(made) = self.made_of_records() {
             faults.extend(made.left_out.iter().cloned());
         }
-        self.state.records.faults = faults;
+        if !faults.is_empty() || !added.is_empty() || !unassigned.is_empty() {
+            self.state.records.faults = faults;
+        }
         self.state.records.read_from.extend(read_from);
         let own_count: usize = own.values().map(Vec::len).sum();
         self.store_own_records(own, start.clock_band_end);
-        if !added.is_empty() {
-            self.store_added_records(added, start);
+        if !added.is_empty() || !unassigned.is_empty() {
+            self.store_added_records(added, unassigned, start);
         } else if own_count > 0 {
             self.notify_done(Message::new("records-read", counted(own_count, "record")));
         }
@@ -178,12 +219,22 @@ impl GdcmApp {
         }
     }
 
-    /// Adds records to their conditions; this can be undone.
+    /// Adds records to their conditions, or to those without a condition; this can be undone.
     fn store_added_records(
         &mut self,
         added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+        unassigned: Vec<LaidOutRecord>,
         start: ReadingStart,
     ) {
+        let has_problems = added
+            .values()
+            .flatten()
+            .chain(&unassigned)
+            .any(|row| !row.problems.is_empty());
+        if has_problems {
+            // Columns are part of adding records: ask for them at once.
+            self.state.records.open_fold = Some(RecordsFold::Columns);
+        }
         let mut before = self.state.records.before(added.keys().copied());
         before.sources = Some(start.sources);
         let mut counts = AddedCounts::default();
@@ -212,8 +263,15 @@ impl GdcmApp {
             records.changed = true;
             counts.conditions += 1;
         }
-        if !before.conditions.is_empty() {
-            let records = counts.new + counts.read_again;
+        let unassigned_before = self.state.records.unassigned.clone();
+        for row in unassigned {
+            counts.count_unassigned(self.state.records.add_unassigned(row));
+        }
+        if counts.unassigned > 0 {
+            before.unassigned = Some(unassigned_before);
+        }
+        if !before.conditions.is_empty() || counts.unassigned > 0 {
+            let records = counts.new + counts.read_again + counts.unassigned;
             self.record_edited(RecordChange::Add { records }, before);
         }
         self.notify_done(Message::new("records-added", counts.words()));
@@ -226,6 +284,8 @@ struct AddedCounts {
     new: usize,
     read_again: usize,
     known: usize,
+    /// Records without a condition.
+    unassigned: usize,
     conditions: usize,
 }
 
@@ -235,6 +295,14 @@ impl AddedCounts {
             AddedRecord::New => self.new += 1,
             AddedRecord::ReadAgain => self.read_again += 1,
             AddedRecord::KnownAlready => self.known += 1,
+        }
+    }
+
+    fn count_unassigned(&mut self, is_new: bool) {
+        if is_new {
+            self.unassigned += 1;
+        } else {
+            self.known += 1;
         }
     }
 
@@ -251,6 +319,12 @@ impl AddedCounts {
         }
         if self.read_again > 0 {
             parts.push(format!("{} read again", counted(self.read_again, "record")));
+        }
+        if self.unassigned > 0 {
+            let records = counted(self.unassigned, "record");
+            parts.push(format!(
+                "{records} without a condition: choose it in the list"
+            ));
         }
         if self.known > 0 && parts.is_empty() {
             let known = counted(self.known, "record");

@@ -1,5 +1,5 @@
 //! Edits of record layouts, the assignment of columns to channels. An edit of one record also
-//! changes similar records, in all conditions where it applies.
+//! changes similar records, in all conditions.
 
 use std::sync::Arc;
 
@@ -28,22 +28,21 @@ impl GdcmApp {
         };
         let dataset = Arc::clone(&self.state.study.dataset);
         let change = LayoutChange {
-            condition,
             is_listed: row.table.entry_of_dataset(&dataset).is_some(),
             table: Arc::clone(&row.table),
             former: row.layout.clone(),
-            layout,
+            layout: layout.assuming_units_of_channels(),
             dataset,
         };
         let columns = RecordChange::Columns {
             record: change.table.name.clone(),
         };
-        self.edit_layouts(columns, |id, row| change.layout_for(id, row));
+        self.edit_layouts(columns, |row| change.layout_for(row));
     }
 
-    /// Assumes the units of the dataset's channels for columns whose file states none.
-    pub(super) fn take_dataset_units(&mut self) {
-        self.edit_layouts(RecordChange::DatasetUnits, |_, row| {
+    /// Confirms the assumed units, in the records of all conditions.
+    pub(super) fn confirm_units(&mut self) {
+        self.edit_layouts(RecordChange::DatasetUnits, |row| {
             Some(row.layout.in_units_of_channels())
         });
     }
@@ -53,7 +52,7 @@ impl GdcmApp {
     fn edit_layouts(
         &mut self,
         change: RecordChange,
-        layout_for: impl Fn(ConditionId, &LaidOutRecord) -> Option<RecordLayout>,
+        layout_for: impl Fn(&LaidOutRecord) -> Option<RecordLayout>,
     ) {
         let ids: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
         let mut changed = RecordsBefore::default();
@@ -63,14 +62,18 @@ impl GdcmApp {
             let Some(records) = self.state.records.conditions.get_mut(&id) else {
                 continue;
             };
-            let is_changed =
-                change_layouts(&mut records.rows, &channels, |row| layout_for(id, row));
+            let is_changed = change_layouts(&mut records.rows, &channels, &layout_for);
             if is_changed {
                 records.changed = true;
                 changed.conditions.insert(id, before);
             }
         }
-        if !changed.conditions.is_empty() {
+        let channels = self.record_channels(self.state.condition().id());
+        let unassigned = self.state.records.unassigned.clone();
+        if change_layouts(&mut self.state.records.unassigned, &channels, &layout_for) {
+            changed.unassigned = Some(unassigned);
+        }
+        if !changed.conditions.is_empty() || changed.unassigned.is_some() {
             self.record_edited(change, changed);
         }
     }
@@ -78,8 +81,6 @@ impl GdcmApp {
 
 /// New layout of a record, also for similar records.
 struct LayoutChange {
-    /// Condition with the edited record.
-    condition: ConditionId,
     /// The edited record.
     table: Arc<RecordTable>,
     former: RecordLayout,
@@ -90,16 +91,14 @@ struct LayoutChange {
 }
 
 impl LayoutChange {
-    /// Returns the new layout of a record; `None` if it keeps its layout. The layout of records
-    /// that the dataset lists is stored there, so a change applies only to listed records of the
-    /// same condition, or only to unlisted records.
-    fn layout_for(&self, id: ConditionId, row: &LaidOutRecord) -> Option<RecordLayout> {
+    /// Returns the new layout of a record; `None` if it keeps its layout. Records that the dataset
+    /// lists are in the dataset's units, so a change applies only to listed or only to unlisted
+    /// records.
+    fn layout_for(&self, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());
         }
-        let is_listed = row.table.entry_of_dataset(&self.dataset).is_some();
-        let is_reached = id == self.condition || !self.is_listed;
-        if !is_reached || is_listed != self.is_listed {
+        if row.table.entry_of_dataset(&self.dataset).is_some() != self.is_listed {
             return None;
         }
         let change = [&self.former, &self.layout];

@@ -11,6 +11,8 @@ use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{DatasetOrigin, FileError, FolderProgress};
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::names::standard_patterns;
+use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{
     LaidOutRecord, RecordChannels, RecordTable, TimeWish, with_topics_joined,
 };
@@ -24,6 +26,8 @@ pub(super) struct ReadRecords {
     pub(super) own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     /// Records from the files that the engineer added.
     pub(super) added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+    /// Added records whose names match no condition.
+    pub(super) unassigned: Vec<LaidOutRecord>,
     pub(super) faults: Vec<String>,
     /// File paths, by SHA-256.
     pub(super) read_from: BTreeMap<String, PathBuf>,
@@ -145,20 +149,19 @@ fn read_listed_records(
     }
 }
 
-/// Files that the engineer added, and the conditions to which their records may belong.
+/// Files that the engineer added.
 pub(super) struct AddedFiles {
     pub(super) paths: Vec<PathBuf>,
     pub(super) own: OwnRecords,
-    /// The displayed condition, for records whose names match no condition.
-    pub(super) shown: ConditionId,
     /// Conditions whose own records are already loaded.
     pub(super) loaded: BTreeSet<ConditionId>,
 }
 
 impl AddedFiles {
-    /// Reads the records in the files and assigns each to the condition in its name, or else to the
-    /// displayed condition. Also reads the own records of these conditions if they are not yet
-    /// loaded.
+    /// Reads the records in the files and assigns each to the condition in the name of its file or
+    /// folder; other records remain unassigned. Units that neither the files nor the samples
+    /// determine are assumed to be the dataset's. Also reads the own records of these conditions if
+    /// they are not yet loaded.
     ///
     /// # Errors
     /// The fault in a path; faults in single files are collected.
@@ -176,13 +179,23 @@ impl AddedFiles {
             found.faults.push(format!("no record: {words}"));
         }
         for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
-            if let Some(path) = find_file(&table.source.file, &self.paths) {
-                found.read_from.insert(table.source.sha256.clone(), path);
+            let file = find_file(&table.source.file, &self.paths);
+            if let Some(path) = &file {
+                found
+                    .read_from
+                    .insert(table.source.sha256.clone(), path.clone());
             }
             let row = laid_out(table, channels, Some(&self.own.dataset));
-            let own_condition = row.guess.condition_of(&self.own.dataset);
-            let id = own_condition.unwrap_or(self.shown);
-            found.added.entry(id).or_default().push(row);
+            let layout = row.layout.assuming_units_of_channels();
+            let row = if layout == row.layout {
+                row
+            } else {
+                row.laid_out(layout, channels)
+            };
+            match condition_of(&row, file.as_deref(), &self.own.dataset) {
+                Some(id) => found.added.entry(id).or_default().push(row),
+                None => found.unassigned.push(row),
+            }
         }
         let mut unloaded: Vec<ConditionId> = found.added.keys().copied().collect();
         unloaded.retain(|id| !self.loaded.contains(id));
@@ -190,6 +203,59 @@ impl AddedFiles {
             .read(&unloaded, channels, &progress.stop(), &mut found)?;
         Ok(found)
     }
+}
+
+/// Returns the condition of an added record: the only condition of the dataset; the condition whose
+/// entry in the dataset names the record; or the condition in the names of the record, of its file
+/// and of the folder of the file, given by its number or by an airspeed that no other condition
+/// has.
+fn condition_of(
+    row: &LaidOutRecord,
+    file: Option<&Path>,
+    dataset: &Dataset,
+) -> Option<ConditionId> {
+    if let [only] = dataset.conditions() {
+        return Some(only.id());
+    }
+    if let Some((listed, _)) = row.table.entry_of_dataset(dataset) {
+        return Some(listed);
+    }
+    let mut guesses = vec![row.guess.clone()];
+    let folder = file
+        .and_then(|path| path.parent())
+        .and_then(|parent| parent.file_name());
+    if let Some(folder) = folder {
+        let name = folder.to_string_lossy();
+        guesses.push(RecordGuess::from_name(&name, standard_patterns()));
+    }
+    for guess in &guesses {
+        if let Some(id) = guess.condition_of(dataset) {
+            return Some(id);
+        }
+        // A number without a condition is a mistake that an airspeed must not hide.
+        if guess.condition.is_some() {
+            return None;
+        }
+    }
+    for guess in &guesses {
+        if let Some(airspeed_kt) = guess.airspeed_kt {
+            return only_condition_at(airspeed_kt, dataset);
+        }
+    }
+    None
+}
+
+/// Returns the condition at an airspeed \[kt\]; `None` if there are several.
+fn only_condition_at(airspeed_kt: f64, dataset: &Dataset) -> Option<ConditionId> {
+    let mut at_airspeed = dataset
+        .conditions()
+        .iter()
+        .filter(|condition| condition.flight_state().airspeed_kt == airspeed_kt);
+    let first = at_airspeed.next()?;
+    if at_airspeed.next().is_some() {
+        return None;
+    }
+    Some(first.id())
 }
 
 /// Assigns the columns of a record to channels: as the dataset states, or by a proposal without a

@@ -8,7 +8,7 @@ use gdcm_io::{LoadedDataset, Opened};
 use super::GdcmApp;
 use super::disk_watch::ChangedFile;
 use super::document_files::ReadFor;
-use crate::gui::state::notices::MessageBar;
+use crate::gui::state::notices::{Activity, MessageBar, NoticeAction};
 use crate::message::Message;
 
 impl GdcmApp {
@@ -65,7 +65,8 @@ impl GdcmApp {
         self.study_changed();
         if differences.is_empty() {
             let text = format!("reloaded {name}: every decision still applies");
-            self.notify_done(Message::new("reloaded", text));
+            let message = Message::new("reloaded", text);
+            self.notify_done_with(Activity::Other, message, Some(NoticeAction::Undo));
         } else {
             self.state
                 .message_bars

@@ -18,44 +18,50 @@ use super::document_files::study_name;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::Activity;
 use crate::message::Message;
 
 impl GdcmApp {
     /// Asks where to write the report; shows an error if the newest results are not available.
     pub(super) fn ask_report(&mut self) {
-        let analysis = self.analysis_to_write("write the report");
+        let analysis = self.analysis_to_write();
         if self.value_or_notify(analysis).is_none() {
             return;
         }
         let study = self.files.saved.path.as_deref();
         let name = report_name(study.or(self.files.loaded.path()), &self.files.stem());
         let path = self.state.forms.typed_in(FormKind::Report);
-        *path = Path::new(path.trim())
-            .with_file_name(name)
-            .display()
-            .to_string();
+        *path = self.files.proposed_path(path, &name);
         self.state.forms.shown = Some(FormKind::Report);
     }
 
     /// Starts writing the report; asks before overwriting a file.
     pub(super) fn write_report(&mut self, path: PathBuf) {
-        let Some(analysis) = self.value_or_notify(self.analysis_to_write("write the report"))
-        else {
+        let path = self.files.at_home(path);
+        self.start_report(path, self.postponed.existing);
+    }
+
+    /// Starts writing the report to a path; `existing` is the treatment of an existing file.
+    pub(super) fn start_report(&mut self, path: PathBuf, existing: Existing) {
+        let Some(analysis) = self.value_or_notify(self.analysis_to_write()) else {
             return;
         };
-        let path = self.files.at_home(path);
-        if let Err(error) = self.outputs().check(&[&path]) {
+        let outputs = OutputSet::new(existing, self.files.inputs());
+        if let Err(error) = outputs.check(&[&path]) {
             return self.report_failed(error, path);
         }
         self.state.forms.shown = None;
+        self.files.last_folder = path.parent().map(Path::to_owned);
+        self.work.report_number += 1;
         self.work.report_job = Some(ReportJob {
+            number: self.work.report_number,
             // `asked_with`: the live analysis ignores the requirements and may contain older ones.
             analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
             records: self.state.records.history_records(),
             known: self.state.records.known_poles(),
             source: ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref()),
             path,
-            existing: self.postponed.existing,
+            existing,
             inputs: self.files.inputs(),
         });
     }
@@ -67,7 +73,8 @@ impl GdcmApp {
             Ok(()) => {
                 let path = sanitized_path(&job.path);
                 let text = format!("wrote the report {path}");
-                self.notify_done(Message::new("report-written", text));
+                let message = Message::new("report-written", text);
+                self.notify_written_to(Activity::Report, message, &job.path);
             }
             Err(error) => self.report_failed(error, job.path),
         }
@@ -76,7 +83,7 @@ impl GdcmApp {
     /// Asks whether to overwrite the file if it exists; shows any other error.
     fn report_failed(&mut self, error: FileError, path: PathBuf) {
         let again = Command::Output(OutputCommand::WriteReport(path));
-        self.notify_written(Err(error), FormKind::Report, again);
+        self.notify_not_written(error, FormKind::Report, again);
     }
 
     /// Shows an error if a running report was stopped, by the engineer or by a panic.
@@ -84,7 +91,8 @@ impl GdcmApp {
         if let Some(job) = self.work.report_job.take() {
             let path = sanitized_path(&job.path);
             let text = format!("{path} was not written: the report was stopped");
-            self.notify_error(Message::new("report-stopped", text));
+            let message = Message::new("report-stopped", text);
+            self.notify_error_of(Activity::Report, message, None);
         }
     }
 }
@@ -92,6 +100,9 @@ impl GdcmApp {
 /// Job that builds and writes a report; takes seconds, because it draws every plot.
 #[derive(Clone, Debug)]
 pub struct ReportJob {
+    /// Number of the report in the session, by which jobs are told apart: records may contain NaN,
+    /// and would then differ from themselves.
+    pub number: u64,
     pub analysis: Arc<Analysis>,
     /// Open flight records for the time-history comparison.
     pub records: Vec<HistoryRecords>,
@@ -106,12 +117,7 @@ pub struct ReportJob {
 
 impl PartialEq for ReportJob {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.analysis, &other.analysis)
-            && self.source == other.source
-            && self.path == other.path
-            && self.existing == other.existing
-            && self.records == other.records
-            && self.known == other.known
+        self.number == other.number
     }
 }
 

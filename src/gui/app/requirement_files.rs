@@ -44,7 +44,7 @@ impl GdcmApp {
     pub(super) fn ask_write_tolerances(&mut self) {
         let field = self.state.forms.typed_in(FormKind::WriteTolerances);
         if field.is_empty() {
-            "tolerances.json".clone_into(field);
+            *field = self.files.proposed_path("", "tolerances.json");
         }
         self.state.forms.shown = Some(FormKind::WriteTolerances);
     }

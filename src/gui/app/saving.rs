@@ -12,6 +12,7 @@ use super::file_dialogs::DialogPurpose;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::message::Message;
 
 impl GdcmApp {
@@ -41,7 +42,8 @@ impl GdcmApp {
             }
             Err(error) => {
                 self.postponed.forget_losing();
-                self.notify_error(error);
+                let remedy = Some(NoticeAction::SaveElsewhere);
+                self.notify_error_of(Activity::Saving, error, remedy);
             }
         }
     }
@@ -57,7 +59,7 @@ impl GdcmApp {
         self.state.study_name = study_name(Some(&path));
         self.state.unsaved = false;
         let text = format!("saved {}", sanitized_path(&path));
-        self.notify_done(Message::new("saved", text));
+        self.notify_written_to(Activity::Saving, Message::new("saved", text), &path);
         self.files.saved = SavedStudy {
             path: Some(path),
             study: Some(self.state.study.clone()),

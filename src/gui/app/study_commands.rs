@@ -1,9 +1,12 @@
 //! Carries out commands about decisions and their history.
 
+use std::sync::Arc;
+
 use gdcm_study::{Edit, Study};
 
 use super::GdcmApp;
 use crate::gui::commands::study::StudyCommand;
+use crate::gui::state::notices::Activity;
 use crate::gui::state::records::RecordsState;
 use crate::gui::state::window_state::{State, UndoHistory};
 
@@ -11,7 +14,11 @@ impl GdcmApp {
     pub(super) fn carry_out_study(&mut self, command: StudyCommand) {
         match command {
             StudyCommand::Edit(edit) => self.decide(&edit),
-            StudyCommand::EndEdit => self.state.history.seal(),
+            StudyCommand::DragEdit => self.set_setting_dragged(true),
+            StudyCommand::EndEdit => {
+                self.set_setting_dragged(false);
+                self.state.history.seal();
+            }
             // A step may also contain an edit of flight records, which are not part of the study:
             // `exchange` restores them.
             StudyCommand::Undo => self.restore_study(|history, study, records| {
@@ -24,6 +31,12 @@ impl GdcmApp {
         }
     }
 
+    fn set_setting_dragged(&mut self, is_dragged: bool) {
+        if let Some(session) = &mut self.state.settings_session {
+            session.is_dragged = is_dragged;
+        }
+    }
+
     /// Applies a decision to the study and adds it to the history; reports a refusal.
     pub(super) fn decide(&mut self, edit: &Edit) {
         let before = self.state.study.clone();
@@ -33,7 +46,7 @@ impl GdcmApp {
                 self.state.history.record(before, edit);
                 self.study_changed();
             }
-            Err(refusal) => self.notify_error(refusal),
+            Err(refusal) => self.notify_error_of(Activity::Decision, refusal, None),
         }
     }
 
@@ -49,16 +62,18 @@ impl GdcmApp {
             records,
             ..
         } = &mut self.state;
-        if let Some(study) = find(history, study, records) {
-            self.state.study = study;
+        if let Some(mut restored) = find(history, study, records) {
+            // The choices of an export are no step of the history.
+            restored.exports = Arc::clone(&study.exports);
+            self.state.study = restored;
             self.study_changed();
         }
     }
 
-    /// Updates everything that depends on the study: the notice, the responses that were ever
+    /// Updates everything that depends on the study: obsolete toasts, the responses that were ever
     /// constrained, the mark for unsaved decisions, the selected dataset file and the recovery file.
     pub(super) fn study_changed(&mut self) {
-        self.state.notice = None;
+        self.state.notices.follow_decision();
         self.state
             .display
             .gains

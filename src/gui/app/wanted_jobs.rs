@@ -7,6 +7,7 @@ use gdcm_method::correction::Outcome;
 use gdcm_study::jobs::analysis_jobs::{ProofJob, TogglesJob, UncertaintyJob};
 use gdcm_study::jobs::curve_jobs::CurvesJob;
 use gdcm_study::jobs::job::Job;
+use gdcm_study::jobs::trade_off_job::TradeOffJob;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 
 use crate::gui::state::view::View;
@@ -38,9 +39,19 @@ pub(super) fn curves_job(state: &State) -> CurvesJob {
     }
 }
 
+/// Returns the job that computes the trade-off of α in the displayed condition; `None` while the
+/// settings are closed.
+pub(super) fn trade_off_job(state: &State) -> Option<TradeOffJob> {
+    state.settings_session.as_ref()?;
+    TradeOffJob::new(state.analysis()?, state.condition().id())
+}
+
 /// Returns the job that computes the cost of constraining or releasing each entry, in the displayed
 /// condition.
 pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
+    if state.is_setting_dragged() {
+        return None;
+    }
     let condition = state.analysis()?.condition(state.condition().id())?.clone();
     Some(TogglesJob { condition })
 }
@@ -50,6 +61,9 @@ pub(super) fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
     };
+    if state.is_setting_dragged() {
+        return Vec::new();
+    }
     let shown = analysis.condition(state.condition().id());
     let others = analysis.conditions.values().flatten();
     let mut jobs: Vec<ProofJob> = Vec::new();
@@ -66,13 +80,13 @@ pub(super) fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// Returns the job that computes the error bars; `None` while the results are being recomputed or
+/// Returns the job that computes the error bars; `None` while a setting is dragged, and while the results are being recomputed or
 /// are not yet drawn, so that the live analysis can use all cores.
 pub(super) fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis()?;
     let is_drawn = results.is_painted || results.uncertainty.is_some();
-    if results.is_behind() || !is_drawn {
+    if results.is_behind() || !is_drawn || state.is_setting_dragged() {
         return None;
     }
     let analysis = results.analysis.clone()?.into();

@@ -88,6 +88,7 @@ impl GdcmApp {
                 saved,
                 earlier: Vec::new(),
                 made_of_records: None,
+                last_folder: None,
                 disk,
                 directory: setup.directory,
                 home: setup.home,
@@ -102,6 +103,7 @@ impl GdcmApp {
                 needs: Vec::new(),
                 newest_request: None,
                 report_job: None,
+                report_number: 0,
                 replies,
                 reply_receiver,
             },
@@ -214,6 +216,7 @@ impl eframe::App for GdcmApp {
 
     fn logic(&mut self, _: &Context, _frame: &mut eframe::Frame) {
         self.receive_replies();
+        self.pass_time_of_toasts();
         self.look_for_records();
         self.watch_disk();
         self.guard_closing();

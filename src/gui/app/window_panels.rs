@@ -12,12 +12,14 @@ use crate::gui::panels::menu_bar::menu_bar_ui;
 use crate::gui::panels::message_bars::message_bars_ui;
 use crate::gui::panels::sheet_frame::sheet_ui;
 use crate::gui::panels::{
-    centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, right_panel,
-    start_page, status_bar,
+    centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, record_conditions,
+    right_panel, settings_panel, start_page, status_bar,
 };
 use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::assembling::assembling_ui;
+use crate::gui::views::records::{records_panel_ui, records_sheet_ui};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 
@@ -65,7 +67,7 @@ pub(super) fn panels_ui(
     sheets_ui(ui, centre, state, palette, commands);
 }
 
-/// Draws the left panel with conditions and models, in full or as a narrow rail.
+/// Draws the left panel with conditions and models, or their records, in full or as a narrow rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     let layout = &state.display.layout;
@@ -86,6 +88,9 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
                     rail::rail_ui(ui, state, palette, commands);
                 });
         });
+        if state.display.layout.settings_open {
+            settings_sheet_ui(ui, state, palette, commands);
+        }
         return;
     }
     restore_panel_size(ui, "conditions and models");
@@ -103,19 +108,48 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             });
             frame.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
+                let has_records = state.display.layout.arrangement.view() == View::Records;
                 let most = 0.45 * ui.available_height();
                 ScrollArea::vertical()
                     .id_salt("conditions")
                     .max_height(most)
                     .auto_shrink([false, true])
                     .show(ui, |ui| {
-                        conditions_panel::conditions_ui(ui, state, palette, commands);
+                        if has_records {
+                            record_conditions::record_conditions_ui(ui, state, palette, commands);
+                        } else {
+                            conditions_panel::conditions_ui(ui, state, palette, commands);
+                        }
                     });
                 ui.separator();
-                models_panel::models_ui(ui, state, palette, commands);
+                if state.display.layout.settings_open {
+                    settings_panel::settings_ui(ui, state, palette, commands);
+                } else if has_records {
+                    records_panel_ui(ui, state, palette, commands);
+                } else {
+                    models_panel::models_ui(ui, state, palette, commands);
+                }
             });
         });
     });
+}
+
+/// Draws the settings beside the rail. They take their room from the views, which are laid out once
+/// when the settings are opened, so that no value is covered while a slider is dragged.
+fn settings_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let frame = Frame::new().fill(palette.panel).inner_margin(Margin {
+        left: 12,
+        right: 12,
+        top: 4,
+        bottom: 0,
+    });
+    Panel::left("settings beside the rail")
+        .frame(frame)
+        .resizable(false)
+        .exact_size(272.0)
+        .show(ui, |ui| {
+            settings_panel::settings_ui(ui, state, palette, commands)
+        });
 }
 
 /// Draws the right panel: verdict, result, matrix, and export.
@@ -160,6 +194,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
         Sheet::Derivation => derivation_sheet::derivation_sheet_ui(ui, state, palette, commands),
+        Sheet::Records => records_sheet_ui(ui, state, palette, commands),
         Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
         Sheet::Models => {
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)

@@ -167,6 +167,11 @@ fn help_entries() -> impl Iterator<Item = Entry> {
         )
         .keys(Modifiers::NONE, Key::F1),
         Entry::new(
+            "Messages",
+            "Messages of this session",
+            Command::show_form(FormKind::Messages),
+        ),
+        Entry::new(
             "Guided tour",
             "Five steps through the window",
             LayoutCommand::StartTour,

@@ -5,11 +5,12 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_study::AcrossRole;
 
+use crate::gui::state::across_display::{AcrossConditions, AcrossPage};
 use crate::gui::state::assessment_display::AssessmentDisplay;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::physics_display::PhysicsPage;
-use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::widgets::palette::PlotStyle;
 
 /// Changes the content of a view; no result depends on it.
@@ -31,16 +32,22 @@ pub enum DisplayCommand {
     Overlay(Option<String>),
     /// Shows or hides the evidence for the schedule beside the net gains.
     ShowEvidence(bool),
-    /// Selects the model that is drawn for every condition.
-    ShowAcross(AcrossRole),
+    /// Shows or hides the models of a role in the plots across conditions.
+    ShowAcross(AcrossRole, bool),
+    /// Shows only the models of this role in the plots across conditions.
+    ShowAcrossAlone(AcrossRole),
+    /// Selects the conditions in the plots across conditions.
+    ShowAcrossConditions(AcrossConditions),
+    /// Selects the page of the plots across conditions.
+    ShowAcrossPage(AcrossPage),
     /// Changes the assessed quantity or its representation.
     Assess(AssessmentDisplay),
     /// Selects a physics parameter by name.
     ShowParameter(String),
     /// Shows a page of the Physics view.
     ShowPhysics(PhysicsPage),
-    /// Shows a page of the Requirements view.
-    ShowRequirements(RequirementsPage),
+    /// Changes the selected requirement, its details, or the order of the grid.
+    ShowRequirements(RequirementsDisplay),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.
     ShowTest(bool),
     SetFrequencyUnit(FrequencyUnit),

@@ -82,11 +82,11 @@ fn save_entries() -> [Entry; 2] {
     ]
 }
 
-fn export_entries() -> [Entry; 3] {
+fn export_entries() -> [Entry; 2] {
     [
         Entry::new(
             "Export corrections…",
-            "Write corrections.json, corrections.csv and assessment.csv",
+            "All values, functions, tables and corrected models for other tools; the report",
             Command::show_form(FormKind::Export),
         )
         .keys(CTRL, Key::E),
@@ -94,11 +94,6 @@ fn export_entries() -> [Entry; 3] {
             "Write report…",
             "Full report with every plot, ready to print",
             OutputCommand::AskReport,
-        ),
-        Entry::new(
-            "Export as…",
-            "For MATLAB, Python, C or a lookup table; corrected models as state-space",
-            Command::show_form(FormKind::ExportAs),
         ),
     ]
 }

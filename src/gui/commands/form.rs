@@ -26,5 +26,10 @@ pub enum FormCommand {
     AskReason(ModelId),
     /// Shows why a typed or dragged value is refused.
     Refuse(Message),
-    DismissNotice,
+    /// Removes the toast with this number.
+    DismissToast(u64),
+    /// Opens or closes the list of toasts.
+    ListToasts(bool),
+    /// Lets no time pass for the toasts in this frame, because the pointer is on them.
+    HoldToasts,
 }

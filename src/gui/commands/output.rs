@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::export::ExportFormat;
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
+use gdcm_study::results::export_note::ExportRemedy;
 use gdcm_words::Table;
 
 use crate::gui::state::panel_tables::TableKind;
@@ -15,10 +15,14 @@ use crate::gui::state::view::View;
 pub enum OutputCommand {
     /// Opens the desktop's dialog for the export folder.
     AskExportFolder,
-    /// Writes the corrections selected in the export form.
+    /// Writes the files of the export dialog, once its dry run has ended.
     Export,
-    /// Writes all corrections in a format for other tools.
-    ExportAs(ExportFormat, PathBuf),
+    /// Carries out a remedy that the export dialog offers.
+    ApplyExportRemedy(ExportRemedy),
+    /// Copies the command line that writes the files of the export dialog.
+    CopyExportCommand,
+    /// Opens a folder in the desktop.
+    ShowFolder(PathBuf),
     /// Copies text to the clipboard.
     CopyText(String),
     /// Copies a table to the clipboard as text.

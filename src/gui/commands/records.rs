@@ -2,21 +2,33 @@
 
 use std::path::PathBuf;
 
+use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::simulation::Signal;
 use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_sysid::identification::{Hold, SearchSpace};
 use gdcm_sysid::records::RecordLayout;
 
-use crate::gui::state::records::{RecordsPage, TimeModel};
+use crate::gui::state::column_groups::RecordPlace;
+use crate::gui::state::records::{RecordsFold, RecordsPage, TimeRole};
 
 /// A command in the Records view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordsCommand {
     /// Read files, and folders with all their files.
     Add(Vec<PathBuf>),
-    /// Choose files with the desktop's dialog.
+    /// Choose files and archives with the desktop's dialog.
     AskFiles,
+    /// Choose a folder with the desktop's dialog.
+    AskFolder,
+    /// Type the path of a file, a folder or an archive.
+    AskPath,
+    /// Assign these added records without a condition to a condition.
+    Assign(Vec<usize>, ConditionId),
+    /// Remove an added record without a condition.
+    Discard(usize),
+    /// Unfold a section below the records, or fold it.
+    ShowFold(Option<RecordsFold>),
     /// Ask for the channels in a dataset to be made from the displayed records.
     AskDataset,
     /// Make a dataset with the requested channels, and open it.
@@ -45,31 +57,37 @@ pub enum RecordsCommand {
     SetSearch(SearchSpace),
     /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
-    /// Draw a model's response to the recorded inputs, or hide it.
-    ShowTimeModel(TimeModel, bool),
-    /// Assume the unit of the dataset's channel wherever a file states none, in the records of all
-    /// conditions.
-    TakeDatasetUnits,
-    /// Show a record with unclear units, from any condition, on the Columns page.
-    ShowUnclear,
+    /// The field asked for by [`Self::ShowAdvanced`] has the focus.
+    AdvancedFocused,
+    /// Draw the curves of a role over time, or hide them.
+    ShowTimeRole(TimeRole, bool),
+    /// Draw these outputs over time below the output in focus.
+    ShowOutputs(Vec<usize>),
+    /// Confirm the assumed units, in the records of all conditions.
+    ConfirmUnits,
+    /// Show the first record with assumed units, from any condition, on the Columns page.
+    CheckUnits,
+    /// Show the columns of a record.
+    ShowColumns(RecordPlace),
     /// Add the part between two times \[s\] as a separate record, used instead of the whole.
     AddPart(usize, [f64; 2]),
+    /// Move the ends \[s\] of the part in this row.
+    MovePart(usize, [f64; 2]),
     /// Remove the part of a record in this row.
     RemovePart(usize),
-    /// Set whether dragging in the time charts selects parts of a record.
-    ChooseParts(bool),
     /// Show an input's spectrogram beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
     Show(RecordsPage),
     /// Identify models for the displayed condition.
     Identify,
-    /// Identify models for every condition with records.
+    /// Identify models for every condition with records, the displayed one first. If some have a
+    /// current fit, only for the others.
     IdentifyAll,
     /// Stop the identification.
     Stop,
     /// Put the identified models into the displayed condition.
     Take(OfferedModels),
-    /// Put the identified models into every condition for which models were identified.
+    /// Put the models of every finished fit that is not yet in the study into its condition.
     TakeAll(OfferedModels),
     /// Restore the models from the dataset's file in the displayed condition.
     Return,

@@ -9,6 +9,16 @@ use crate::gui::state::window_state::UndoStep;
 pub fn step_name(step: &UndoStep) -> String {
     match &step.change {
         Change::Decision(edit) => edit_text(edit, &step.study.dataset),
+        Change::Settings(edits) => {
+            let names: Vec<String> = edits
+                .iter()
+                .map(|edit| edit_text(edit, &step.study.dataset))
+                .collect();
+            match names.as_slice() {
+                [first, second] => format!("{first}, {second}"),
+                _ => format!("change {} settings", names.len()),
+            }
+        }
         Change::Beside(change) => change.name(),
         Change::Reload { file } => format!("reload {file}"),
     }

@@ -7,6 +7,8 @@ use gdcm_study::Edit;
 pub enum StudyCommand {
     /// Takes a decision about the study.
     Edit(Edit),
+    /// Reports that a setting is being dragged; long computations wait until `EndEdit`.
+    DragEdit,
     /// Completes the current decision, for example when a slider is released.
     EndEdit,
     Undo,

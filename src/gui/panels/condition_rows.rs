@@ -70,6 +70,10 @@ const RAIL: RowLayout = RowLayout {
 const MOST_PITCH: f32 = 26.0;
 /// Half the width of a cell \[pt\].
 pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
+/// Minimum gap between two cells \[pt\].
+const LEAST_GAP: f32 = 3.0;
+/// Width of the frame around the cell in focus \[pt\].
+const FOCUS_WIDTH: f32 = 1.5;
 /// Height of a cell \[pt\].
 pub(super) const CELL_HEIGHT: f32 = 12.0;
 /// Space at the right end of a row, for the mark of open tasks \[pt\].
@@ -126,7 +130,27 @@ impl<'a> ConditionRows<'a> {
 
     /// Returns the horizontal centre of the column at `place`.
     pub(super) fn center(&self, row: Rect, place: usize) -> f32 {
-        row.left() + self.layout.cells_left + self.pitch * place as f32 + HALF_CELL_WIDTH
+        let first = row.left() + self.layout.cells_left + self.half_width();
+        first + self.pitch * place as f32
+    }
+
+    /// Returns half the width of a cell \[pt\]; narrow columns leave a gap of [`LEAST_GAP`].
+    fn half_width(&self) -> f32 {
+        HALF_CELL_WIDTH.min(0.5 * (self.pitch - LEAST_GAP))
+    }
+
+    /// Returns the place of a cell.
+    fn cell(&self, row: Rect, place: usize) -> Rect {
+        let center = pos2(self.center(row, place), row.center().y);
+        Rect::from_center_size(center, vec2(2.0 * self.half_width(), CELL_HEIGHT))
+    }
+
+    /// Returns the inner edge of the frame around a cell. The frame stays within the gaps beside
+    /// the cell.
+    fn focus_frame(&self, cell: Rect) -> Rect {
+        let gap = self.pitch - cell.width();
+        let margin = (gap - FOCUS_WIDTH).clamp(0.0, 2.0);
+        cell.expand2(vec2(margin, 2.0))
     }
 
     /// Paints the mark of a condition as in the Net gain view: the shape shows the altitude class,
@@ -212,11 +236,7 @@ impl<'a> ConditionRows<'a> {
         let id = condition.id();
         let marks = Marks::new(state, id);
         let flight_state = condition.flight_state();
-        let name = format!(
-            "Condition {id}: {}{}",
-            flight_state_words(flight_state),
-            marks.after_name()
-        );
+        let name = condition_name(condition, &marks);
         let look = RowLook {
             is_selected: id == state.condition().id(),
             is_pointed: state.display.selection.hovered_condition == Some(id),
@@ -268,27 +288,17 @@ impl<'a> ConditionRows<'a> {
         commands: &mut Vec<Command>,
     ) {
         let id = marks.condition;
+        let mut focused = None;
         for (place, column) in self.columns.iter().enumerate() {
             let Some(worst) = cost_of_column(self.state, id, column) else {
                 continue;
             };
-            let corner = pos2(
-                self.center(row, place) - HALF_CELL_WIDTH,
-                row.center().y - 0.5 * CELL_HEIGHT,
-            );
-            // Narrow columns leave a gap of 2 pt between their cells.
-            let width = HALF_CELL_WIDTH.min(0.5 * self.pitch - 1.5);
-            let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, CELL_HEIGHT));
+            let cell = self.cell(row, place);
             paint_cost(ui, cell, worst.cost, palette);
             let is_focus = column.pairs.contains(&self.state.display.selection.pair)
                 && id == self.state.condition().id();
             if is_focus && !self.is_rail {
-                ui.painter().rect_stroke(
-                    cell.expand(2.0),
-                    4.0,
-                    Stroke::new(1.5, palette.accent),
-                    StrokeKind::Outside,
-                );
+                focused = Some(cell);
             }
             let response = ui.interact(cell, ui.scope_id().with(("cost", id, place)), Sense::CLICK);
             let words = cost_words(self.state, id, column, &worst);
@@ -300,6 +310,13 @@ impl<'a> ConditionRows<'a> {
                     Command::Selection(SelectionCommand::FocusPair(worst.pair)),
                 ]);
             }
+        }
+        // The frame lies above the cells on both sides.
+        if let Some(cell) = focused {
+            let stroke = Stroke::new(FOCUS_WIDTH, palette.accent);
+            let frame = self.focus_frame(cell);
+            ui.painter()
+                .rect_stroke(frame, 4.0, stroke, StrokeKind::Outside);
         }
     }
 }
@@ -337,6 +354,16 @@ fn cost_words(
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
 }
 
+/// Returns the accessible name of a row: "Condition 10: 60 kt, low altitude, high weight".
+pub(super) fn condition_name(condition: &Condition, marks: &Marks) -> String {
+    format!(
+        "Condition {}: {}{}",
+        condition.id(),
+        flight_state_words(condition.flight_state()),
+        marks.after_name()
+    )
+}
+
 /// "60 kt, low altitude, high weight".
 fn flight_state_words(state: &FlightState) -> String {
     let mut words = format!("{} kt", state.airspeed_kt);
@@ -347,4 +374,38 @@ fn flight_state_words(state: &FlightState) -> String {
         words.push_str(&format!(", {weight} weight"));
     }
     words
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_io::embedded_example;
+    use gdcm_study::decisions::setting;
+    use gdcm_study::{CouplingCorrection, Study};
+
+    use super::*;
+
+    #[test]
+    fn the_frame_of_a_cell_does_not_reach_the_cells_beside_it() {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        let with_off_column = setting::COUPLINGS.to(CouplingCorrection::Mixing);
+        for edit in [None, Some(with_off_column)] {
+            if let Some(edit) = edit {
+                study.apply(&edit).unwrap();
+            }
+            let state = State::new(study.clone(), String::new(), Vec::new());
+            for width in [230.0, 248.0, 300.0] {
+                let rows = ConditionRows::list(&state, width);
+                let row = Rect::from_min_size(pos2(10.0, 0.0), vec2(width, 20.0));
+                let last = rows.columns().len() - 1;
+                for place in 0..last {
+                    let reach = |cell: Rect| rows.focus_frame(cell).expand(FOCUS_WIDTH);
+                    let cell = rows.cell(row, place);
+                    let next = rows.cell(row, place + 1);
+                    assert!(reach(cell).right() <= next.left() + 0.01, "{width}");
+                    assert!(reach(next).left() >= cell.right() - 0.01, "{width}");
+                }
+                assert!(rows.cell(row, last).right() <= row.right() - MARK_ROOM + 1.0);
+            }
+        }
+    }
 }

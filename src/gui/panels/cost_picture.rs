@@ -71,7 +71,7 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
                 continue;
             };
             let at = pos2(map.center(row, place), row.center().y);
-            let cell = Rect::from_center_size(at, vec2(2.0 * HALF_CELL_WIDTH + 1.0, CELL_HEIGHT));
+            let cell = Rect::from_center_size(at, vec2(2.0 * HALF_CELL_WIDTH, CELL_HEIGHT));
             paint_cost(ui, cell, worst.cost, palette);
         }
     }

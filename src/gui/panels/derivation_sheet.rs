@@ -1,9 +1,10 @@
 //! Derivation of a value ("How was this computed?"): its sheet, and the labels and menus that open
 //! it. For G and D, the sheet adds the cost of constraining or releasing the response.
 
-use egui::{CursorIcon, Grid, Label, Response, RichText, Sense, Ui, WidgetText};
+use egui::{CursorIcon, Label, Response, RichText, Sense, Ui, WidgetText};
 
 use gdcm_model::dataset::Pair;
+use gdcm_words::Table;
 use gdcm_words::derivation::{Derivation, ExplainTarget, derivation};
 use gdcm_words::sensitivity::toggle_text;
 
@@ -14,6 +15,7 @@ use crate::gui::plot::derivation_menu::QUESTION;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, entries_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, TITLE_SIZE, medium};
+use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
 /// Draws the derivation of a value in a sheet, updated with the results while it is open.
 pub fn derivation_sheet_ui(
@@ -49,17 +51,13 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
         ui.label(step);
     }
     ui.add_space(4.0);
-    Grid::new("terms of the equation")
-        .num_columns(2)
-        .min_row_height(14.0)
-        .spacing([10.0, 2.0])
-        .show(ui, |ui| {
-            for (symbol, meaning) in found.terms() {
-                ui.label(RichText::new(symbol).size(SMALL_SIZE));
-                ui.add(Label::new(palette.small(meaning)).wrap());
-                ui.end_row();
-            }
-        });
+    table_block_ui(
+        ui,
+        &terms_table(found),
+        &TableLook::PLAIN,
+        palette,
+        commands,
+    );
     ui.add_space(4.0);
     ui.label(palette.small("Based on"));
     for part in &found.rests_on {
@@ -71,6 +69,15 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
         }
         ui.label(palette.small(found.section));
     });
+}
+
+/// Tabulates the symbols of the equation with their meanings.
+fn terms_table(found: &Derivation) -> Table {
+    let mut table = Table::new("Terms of the equation", ["symbol", "meaning"]);
+    for (symbol, meaning) in found.terms() {
+        table.row([symbol, meaning]);
+    }
+    table
 }
 
 /// Draws the cost of constraining or releasing the response whose derivation is shown.

@@ -1,14 +1,10 @@
-//! Form parts: title, fields, buttons, planned file contents.
+//! Form parts: title, fields, buttons.
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Align, Button, Label, Layout, RichText, TextEdit, Ui, vec2};
-
-use gdcm_io::files::export_contents::ExportContents;
-use gdcm_study::Analysis;
+use egui::{Align, Button, Layout, RichText, TextEdit, Ui, vec2};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
-use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::text_fields::{is_entered, name_text_field};
 
@@ -118,24 +114,5 @@ impl Form<'_, '_> {
                 commands,
             })
         });
-    }
-}
-
-/// Draws the planned contents of an exported file and its omissions; draws nothing until there are
-/// results.
-pub(super) fn contents_ui(
-    form: &mut Form<'_, '_>,
-    state: &State,
-    contents: impl Fn(&Analysis) -> ExportContents,
-) {
-    let Some(analysis) = state.analysis() else {
-        return;
-    };
-    let contents = contents(analysis);
-    form.ui.add_space(4.0);
-    form.explain(&format!("Contains: {}.", contents.words()));
-    for words in contents.left_out_words(&analysis.study.dataset) {
-        form.ui
-            .add(Label::new(form.palette.small_warning(format!("Left out: {words}"))).wrap());
     }
 }

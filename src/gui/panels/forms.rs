@@ -1,20 +1,17 @@
 //! Forms in front of the window: draws the requested form. Short forms, such as questions, are
-//! here; the others are in `path_forms.rs`, `record_dataset_form.rs`, `keys_page.rs` and the
-//! command palette.
+//! here; the others are in `path_forms.rs`, `record_dataset_form.rs`, `export_dialog.rs`,
+//! `messages_page.rs`, `keys_page.rs` and the command palette.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use egui::{Context, Id, Modal, RichText, ScrollArea};
 
-use egui::{Context, Id, Modal, RichText, Role, ScrollArea, Ui};
-
-use gdcm_io::files::export_contents::ExportContents;
-use gdcm_model::dataset::{Condition, ConditionId};
 use gdcm_study::Edit;
 use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_words::dataset_differences::dataset_difference_text;
 
-use super::form_parts::{Form, contents_ui};
+use super::export_dialog::export_dialog_ui;
+use super::form_parts::Form;
 use super::keys_page::keys_page_ui;
+use super::messages_page::messages_ui;
 use super::path_forms::path_ui;
 use super::record_dataset_form::record_dataset_ui;
 use crate::gui::commands::command::Command;
@@ -23,7 +20,6 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::named_switch;
 use crate::gui::widgets::palette::Palette;
 
 /// Draws the requested form, if any. Its field has the focus when it opens; Enter submits the form;
@@ -37,6 +33,9 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     let drawn = Some((kind, asks_to_overwrite));
     let opens = state.forms.drawn != drawn;
     state.forms.drawn = drawn;
+    if kind == FormKind::Export {
+        return export_dialog_ui(ctx, state, opens, palette, commands);
+    }
     // Each form has its own id, because egui stores the size by id.
     let modal = Modal::new(Id::unique(("form", kind, asks_to_overwrite))).show(ctx, |ui| {
         ui.set_width(460.0);
@@ -51,7 +50,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             return;
         }
         match kind {
-            FormKind::Export => export_ui(form, state),
+            FormKind::Messages => messages_ui(form, &state.notices),
             FormKind::Unsaved => unsaved_ui(form),
             FormKind::Differences => differences_ui(form, state),
             FormKind::Shortcuts => shortcuts_ui(form, state),
@@ -65,58 +64,6 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     if modal.should_close() {
         commands.push(FormCommand::ShowForm(None).into());
     }
-}
-
-fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    form.title("Export corrections");
-    form.explain("Writes corrections.json, corrections.csv and assessment.csv into a folder.");
-    contents_ui(form, state, ExportContents::of_results);
-    let waits = state.results.is_behind();
-    let exported = &mut state.forms.exported;
-    conditions_ui(form.ui, exported, state.study.dataset.conditions());
-    form.ui.add_space(4.0);
-    let is_any = !exported.is_empty();
-    let folder = state.forms.typed_in(FormKind::Export);
-    let entered = form.text_ui("Export folder", folder, "folder; created if missing");
-    let ready = is_any && !folder.trim().is_empty();
-    form.line(|form| {
-        form.submit_ui(
-            "Export",
-            ready,
-            entered,
-            Some(Command::Output(OutputCommand::Export)),
-        );
-        form.button_ui("Choose folder…", false, OutputCommand::AskExportFolder);
-        form.cancel_ui(waits);
-    });
-}
-
-fn conditions_ui(ui: &mut Ui, exported: &mut BTreeSet<ConditionId>, conditions: &[Arc<Condition>]) {
-    ui.horizontal(|ui| {
-        if ui.small_button("All conditions").clicked() {
-            exported.extend(conditions.iter().map(|condition| condition.id()));
-        }
-        if ui.small_button("No conditions").clicked() {
-            exported.clear();
-        }
-    });
-    ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
-        for condition in conditions {
-            let id = condition.id();
-            let name = &condition.flight_state().name;
-            let mut chosen = exported.contains(&id);
-            let response = ui.checkbox(&mut chosen, format!("{id}   {name}"));
-            let response = named_switch(
-                response,
-                Role::CheckBox,
-                chosen,
-                format!("Export condition {id}"),
-            );
-            if response.changed() && !exported.remove(&id) {
-                exported.insert(id);
-            }
-        }
-    });
 }
 
 fn shortcuts_ui(form: &mut Form<'_, '_>, state: &State) {

@@ -134,6 +134,10 @@ const GESTURES: &[(&str, &str)] = &[
         "Arrows, + −, Home",
         "in a focused plot: pan, zoom (Shift: frequencies only), fit",
     ),
+    (
+        "Arrows, Enter, Ctrl+C",
+        "in a table: move through the cells, click on one, copy the table",
+    ),
     ("Escape", "show all models again and clear the selection"),
     ("drag an end of the band", "move the comparison band"),
     (
@@ -164,7 +168,7 @@ const MARKS: &[(&str, &str)] = &[
     ),
     (
         "cells",
-        "J of each held response: magnitude on the left, phase on the right; pale: matched",
+        "J of each held response: magnitude on the left, phase on the right; faint: matched",
     ),
     (
         "number struck out",

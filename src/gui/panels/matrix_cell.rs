@@ -19,6 +19,7 @@ use gdcm_words::caution::undefined_text;
 
 use super::derivation_sheet::question_menu_ui;
 use super::response_card::{card_grid_ui, is_not_reduced};
+use super::result_panel::OLDER;
 use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
@@ -62,7 +63,7 @@ impl<'a> Cell<'a> {
             in_conflict,
             shown: state.shown(),
             state,
-            value_uncertainty: state.value_uncertainty(),
+            value_uncertainty: state.painted_uncertainty(),
         }
     }
 
@@ -208,12 +209,20 @@ impl<'a> Cell<'a> {
         let delay_half = self
             .value_uncertainty
             .half_width(shown.wanted_delay(self.pair));
+        let gain_bar = gain_half.map(|half| format!("±{:.0}", 100.0 * half));
         let middle = rect.top() + 0.5 * rect.height();
+        let bar_color = if self.state.older_uncertainty().is_some() {
+            palette.dim_text.gamma_multiply(OLDER)
+        } else {
+            palette.dim_text
+        };
         let upper = CellValue {
             half: rect.with_max_y(middle),
             text: decimals(gain, 2),
             font: medium(BODY_SIZE),
-            bar: gain_half.map(|half| format!("±{:.0}", 100.0 * half)),
+            // Under the pointer, the box that holds the response takes the place of the error bar.
+            bar: if is_pointed { None } else { gain_bar },
+            bar_color,
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.magnitude,
                 after: change.corrected.magnitude,
@@ -225,6 +234,7 @@ impl<'a> Cell<'a> {
             text: decimals(s_to_ms(delay_s), 0),
             font: small(),
             bar: delay_half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            bar_color,
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.phase,
                 after: change.corrected.phase,
@@ -324,6 +334,8 @@ struct CellValue {
     font: FontId,
     /// Half-width of the error bar: "±12".
     bar: Option<String>,
+    /// Colour of the half-width.
+    bar_color: Color32,
     underline: Option<CostParts>,
     /// Space reserved at the right end \[pt\].
     end_room: f32,
@@ -336,7 +348,7 @@ impl CellValue {
         let line = line.translate(vec2(0.0, -1.5));
         let value = painted_text(ui, line, 0.0, &self.text, self.font, color);
         if let Some(bar) = self.bar {
-            let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
+            let galley = ui.painter().layout_no_wrap(bar, small(), self.bar_color);
             // A three-digit half-width does not fit beside a three-digit value; both are in the
             // tooltip and in the card.
             let place = pos2(
@@ -344,7 +356,7 @@ impl CellValue {
                 line.center().y - 0.5 * galley.size().y,
             );
             if place.x > value.right() {
-                ui.painter().galley(place, galley, palette.dim_text);
+                ui.painter().galley(place, galley, self.bar_color);
             }
         }
         if let Some(parts) = self.underline {

@@ -1,4 +1,5 @@
-//! Menu bar: menus, undo and redo, the document title, the search field and the theme switch.
+//! Menu bar: menus, undo and redo, the document title or a toast over it, the search field and the
+//! theme switch.
 
 use egui::{
     Button, Key, KeyboardShortcut, MenuBar, Modifiers, Rect, RichText, Role, Sense, Stroke,
@@ -7,6 +8,7 @@ use egui::{
 
 use gdcm_io::Example;
 
+use super::toasts::ToastBar;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
 use crate::gui::commands::entry::Menu;
@@ -51,7 +53,18 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
         search_ui(ui, palette, commands)
     });
     let room = rest.with_max_x(right.inner - 8.0);
-    title_ui(ui, bar, room, state, palette);
+    let toasts = ToastBar {
+        bar,
+        room,
+        is_wide: state.display.layout.is_wide,
+        notices: &state.notices,
+        palette,
+    };
+    if toasts.is_shown() {
+        toasts.ui(ui, commands);
+    } else {
+        title_ui(ui, bar, room, state, palette);
+    }
     ui.advance_cursor_after_rect(bar);
 }
 

@@ -1,6 +1,6 @@
 //! Bundles of the displayed condition: kept models, representatives, suspected outliers.
 
-use egui::{Align, Layout, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
+use egui::{Align, Label, Layout, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Model};
@@ -99,6 +99,10 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         Some(shown) => state.open_suggestions(shown),
         None => Vec::new(),
     };
+    let is_other_step_first = match state.shown() {
+        Some(shown) => shown.doubts.iter().any(|doubt| doubt.turns().is_some()),
+        None => false,
+    };
     let size = vec2(ui.available_width(), 28.0);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         let rejected = choice.physics.rejected.len();
@@ -108,27 +112,28 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             (open, 0) => format!("{open} suggested"),
             (open, rejected) => format!("{open} suggested, {rejected} rejected"),
         };
-        ui.label(if open.is_empty() {
-            palette.small(words)
-        } else {
-            palette.small_warning(words)
-        });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if rejected > 0 || !choice.identified.rejected.is_empty() {
                 ui.button("Restore all")
                     .on_hover_text("Physics and identified models of this condition")
                     .asks(Edit::RestoreAll { condition }, commands);
             }
-            if !open.is_empty() {
+            // The verdict has this button, unless a doubtful sign comes first.
+            if !open.is_empty() && is_other_step_first {
                 let hint = format!("Discontinuity ratio above {SUGGESTION_RATIO} (Ctrl+R)");
-                named(
-                    ui.button("Reject suggested"),
-                    Role::Button,
-                    "Reject suggested models",
-                )
-                .on_hover_text(hint)
-                .asks(Edit::reject_physics(condition, &open), commands);
+                named(ui.button("Reject"), Role::Button, "Reject suggested models")
+                    .on_hover_text(hint)
+                    .asks(Edit::reject_physics(condition, &open), commands);
             }
+            // The text has the room that the buttons leave.
+            let text = if open.is_empty() {
+                palette.small(&words)
+            } else {
+                palette.small_warning(&words)
+            };
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(Label::new(text).truncate());
+            });
         });
     });
 }
@@ -197,12 +202,8 @@ fn rows_ui(
 ) {
     let models = state.condition().bundle(kind);
     if models.is_empty() {
-        ui.add(
-            egui::Label::new(
-                palette.small("No identified models yet; identify them from flight records"),
-            )
-            .wrap(),
-        );
+        let words = "No identified models yet; identify them from flight records";
+        ui.add(Label::new(palette.small(words)).wrap());
         return;
     }
     let mut trims = None;

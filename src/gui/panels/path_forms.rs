@@ -1,14 +1,14 @@
-//! Forms that ask for a path: to open, save or export.
+//! Forms that ask for a path: to open or save.
 
 use std::path::PathBuf;
 
-use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
 use gdcm_plot::figure::ColumnWidth;
 
-use super::form_parts::{Form, contents_ui};
+use super::form_parts::Form;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, Forms, RequirementTable};
 use crate::gui::state::window_state::State;
 
@@ -51,6 +51,15 @@ const PATHS: [PathWords; 10] = [
         hint: "path of a .gdcm-study.json file",
         explanation: "",
         submit: "Save file",
+    },
+    PathWords {
+        kind: FormKind::AddRecords,
+        title: "Add flight records",
+        field: "Path of records",
+        hint: "path of a file, a folder or an archive",
+        explanation: "CSV, text, .mat, .npz, .zip and logs. Each record goes to the condition in the \
+            name of its file or folder.",
+        submit: "Add these records",
     },
     PathWords {
         kind: FormKind::SaveTable,
@@ -102,15 +111,6 @@ const PATHS: [PathWords; 10] = [
         explanation: "For other studies and for gdcm requirements --tolerances",
         submit: "Save tolerances",
     },
-    PathWords {
-        kind: FormKind::ExportAs,
-        title: "Export as…",
-        field: "Path of the export",
-        hint: "path of the file",
-        explanation: "Models in state-space form can be saved as .mat, .json or .npz. \
-            The command gdcm export offers more choices.",
-        submit: "Export file",
-    },
 ];
 
 /// Draws a form that asks for a path, and in some forms for a choice; draws nothing if the form
@@ -122,13 +122,9 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
     form.title(&title(words, &state.forms));
     let mut path = std::mem::take(state.forms.typed_in(kind));
     let entered = form.text_ui(words.field, &mut path, words.hint);
-    match kind {
-        FormKind::SaveFigure => {
-            let widths = ColumnWidth::BOTH.map(|width| (width, width.words()));
-            form.choices_ui(&mut state.forms.figure_width, widths);
-        }
-        FormKind::ExportAs => export_format_ui(form, state, &mut path),
-        _ => {}
+    if kind == FormKind::SaveFigure {
+        let widths = ColumnWidth::BOTH.map(|width| (width, width.words()));
+        form.choices_ui(&mut state.forms.figure_width, widths);
     }
     let forms = &mut state.forms;
     let explanation = match &forms.lost_dataset {
@@ -139,11 +135,10 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
         form.explain(explanation);
         form.ui.add_space(4.0);
     }
-    let waits = kind == FormKind::ExportAs && state.results.is_behind();
     form.line(|form| {
         let command = path_command(kind, forms, path.trim().into());
         form.submit_ui(words.submit, !path.trim().is_empty(), entered, command);
-        form.cancel_ui(waits);
+        form.cancel_ui(false);
     });
     *forms.typed_in(kind) = path;
 }
@@ -159,25 +154,6 @@ fn title(words: &PathWords, forms: &Forms) -> String {
     }
 }
 
-/// Draws the export formats and the planned contents. The path's extension follows the format until
-/// the name is edited.
-fn export_format_ui(form: &mut Form<'_, '_>, state: &mut State, path: &mut String) {
-    let chosen = &mut state.forms.export_format;
-    let before = *chosen;
-    let formats = EXPORTERS
-        .into_iter()
-        .map(|exporter| (exporter, exporter.words));
-    form.choices_ui(chosen, formats);
-    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension)) {
-        *path = format!("{stem}.{}", chosen.extension);
-    }
-    let request = ExportRequest {
-        format: *chosen,
-        ..ExportRequest::default()
-    };
-    contents_ui(form, state, |analysis| export_contents(analysis, &request));
-}
-
 /// Returns the command that a form submits; `None` if the table, the view or the study to act on is
 /// missing.
 fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command> {
@@ -188,6 +164,7 @@ fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command>
             path,
         )),
         FormKind::Save => Command::File(FileCommand::SaveStudyAs(path)),
+        FormKind::AddRecords => Command::Records(RecordsCommand::Add(vec![path])),
         FormKind::SaveTable => {
             Command::Output(OutputCommand::SaveTable(forms.table.clone()?, path))
         }
@@ -201,7 +178,6 @@ fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command>
             Command::File(FileCommand::ReadRequirementTable(table, path))
         }
         FormKind::WriteTolerances => Command::File(FileCommand::WriteTolerances(path)),
-        FormKind::ExportAs => Command::Output(OutputCommand::ExportAs(forms.export_format, path)),
         _ => return None,
     })
 }

@@ -5,11 +5,13 @@ use egui::{Rect, Role, Sense, Stroke, StrokeKind, Ui, vec2};
 use gdcm_model::dataset::BundleKind;
 
 use super::condition_rows::ConditionRows;
+use super::record_conditions::record_rail_rows_ui;
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
@@ -21,6 +23,14 @@ use crate::gui::widgets::window_regions::{Region, region_ui};
 pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     pin_ui(ui, palette, commands);
+    if state.display.layout.arrangement.view() == View::Records {
+        record_rail_rows_ui(ui, state, palette, commands);
+        ui.add_space(12.0);
+        region_ui(ui, Region::Models, |ui| {
+            records_button(state).ui(ui, palette, commands)
+        });
+        return;
+    }
     region_ui(ui, Region::Conditions, |ui| {
         let (head, heading) =
             ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
@@ -57,6 +67,17 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     });
 }
 
+/// Returns the button that opens the records of the displayed condition.
+fn records_button(state: &State) -> BundleButton {
+    let counts = state.condition_fit(state.condition().id()).counts;
+    BundleButton {
+        name: "Records",
+        kept: format!("{} + {}", counts.fitted, counts.held_out),
+        suggested: 0,
+        sheet: Sheet::Records,
+    }
+}
+
 /// Draws the pin that replaces the rail with the full panel.
 fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let (rect, response) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::click());
@@ -79,10 +100,10 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         .asks(LayoutCommand::ShowLeft(true), commands);
 }
 
-/// Button in the rail that opens a bundle in a sheet.
+/// Button in the rail that opens a list in a sheet.
 struct BundleButton {
     name: &'static str,
-    /// "16 of 19".
+    /// "16 of 19"; for records, "8 + 1".
     kept: String,
     /// Models suggested as outliers and not rejected.
     suggested: usize,
@@ -111,7 +132,10 @@ impl BundleButton {
             Role::Button,
             format!("Open the list: {}", self.name),
         )
-        .on_hover_text(format!("{}: {} kept", self.name, self.kept))
+        .on_hover_text(match self.sheet {
+            Sheet::Records => format!("{} used + held out", self.kept),
+            _ => format!("{}: {} kept", self.name, self.kept),
+        })
         .asks(LayoutCommand::ShowSheet(Some(self.sheet)), commands);
     }
 }

@@ -8,6 +8,7 @@ use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
 
+use super::result_panel::OLDER;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -34,7 +35,7 @@ pub struct CardRow {
 
 /// Returns the rows of a response: gain, delay, and both parts of J.
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
-    let value_uncertainty = state.value_uncertainty();
+    let value_uncertainty = state.painted_uncertainty();
     let mut rows = Vec::new();
     if let Some(gain) = shown.wanted_gain(pair) {
         let half = value_uncertainty
@@ -114,7 +115,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let ends = [inner.width() * 0.54, inner.width() * 0.78, inner.width()]
         .map(|end| end - inner.width() + AT_RIGHT_END);
     let level = state
-        .value_uncertainty()
+        .painted_uncertainty()
         .level()
         .map(|level| format!("± {:.0} %", 100.0 * level))
         .unwrap_or_default();
@@ -132,7 +133,12 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
             palette.text
         };
         painted_text(ui, line, ends[1], &row.left, body(), color);
-        painted_text(ui, line, ends[2], &row.half, body(), palette.dim_text);
+        let half_color = if state.older_uncertainty().is_some() {
+            palette.dim_text.gamma_multiply(OLDER)
+        } else {
+            palette.dim_text
+        };
+        painted_text(ui, line, ends[2], &row.half, body(), half_color);
     }
 }
 

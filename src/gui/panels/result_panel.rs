@@ -31,6 +31,9 @@ const GAIN_END: f32 = 0.5;
 /// Right edge of the delays, as a share of the width of a side.
 const DELAY_END: f32 = 0.85;
 
+/// Opacity of error bars of earlier settings.
+pub(super) const OLDER: f32 = 0.5;
+
 /// Draws gain and delay of every channel; in a low window only the smallest and the largest gain.
 pub fn result_ui(
     ui: &mut Ui,
@@ -51,7 +54,7 @@ pub fn result_ui(
         painted_text(ui, rect, AT_RIGHT_END, words, small(), palette.dim_text);
         return;
     };
-    proof_ui(ui, rect, state.is_proving(shown), shown, palette, commands);
+    proof_ui(ui, rect, state, shown, palette, commands);
     if is_folded {
         let mut least = f64::INFINITY;
         let mut most = 0.0_f64;
@@ -94,14 +97,20 @@ pub fn result_ui(
 fn proof_ui(
     ui: &mut Ui,
     row: Rect,
-    is_proving: bool,
+    state: &State,
     shown: &ConditionAnalysis,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
     let outcome = shown.gains.proof.outcome;
+    let is_proving = state.is_proving(shown);
+    let is_dragged = state.is_setting_dragged();
     let (words, color) = match outcome {
         Outcome::Proven { .. } => ("global optimum ✓", palette.dim_text),
+        Outcome::NotProven { .. } if is_dragged => (
+            "proof after the change",
+            palette.dim_text.gamma_multiply(OLDER),
+        ),
         Outcome::NotProven { .. } if is_proving => ("proof running", palette.dim_text),
         Outcome::NotProven { .. } => ("not proven", palette.warning),
     };
@@ -137,6 +146,8 @@ struct ChannelValue {
     color: Color32,
     /// Half-width of the error bar: "±12".
     half: Option<String>,
+    /// Value at the opening of the settings, if its text has changed since.
+    was: Option<String>,
     /// Accessible name.
     name: String,
     /// Unrounded value, for the tooltip.
@@ -163,7 +174,11 @@ impl Side<'_> {
         };
         let head = self.row(0);
         painted_text(ui, head, 0.0, title, small(), palette.dim_text);
-        for (end, words, unit) in [(GAIN_END, "k", "±%"), (DELAY_END, "τ ms", "±")] {
+        let changed = self.changed_columns();
+        for (end, words, unit) in [
+            (GAIN_END, "k", if changed[0] { "was" } else { "±%" }),
+            (DELAY_END, "τ ms", if changed[1] { "was" } else { "±" }),
+        ] {
             let place = painted_upto(ui, head, end, words, small(), palette.dim_text);
             painted_text(
                 ui,
@@ -192,26 +207,54 @@ impl Side<'_> {
         }
     }
 
+    /// Returns whether any gain, and whether any delay, has changed since the settings were opened.
+    fn changed_columns(&self) -> [bool; 2] {
+        let channels = if self.is_input_side {
+            self.state.dataset().inputs().len()
+        } else {
+            self.state.dataset().outputs().len()
+        };
+        let mut changed = [false; 2];
+        for index in 0..channels {
+            changed[0] |= self.gain(index, "").was.is_some();
+            changed[1] |= self.delay(index, "").was.is_some();
+        }
+        changed
+    }
+
+    /// Returns the text of a value at the opening of the settings, unless it equals `text`.
+    fn was(
+        &self,
+        text: &str,
+        index: usize,
+        text_in: fn(&ConditionAnalysis, Channel) -> String,
+    ) -> Option<String> {
+        let previous = text_in(self.state.previous_result()?, self.channel(index));
+        if previous == text {
+            None
+        } else {
+            Some(previous)
+        }
+    }
+
     fn gain(&self, index: usize, name: &str) -> ChannelValue {
         let channel = self.channel(index);
-        let gains = if self.is_input_side {
-            &self.shown.gains.inputs
-        } else {
-            &self.shown.gains.outputs
-        };
+        let gain = gain_of(self.shown, channel);
         let scalar = Scalar::ChannelGain(channel);
+        let text = gain_text_of(self.shown, channel);
         ChannelValue {
             end: GAIN_END,
-            text: decimals(gains[index], 3),
+            was: self.was(&text, index, gain_text_of),
+            text,
             font: medium(BODY_SIZE),
             color: self.palette.text,
             half: self
                 .state
-                .value_uncertainty()
+                .painted_uncertainty()
                 .half_width(scalar)
                 .map(|half| format!("±{:.0}", 100.0 * half)),
             name: format!("Gain of {name}"),
-            exact: gains[index].to_string(),
+            exact: gain.to_string(),
             scalar,
             asked: ExplainTarget::Gain(self.shown.condition.id(), channel),
         }
@@ -219,20 +262,15 @@ impl Side<'_> {
 
     fn delay(&self, index: usize, name: &str) -> ChannelValue {
         let channel = self.channel(index);
-        let delays = if self.is_input_side {
-            &self.shown.delays.inputs
-        } else {
-            &self.shown.delays.outputs
-        };
-        let delay_ms = s_to_ms(delays[index]);
+        let delay_ms = delay_ms_of(self.shown, channel);
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
         let half = if is_delayed {
-            self.state.value_uncertainty().half_width(scalar)
+            self.state.painted_uncertainty().half_width(scalar)
         } else {
             None
         };
-        let digits = if delay_ms.abs() < 10.0 { 1 } else { 0 };
+        let text = delay_text_of(self.shown, channel);
         let mut exact = format!("{delay_ms} ms");
         if let Some(compensated) = &self.shown.compensated
             && let Some(filter) = compensated.leads.filters()[channel]
@@ -241,11 +279,8 @@ impl Side<'_> {
         }
         ChannelValue {
             end: DELAY_END,
-            text: if is_delayed {
-                decimals(delay_ms, digits)
-            } else {
-                "0".to_owned()
-            },
+            was: self.was(&text, index, delay_text_of),
+            text,
             font: body(),
             color: if is_delayed {
                 self.palette.text
@@ -267,19 +302,21 @@ impl Side<'_> {
             half,
             name,
             exact,
+            was,
             scalar,
             ..
         } = value;
         let place = painted_upto(ui, row, value.end, &text, value.font, value.color);
-        if let Some(half) = &half {
-            painted_text(
-                ui,
-                row,
-                place.right() - row.left() + 3.0,
-                half,
-                small(),
-                self.palette.dim_text,
-            );
+        let beside = place.right() - row.left() + 3.0;
+        if let Some(was) = &was {
+            painted_text(ui, row, beside, was, small(), self.palette.dim_text);
+        } else if let Some(half) = &half {
+            let color = if self.state.older_uncertainty().is_some() {
+                self.palette.dim_text.gamma_multiply(OLDER)
+            } else {
+                self.palette.dim_text
+            };
+            painted_text(ui, row, beside, half, small(), color);
         }
         let area = row
             .with_min_x(place.left() - 4.0)
@@ -289,7 +326,7 @@ impl Side<'_> {
         let response = named(
             response,
             Role::Button,
-            format!("{name}: {text} {}", half.unwrap_or_default()).trim_end(),
+            accessible_name(&name, &text, was.as_deref(), half.as_deref()),
         );
         let mut hint = exact;
         if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {
@@ -301,6 +338,42 @@ impl Side<'_> {
             .on_hover_text(hint);
         response.asks(SelectionCommand::Explain(Some(value.asked)), commands);
     }
+}
+
+/// Returns "Gain of LON: 1.059 was 1.023", or with the half-width of the error bar instead.
+fn accessible_name(name: &str, text: &str, was: Option<&str>, half: Option<&str>) -> String {
+    match (was, half) {
+        (Some(was), _) => format!("{name}: {text} was {was}"),
+        (None, Some(half)) => format!("{name}: {text} {half}"),
+        (None, None) => format!("{name}: {text}"),
+    }
+}
+
+fn gain_of(result: &ConditionAnalysis, channel: Channel) -> f64 {
+    match channel {
+        Channel::Input(index) => result.gains.inputs[index],
+        Channel::Output(index) => result.gains.outputs[index],
+    }
+}
+
+fn gain_text_of(result: &ConditionAnalysis, channel: Channel) -> String {
+    decimals(gain_of(result, channel), 3)
+}
+
+fn delay_ms_of(result: &ConditionAnalysis, channel: Channel) -> f64 {
+    match channel {
+        Channel::Input(index) => s_to_ms(result.delays.inputs[index]),
+        Channel::Output(index) => s_to_ms(result.delays.outputs[index]),
+    }
+}
+
+fn delay_text_of(result: &ConditionAnalysis, channel: Channel) -> String {
+    let delay_ms = delay_ms_of(result, channel);
+    if delay_ms == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = if delay_ms.abs() < 10.0 { 1 } else { 0 };
+    decimals(delay_ms, digits)
 }
 
 /// Paints right-aligned text that ends at the share `end` of the row's width; returns its

@@ -1,21 +1,23 @@
 //! Right side of the window, from top to bottom: verdict, result, constraint matrix, card of the
 //! focused response, settings line, export.
 
-use egui::{Button, Frame, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
+use egui::{Align2, Button, Frame, Margin, Panel, Rect, RichText, Role, Sense, Ui, pos2, vec2};
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_row::Setting;
 
 use super::advice::export;
 use super::verdict::{Verdict, band_words};
 use super::verdict_view::verdict_ui;
-use super::{matrix_panel, response_card, result_panel, settings_panel};
+use super::{matrix_panel, response_card, result_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
+use crate::gui::views::view_content;
 use crate::gui::widgets::controls::{Asks, named_switch};
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::escape_key::take_escape;
@@ -35,7 +37,7 @@ const LEAST_WITH_CARD: f32 = 860.0;
 /// line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
-/// Draws verdict, result and matrix, or the open settings, above the export row.
+/// Draws verdict, result and matrix above the settings line and the export row.
 pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let verdict = Verdict::new(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
@@ -63,16 +65,11 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
             verdict_ui(ui, &verdict, palette, commands)
         });
         ui.add_space(8.0);
-        if state.display.layout.settings_open {
-            ScrollArea::vertical()
-                .id_salt("settings")
-                .auto_shrink([false, false])
-                .show(ui, |ui| {
-                    settings_panel::settings_ui(ui, state, palette, commands);
-                });
-            return;
-        }
         ui.set_max_width(width);
+        let view = state.display.layout.arrangement.view();
+        if let Some(side_ui) = view_content(view).side {
+            return side_ui(ui, state, palette, commands);
+        }
         let is_folded = window < LEAST_WITH_RESULT;
         region_ui(ui, Region::Result, |ui| {
             result_panel::result_ui(ui, state, is_folded, palette, commands)
@@ -91,7 +88,8 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     });
 }
 
-/// Draws the settings in a single line; a click unfolds them over matrix and card.
+/// Draws the settings in a single line, the changed ones in the text colour; a click opens and
+/// closes the settings at the left.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let is_open = state.display.layout.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
@@ -106,32 +104,53 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     }
     let inner = rect.shrink2(vec2(PADDING, 0.0));
     let title = painted_text(ui, inner, 0.0, "Settings", medium(BODY_SIZE), palette.text);
-    let words = settings_words(state);
-    let shown = elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
-    painted_text(
-        ui,
-        inner,
-        title.right() - inner.left() + 10.0,
-        &shown,
-        small(),
-        palette.dim_text,
-    );
-    chevron(
-        ui,
-        pos2(inner.right() - 5.0, inner.center().y),
-        is_open,
-        palette,
-    );
+    let parts = settings_parts(state);
+    let mut x = title.right() - inner.left() + 10.0;
+    for (place, part) in parts.iter().enumerate() {
+        if place > 0 {
+            let dot = painted_text(ui, inner, x, " · ", small(), palette.dim_text);
+            x = dot.right() - inner.left();
+        }
+        let room = inner.width() - x - 22.0;
+        let shown = elided(ui, &part.text, room, SMALL_SIZE);
+        let color = if part.is_changed {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        x = painted_text(ui, inner, x, &shown, small(), color).right() - inner.left();
+        if shown != part.text {
+            break;
+        }
+    }
+    let end = pos2(inner.right() - 5.0, inner.center().y);
+    if is_open {
+        let color = palette.dim_text;
+        ui.painter()
+            .text(end, Align2::CENTER_CENTER, "×", body(), color);
+    } else {
+        chevron(ui, end, is_open, palette);
+    }
     let response = named_switch(response, Role::Button, is_open, "Settings");
     if response.clicked() || (is_open && take_escape(ui.ctx())) {
         commands.push(LayoutCommand::ShowSettings(!is_open).into());
     }
-    let action = if is_open { "Fold" } else { "Open" };
+    let texts: Vec<&str> = parts.iter().map(|part| part.text.as_str()).collect();
+    let action = if is_open { "Close" } else { "Open" };
+    let words = texts.join(" · ");
     response.on_hover_text(format!("{words}\n{action} with Ctrl+comma"));
 }
 
-/// "α 1 · 0.5–12 rad/s · delays · representatives".
-fn settings_words(state: &State) -> String {
+/// Part of the settings line.
+struct LinePart {
+    text: String,
+    /// Whether one of its settings has changed since the settings were opened.
+    is_changed: bool,
+}
+
+/// Returns the parts "α 1", "0.5–12 rad/s", "delays", "representatives", and the number of other
+/// changed settings.
+fn settings_parts(state: &State) -> Vec<LinePart> {
     let settings = &state.study.settings;
     let gains = number(settings.alpha_gain);
     let delays = number(settings.alpha_delay);
@@ -145,12 +164,35 @@ fn settings_words(state: &State) -> String {
         PhaseCorrection::Delay => "delays",
         PhaseCorrection::Lead => "leads",
     };
-    let mut words = format!("{alpha} · {} · {phase}", band_words(state));
+    let mut listed: Vec<(String, Vec<&'static Setting>)> = vec![
+        (alpha, vec![&setting::ALPHA_GAIN, &setting::ALPHA_DELAY]),
+        (band_words(state), vec![&setting::BAND]),
+        (phase.to_owned(), vec![&setting::PHASE]),
+    ];
     if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
-        words.push_str(" · ");
-        words.push_str(&setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings)));
+        let source = setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings));
+        listed.push((source, vec![&setting::GAIN_SOURCE]));
     }
-    words
+    let mut changed = state.changed_settings();
+    let mut parts = Vec::new();
+    for (text, settings) in listed {
+        let before = changed.len();
+        changed.retain(|setting| !settings.contains(setting));
+        parts.push(LinePart {
+            text,
+            is_changed: changed.len() < before,
+        });
+    }
+    if !changed.is_empty() {
+        parts.insert(
+            0,
+            LinePart {
+                text: format!("{} other", changed.len()),
+                is_changed: true,
+            },
+        );
+    }
+    parts
 }
 
 /// Draws the export button, which is always visible, and primary if no other step is left.

@@ -1,4 +1,4 @@
-//! Status bar at the foot of the window: computation status, notices, remarks on the data.
+//! Status bar at the foot of the window: computation status, remarks on the data.
 
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
@@ -8,16 +8,15 @@ use gdcm_words::assessment::not_assessed_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
-use crate::gui::commands::form::FormCommand;
 use crate::gui::state::background::{Background, Steps, error_bar_progress};
-use crate::gui::state::notices::{Notice, NoticeKind};
 use crate::gui::state::records::RecordsState;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws the computation status on the left. On the right: the description of the element under the
-/// pointer, else the newest notice, else a remark on the data.
+/// pointer, else a remark on the data. Messages are toasts in the top bar.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
@@ -25,25 +24,14 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             if let Some(pointed) = &state.display.selection.pointed_words {
                 let text = RichText::new(pointed).size(SMALL_SIZE);
                 ui.add(Label::new(text).truncate());
-            } else if let Some(notice) = &state.notice {
-                notice_ui(ui, notice, palette, commands);
+            } else if state.is_setting_dragged() {
+                let words = "error bars update when the slider rests";
+                ui.add(Label::new(palette.small(words)).truncate());
             } else {
                 ui.add(Label::new(palette.small(data_remark(state))).truncate());
             }
         });
     });
-}
-
-fn notice_ui(ui: &mut Ui, notice: &Notice, palette: &Palette, commands: &mut Vec<Command>) {
-    small_button_ui(ui, "Dismiss", FormCommand::DismissNotice.into(), commands);
-    let color = if notice.kind == NoticeKind::Done {
-        palette.text
-    } else {
-        palette.warning
-    };
-    let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
-    ui.add(Label::new(text).truncate())
-        .on_hover_text(&notice.text);
 }
 
 fn small_button_ui(ui: &mut Ui, text: &str, command: Command, commands: &mut Vec<Command>) {
@@ -70,7 +58,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     let is_stopped = state.results.stopped || state.results.background.stopped;
     if !is_reading && is_stopped {
         small_button_ui(ui, "Compute", ComputingCommand::Compute.into(), commands);
-    } else if is_reading || state.results.is_stale(now) || beside.is_some() {
+    } else if is_reading || state.results.is_stale(now) || stops_background(state, now) {
         let stop = ComputingCommand::StopComputing.into();
         small_button_ui(ui, "Stop", stop, commands);
     }
@@ -107,11 +95,17 @@ impl Status {
             return Self::colored(text, palette.warning);
         }
         if !state.results.is_stale(now) {
-            // The text is not green: green would suggest that gains and phases are matched.
+            // The text is not green: green would suggest that gains and phases are matched. The dot
+            // is green only if no other work is under way.
+            let dot = if words_beside(state, now).is_some() {
+                palette.accent
+            } else {
+                palette.good
+            };
             return Self {
                 text: "up to date".to_owned(),
                 color: palette.dim_text,
-                dot: palette.good,
+                dot,
             };
         }
         let text = match state.results.background.analysis {
@@ -144,6 +138,16 @@ fn words_beside(state: &State, now: f64) -> Option<String> {
         return Some(background_words(background, &state.records));
     }
     None
+}
+
+/// Returns whether the *Stop* in the status bar stops background work: work started in a view in
+/// front has its *Stop* there.
+fn stops_background(state: &State, now: f64) -> bool {
+    let mut background = state.results.background.clone();
+    if state.shows_view(View::Records) {
+        background.identification = None;
+    }
+    background.is_busy() && state.results.shows_background(now)
 }
 
 /// Counts the models in both bundles over all conditions.
@@ -197,17 +201,20 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
 }
 
-/// "identifying condition 10, 40 %, then 2 more …".
+/// "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged until the fits are
+/// used".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
-    let jobs = records.running.len();
-    match records.under_way() {
-        Some(job) if jobs >= 2 => {
-            let condition = job.condition;
-            let more = jobs - 1;
-            format!("identifying condition {condition}, {percent} %, then {more} more …")
-        }
-        _ => format!("identifying, {percent} % …"),
+    let mut words = match records.under_way() {
+        Some(job) => format!("identifying condition {}, {percent} %", job.condition),
+        None => format!("identifying, {percent} %"),
+    };
+    let requested = records.requested_count;
+    if requested > 1 {
+        let finished = requested.saturating_sub(records.running.len());
+        words.push_str(&format!(", {finished} of {requested} finished"));
     }
+    words.push_str(" · correction unchanged until the fits are used");
+    words
 }
 
 /// Returns why the assessment leaves out the displayed condition, or else the name of its flight
@@ -225,7 +232,23 @@ fn data_remark(state: &State) -> String {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_io::embedded_example;
+    use gdcm_study::Study;
+
     use super::*;
+
+    #[test]
+    fn the_dot_is_green_only_while_nothing_is_computed() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let mut state = State::new(study, "study".to_owned(), Vec::new());
+        let palette = Palette::dark();
+        assert_eq!(Status::new(&state, 9.0, &palette).dot, palette.good);
+        state.results.background.views = 1;
+        state.results.background_since = Some(0.0);
+        let status = Status::new(&state, 9.0, &palette);
+        assert_eq!(status.dot, palette.accent);
+        assert_eq!(status.color, palette.dim_text);
+    }
 
     #[test]
     fn the_progress_of_a_couplings_assessment_is_reported() {

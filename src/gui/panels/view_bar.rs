@@ -40,7 +40,7 @@ pub(super) fn view_bar_ui(
         inner.with_min_x(left.response.rect.right() + 8.0),
         true,
         |ui| {
-            figure_button_ui(ui, state, state.display.layout.arrangement.view(), commands);
+            figure_button_ui(ui, state.display.layout.arrangement.view(), commands);
             let hint = "Bring all curves into view (F, or double click)";
             button_ui(
                 ui,

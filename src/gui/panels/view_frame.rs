@@ -5,6 +5,7 @@ use egui::{Align, AsIdSalt, Frame, Label, Layout, Margin, Rect, RichText, Ui, Ui
 use crate::gui::commands::command::Command;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::views::across::across_context;
 use crate::gui::views::figure_button::figure_button_ui;
 use crate::gui::views::{PageEntry, ViewTitle, view_content};
 use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
@@ -136,7 +137,7 @@ pub(super) fn tools_ui(
 ) {
     // Skip the front view: its figure button is in the view bar.
     if view != state.display.layout.arrangement.view() {
-        figure_button_ui(ui, state, view, commands);
+        figure_button_ui(ui, view, commands);
     }
     (view_content(view).tools)(ui, state, palette, commands);
     if view.facts().is_of_all_conditions && state.others_are_older() {
@@ -176,14 +177,22 @@ fn title_words(state: &State, title: ViewTitle) -> TitleWords {
         },
         ViewTitle::ResponseOnly => TitleWords {
             heading: response,
-            context: String::new(),
+            context: across_context(state),
         },
         ViewTitle::Condition => TitleWords {
             heading: format!("Condition {id}"),
             context: flight_state.clone(),
         },
+        ViewTitle::NameAndCondition(name) => TitleWords {
+            heading: name.to_owned(),
+            context: format!("condition {id}, {flight_state}"),
+        },
         ViewTitle::Words(words) => TitleWords {
             heading: String::new(),
+            context: words(state),
+        },
+        ViewTitle::Named(name, words) => TitleWords {
+            heading: name.to_owned(),
             context: words(state),
         },
         ViewTitle::None => TitleWords {

@@ -9,7 +9,7 @@ use super::bode_view::BodeView;
 use super::coherence_strip::CoherenceStrip;
 use super::curve_style::Role;
 use super::drawn_curves::{PANES, Pane};
-use super::end_labels::{EndLabel, height_beside, paint_end_labels};
+use super::end_labels::{EndLabel, height_beside, labels_within, paint_end_labels};
 use super::panel_axis::TICKS_HEIGHT;
 use super::panel_text::{AT_RIGHT, caption_font};
 use super::readout_strip::readout_strip_ui;
@@ -53,7 +53,7 @@ impl BodeHeadings<'_> {
                 row_text(ui, line, AT_RIGHT, words, SMALL_SIZE, self.palette.dim_text);
             }
             if let Some(transform) = self.view.transform(pane)
-                && (scene.names_curves || !scene.rules.is_empty())
+                && (scene.names_curves || !scene.rules.is_empty() || !scene.end_names.is_empty())
             {
                 let labels = self.pane_labels(pane, transform);
                 paint_end_labels(ui, *transform.frame(), labels);
@@ -131,6 +131,7 @@ impl BodeHeadings<'_> {
                 });
             }
         }
+        labels.extend(self.end_name_labels(pane, transform));
         let lines = PaneLines {
             lines: scene.rules,
             pane,
@@ -151,6 +152,37 @@ impl BodeHeadings<'_> {
             });
         }
         labels
+    }
+}
+
+impl BodeHeadings<'_> {
+    /// Returns the names of several curves, each at the mean height of their ends; as many as fit
+    /// into the height of the pane.
+    fn end_name_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
+        let frame = *transform.frame();
+        let last_omega = self.view.omega_range().1;
+        let mut labels = Vec::new();
+        for name in self.scene.end_names {
+            let ends = self.scene.curves.iter().filter_map(|curve| {
+                if !name.curves.contains(&curve.id) {
+                    return None;
+                }
+                curve.value_at(pane, curve.omega.last()?.min(last_omega))
+            });
+            let ends: Vec<f64> = ends.collect();
+            if ends.is_empty() {
+                continue;
+            }
+            let mean = ends.iter().sum::<f64>() / ends.len() as f64;
+            let at = transform.position_from_point(&PlotPoint::new(last_omega.log10(), mean));
+            let color = self.palette.role_style(name.role, false).color.to_opaque();
+            labels.push(EndLabel {
+                y: height_beside(frame, at.y),
+                text: name.text.clone(),
+                color: self.palette.label_color(color),
+            });
+        }
+        labels_within(frame, labels)
     }
 }
 

@@ -18,6 +18,8 @@ const GAP: f32 = 6.0;
 const UNIT_MARGIN: f32 = 36.0;
 /// Margin at the right for curve names \[pt\].
 const CURVE_NAME_MARGIN: f32 = 78.0;
+/// Margin at the right for names of several curves \[pt\].
+const END_NAME_MARGIN: f32 = 76.0;
 /// Margin at the right for names of reference lines \[pt\].
 const LINE_NAME_MARGIN: f32 = 118.0;
 /// Minimum plot height with room for the values between the panes \[pt\].
@@ -53,7 +55,8 @@ impl BodeLayout {
         }
         // The strip keeps its room when it is empty, so that nothing moves when the pointer
         // arrives.
-        let has_readout = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
+        let has_readout = (scene.readout.is_some() || scene.reserves_readout)
+            && inner.height() >= LEAST_WITH_STRIP;
         let between = if has_readout {
             STRIP_HEIGHT + 2.0 * GAP
         } else {
@@ -89,6 +92,8 @@ fn line_above(pane: Rect) -> Rect {
 fn right_margin(scene: &BodeScene<'_>) -> f32 {
     if !scene.rules.is_empty() {
         LINE_NAME_MARGIN
+    } else if !scene.end_names.is_empty() {
+        END_NAME_MARGIN
     } else if scene.names_curves {
         CURVE_NAME_MARGIN
     } else {

@@ -1,6 +1,6 @@
 //! Bode pane: layers from bottom to top, and gestures.
 
-use egui::{PointerButton, Rect, Response, Stroke, Ui, vec2};
+use egui::{Color32, PointerButton, Rect, Response, Stroke, Ui, vec2};
 use egui_plot::{PlotBounds, PlotTransform, PlotUi};
 
 use gdcm_plot::figure::responses::BodeBand;
@@ -152,13 +152,22 @@ impl<'a> PaneScene<'a> {
             .update(scene.curves, self.pane, visible, self.palette);
         if scene.shows_bands != Some(false) {
             for band in scene.bands {
-                self.add_band(plot, band, &bounds);
+                self.add_band(plot, band, &bounds, self.palette.identified);
             }
         }
         if let Some(missing) = scene.missing {
-            self.add_band(plot, missing, &bounds);
+            self.add_band(plot, missing, &bounds, self.palette.identified);
         }
-        let image = drawn.image_of_many(plot.ctx(), scene.curves, &transform, self.palette);
+        if let Some(optima) = scene.optima {
+            self.add_band(plot, optima, &bounds, self.palette.corrected);
+        }
+        let image = drawn.image_of_many(
+            plot.ctx(),
+            scene.curves,
+            &transform,
+            self.looks,
+            self.palette,
+        );
         self.add_curves(plot, &drawn.curves, image);
         self.veil_outside(plot);
         self.add_cursors(plot);
@@ -185,7 +194,7 @@ impl<'a> PaneScene<'a> {
 
     /// Draws the visible part of a band in segments; non-finite values and jumps of a wrapped phase
     /// leave a gap.
-    fn add_band(self, plot: &mut PlotUi<'_>, band: &BodeBand, view: &PlotBounds) {
+    fn add_band(self, plot: &mut PlotUi<'_>, band: &BodeBand, view: &PlotBounds, color: Color32) {
         let values = match self.pane {
             Pane::Magnitude => &band.magnitude_db,
             Pane::Phase => &band.phase_deg,
@@ -194,7 +203,7 @@ impl<'a> PaneScene<'a> {
         for (omega, [lower, upper]) in band.omega.iter().zip(values) {
             points.push([omega.log10(), *lower, *upper]);
         }
-        let fill = self.palette.identified.gamma_multiply(BAND_FILL);
+        let fill = color.gamma_multiply(BAND_FILL);
         for run in points.chunk_by(|from, to| is_in_view(from, to, view)) {
             if run.len() > 1 {
                 add_area(plot, run, fill);

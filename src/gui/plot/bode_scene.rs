@@ -49,6 +49,12 @@ pub struct BodeScene<'a> {
     /// Remaining phase error: the area between the corrected and the identified curve, within the
     /// band.
     pub missing: Option<&'a BodeBand>,
+    /// Range of the errors at the optima of the conditions.
+    pub optima: Option<&'a BodeBand>,
+    /// Names in the right margin, each beside the ends of its curves.
+    pub end_names: &'a [EndName],
+    /// Whether the room of the read-out stays free, because another part draws it.
+    pub reserves_readout: bool,
     /// Frequencies above the band, where the corrected curves are not valid and only show the
     /// magnitude added by the leads; `None` without leads.
     pub invalid: Option<&'a InvalidRegion>,
@@ -69,6 +75,17 @@ pub struct BodeScene<'a> {
     pub stale: bool,
     /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,
+}
+
+/// Name of several curves in the right margin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EndName {
+    /// "140 kt × 2".
+    pub text: String,
+    /// Role in whose colour the name is written.
+    pub role: Role,
+    /// Curves beside whose mean end value the name stands.
+    pub curves: Vec<CurveId>,
 }
 
 /// Note at the right above a pane.

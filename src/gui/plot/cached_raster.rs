@@ -58,17 +58,38 @@ impl CachedRaster {
         shapes: impl FnOnce() -> Vec<Shape>,
     ) -> Option<RasterImage> {
         if self.scene.as_ref() != Some(&scene) {
-            *self = Self {
-                scene: Some(scene),
-                image: None,
-            };
+            self.expect(scene);
             // A changing scene is drawn as lines; the next frame shows whether it has become
             // static.
             ctx.request_repaint();
             return None;
         }
+        self.image_at_once(ctx, scene, shapes)
+    }
+
+    /// Drops the image, and expects this scene in the next frame.
+    fn expect(&mut self, scene: RasterScene) {
+        *self = Self {
+            scene: Some(scene),
+            image: None,
+        };
+    }
+
+    /// Returns the image of `scene`, also if it has just changed: for small images, which are filled
+    /// faster than their lines are drawn.
+    pub(super) fn image_at_once(
+        &mut self,
+        ctx: &Context,
+        scene: RasterScene,
+        shapes: impl FnOnce() -> Vec<Shape>,
+    ) -> Option<RasterImage> {
+        let frame = scene.frame;
+        let pixels_per_point = scene.pixels_per_point;
+        if self.scene.as_ref() != Some(&scene) {
+            self.expect(scene);
+        }
         if self.image.is_none() {
-            let area = whole_pixels(scene.frame, scene.pixels_per_point)?;
+            let area = whole_pixels(frame, pixels_per_point)?;
             let largest = ctx.input(|input| input.max_texture_side);
             if area.pixels.iter().any(|side| usize::from(*side) > largest) {
                 return None;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Color32, Id, TextureId};
 
+use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::FrequencyUnit;
 
 /// Quantity along the horizontal axis.
@@ -59,7 +60,7 @@ pub struct ChartMarks {
     pub crosses: bool,
 }
 
-/// Highlighted horizontal range.
+/// Highlighted range.
 #[derive(Clone, Debug)]
 pub struct ChartSpan {
     pub ends: [f64; 2],
@@ -77,9 +78,15 @@ pub struct Chart<'a> {
     /// Label of the horizontal axis; an empty label reduces the height of the axis.
     pub across_label: &'a str,
     pub value_label: &'a str,
+    pub layout: ChartLayout,
     /// Whether the visible values always fill the height; only the horizontal axis can then be
     /// zoomed and panned.
     pub fits_values: bool,
+    /// Range of the values instead of the range that fits the data; requires `fits_values`.
+    pub values: Option<Range>,
+    /// Horizontal range that is visible until a gesture changes it, instead of the range that fits
+    /// the data.
+    pub whole_across: Option<Range>,
     /// Charts with the same group share the visible horizontal range.
     pub group: Option<Id>,
     /// Highlighted horizontal ranges.
@@ -90,12 +97,41 @@ pub struct Chart<'a> {
     pub lines: Vec<ChartLine>,
     /// Marks, on top of the lines.
     pub marks: Vec<ChartMarks>,
+    /// Dotted vertical lines.
     pub verticals: Vec<f64>,
+    /// Ends of a band, drawn as solid lines in the accent colour.
+    pub band: Option<[f64; 2]>,
+    /// Dashed horizontal lines.
+    pub levels: Vec<f64>,
+    /// Range of values that is shaded across the chart.
+    pub tolerance: Option<ChartSpan>,
     /// Image below everything else.
     pub image: Option<ChartImage>,
-    /// Whether dragging selects a horizontal range instead of panning;
-    /// [`take_dragged_range`](super::dragged_range::take_dragged_range) returns it for the group.
-    pub chooses: bool,
+}
+
+/// Room around the frame of a chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChartLayout {
+    /// Height of the title line; 0 for a chart without a title \[pt\].
+    pub title_height: f32,
+    /// Width of the value axis, sufficient for the longest number, so that stacked frames align
+    /// \[pt\].
+    pub value_axis_width: f32,
+    /// Room at the right of the frame \[pt\].
+    pub right_margin: f32,
+    /// Whether the horizontal axis has tick labels.
+    pub has_ticks_across: bool,
+}
+
+impl Default for ChartLayout {
+    fn default() -> Self {
+        Self {
+            title_height: 18.0,
+            value_axis_width: 54.0,
+            right_margin: 8.0,
+            has_ticks_across: true,
+        }
+    }
 }
 
 /// Image within ranges of both axes; its vertical axis shows frequencies \[rad/s\].

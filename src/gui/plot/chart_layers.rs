@@ -6,7 +6,9 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotImage, PlotPoint, PlotPoints, 
 use gdcm_plot::figure::thinning::Pixel;
 
 use super::chart::{Chart, ChartAxis, ChartImage, ChartLine, ChartMarks};
-use super::layers::{add_area, add_dotted_vertical, add_shade};
+use super::layers::{
+    add_area, add_dashed_level, add_dotted_vertical, add_shade, add_shade_of_values, add_vertical,
+};
 use super::thinning::{pixel_of, thinned_between};
 use crate::gui::widgets::palette::Palette;
 
@@ -22,6 +24,10 @@ pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Pal
     if let Some(image) = &chart.image {
         add_image(plot, image);
     }
+    if let Some(tolerance) = &chart.tolerance {
+        let [from, to] = tolerance.ends;
+        add_shade_of_values(plot, from..=to, tolerance.color);
+    }
     for span in &chart.spans {
         let [from, to] = span.ends.map(|end| chart.across.place(end));
         add_shade(plot, from..=to, span.color);
@@ -36,6 +42,13 @@ pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Pal
     for vertical in &chart.verticals {
         let stroke = Stroke::new(0.8, palette.dim_text);
         add_dotted_vertical(plot, chart.across.place(*vertical), stroke);
+    }
+    for end in chart.band.into_iter().flatten() {
+        let stroke = Stroke::new(1.0, palette.accent);
+        add_vertical(plot, chart.across.place(end), stroke);
+    }
+    for level in &chart.levels {
+        add_dashed_level(plot, *level, Stroke::new(1.0, palette.dim_text));
     }
     let ends = visible_ends(plot);
     for line in &chart.lines {

@@ -1,13 +1,12 @@
 //! Chart on the screen: its frame, its gestures, and the texts above.
 
 use egui::{Align2, Rect, Response, Ui, Vec2, Vec2b, pos2, vec2};
-use egui_plot::PlotUi;
+use egui_plot::{PlotTransform, PlotUi};
 
 use gdcm_plot::figure::Range;
 
 use super::chart::{Chart, ChartAxis};
 use super::chart_layers::{add_layers, visible_ends};
-use super::dragged_range::store_dragged_range;
 use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT};
 use super::panel_painter::{Follow, Gestures, PanelPainter};
 use super::panel_text::caption_font;
@@ -16,10 +15,6 @@ use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
 use super::zoom_gesture::ZoomGesture;
 use crate::gui::widgets::palette::Palette;
 
-const TITLE_HEIGHT: f32 = 18.0;
-/// Width of the value axis, sufficient for the longest number, so that stacked frames align \[pt\].
-const VALUE_AXIS_WIDTH: f32 = 54.0;
-const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between two notes \[pt\].
 const NOTE_GAP: f32 = 8.0;
 /// Margin at the left and at the right, relative to the width.
@@ -29,25 +24,31 @@ const VALUE_EDGE: f32 = 0.08;
 /// Minimum distance between tick labels of a linear horizontal axis \[pt\].
 const TICK_GAP: f64 = 50.0;
 
+/// A chart as drawn.
+pub struct ChartResponse {
+    pub response: Response,
+    /// Transform from axis coordinates to the screen; those of a frequency axis are logarithms.
+    pub transform: PlotTransform,
+}
+
 /// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows everything.
-pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Response {
+pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> ChartResponse {
+    let layout = chart.layout;
     let panel = PanelPainter {
-        id: ui.make_persistent_id(chart.title),
+        id: ui.make_persistent_id((chart.title, chart.group)),
         rect: Rect::from_min_max(
-            rect.min + vec2(0.0, TITLE_HEIGHT),
-            rect.max - vec2(RIGHT_MARGIN, 0.0),
+            rect.min + vec2(0.0, layout.title_height),
+            rect.max - vec2(layout.right_margin, 0.0),
         ),
         name: &description(chart),
         across: horizontal_axis(chart),
         values: vertical_axis(chart),
         gestures: Gestures::Following(Follow {
-            pans: if chart.chooses {
-                Vec2b::FALSE
-            } else {
-                Vec2b::new(true, !chart.fits_values)
-            },
+            pans: Vec2b::new(true, !chart.fits_values),
             margins: vec2(EDGE as f32, VALUE_EDGE),
             group: chart.group,
+            whole_across: chart.whole_across.map(|range| place_of(chart, range)),
+            values: chart.values,
         }),
         is_transparent: false,
         palette,
@@ -55,11 +56,6 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let shown = panel.show(ui, |plot| {
         add_layers(plot, chart, palette);
         zoom_by_scrolling(plot, chart);
-        if let Some(group) = chart.group
-            && chart.chooses
-        {
-            store_dragged_range(plot, group);
-        }
         visible_ends(plot)
     });
     let [across, _] = ranges_of(shown.transform.bounds());
@@ -69,11 +65,21 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         // Repaint: the lines were thinned for the visible range of the previous frame.
         ui.request_repaint();
     }
-    let line = rect.with_max_y(rect.top() + TITLE_HEIGHT);
-    let frame = *shown.transform.frame();
-    let title = line.with_min_x(frame.left()).with_max_x(frame.right());
-    paint_title(ui, title, chart, palette);
-    shown.response
+    if layout.title_height > 0.0 {
+        let line = rect.with_max_y(rect.top() + layout.title_height);
+        let frame = *shown.transform.frame();
+        let title = line.with_min_x(frame.left()).with_max_x(frame.right());
+        paint_title(ui, title, chart, palette);
+    }
+    ChartResponse {
+        response: shown.response,
+        transform: shown.transform,
+    }
+}
+
+/// Returns a range of values along the horizontal axis in its coordinates.
+fn place_of(chart: &Chart<'_>, range: Range) -> Range {
+    Range::new(chart.across.place(range.min), chart.across.place(range.max))
 }
 
 /// Returns the accessible name.
@@ -101,7 +107,9 @@ fn horizontal_axis(chart: &Chart<'_>) -> PanelAxis {
     } else {
         LABELLED_HEIGHT
     };
-    PanelAxis::new(ticks, height).labelled(chart.across_label)
+    let mut axis = PanelAxis::new(ticks, height).labelled(chart.across_label);
+    axis.is_drawn = chart.layout.has_ticks_across;
+    axis
 }
 
 fn vertical_axis(chart: &Chart<'_>) -> PanelAxis {
@@ -109,13 +117,13 @@ fn vertical_axis(chart: &Chart<'_>) -> PanelAxis {
         Some(image) => Ticks::Frequency(image.unit),
         None => Ticks::Decimal(VERTICAL_TICK_GAP),
     };
-    PanelAxis::new(ticks, VALUE_AXIS_WIDTH).labelled(chart.value_label)
+    PanelAxis::new(ticks, chart.layout.value_axis_width).labelled(chart.value_label)
 }
 
 /// Paints the title at the left of a line, and the notes at the right.
 fn paint_title(ui: &Ui, line: Rect, chart: &Chart<'_>, palette: &Palette) {
     let painter = ui.painter();
-    let mut at = pos2(line.left(), line.top() + 0.5 * TITLE_HEIGHT);
+    let mut at = pos2(line.left(), line.center().y);
     let font = caption_font();
     painter.text(at, Align2::LEFT_CENTER, chart.title, font, palette.text);
     at.x = line.right();

@@ -14,28 +14,28 @@ const CHIP_HEIGHT: f32 = 22.0;
 /// Line height, including the gap below \[pt\].
 const LINE_HEIGHT: f32 = 27.0;
 /// Gap between two chips \[pt\].
-pub(super) const GAP: f32 = 5.0;
-pub(super) const SAMPLE_GAP: f32 = 6.0;
+pub const GAP: f32 = 5.0;
+pub const SAMPLE_GAP: f32 = 6.0;
 /// Padding at both ends of a chip \[pt\].
 const PAD: f32 = 6.0;
 
 /// Text, name and state of a chip.
-pub(super) struct ChipFace<'a> {
-    pub(super) text: &'a str,
+pub struct ChipFace<'a> {
+    pub text: &'a str,
     /// Accessible name.
-    pub(super) name: &'a str,
+    pub name: &'a str,
     /// Curve sample, if the chip switches curves.
-    pub(super) sample: Option<Sample>,
+    pub sample: Option<Sample>,
     /// Whether the outline has the accent colour even when the pointer is elsewhere.
-    pub(super) is_lit: bool,
+    pub is_lit: bool,
 }
 
 /// Curve sample of a chip.
 #[derive(Clone, Copy)]
-pub(super) struct Sample {
-    pub(super) style: CurveStyle,
+pub struct Sample {
+    pub style: CurveStyle,
     /// Whether the curves are drawn in the plot.
-    pub(super) is_shown: bool,
+    pub is_shown: bool,
 }
 
 impl ChipFace<'_> {
@@ -46,7 +46,7 @@ impl ChipFace<'_> {
 }
 
 /// Lines of chips in an area, filled from its upper left corner.
-pub(super) struct ChipRow {
+pub struct ChipRow {
     area: Rect,
     /// Upper left corner of the next chip.
     corner: Pos2,
@@ -56,7 +56,7 @@ pub(super) struct ChipRow {
 
 impl ChipRow {
     /// Starts at the upper left corner of `area`, with samples of this length \[pt\].
-    pub(super) fn new(area: Rect, sample_length: f32) -> Self {
+    pub fn new(area: Rect, sample_length: f32) -> Self {
         Self {
             area,
             corner: area.min,
@@ -65,13 +65,18 @@ impl ChipRow {
     }
 
     /// Returns the height of the lines up to the last chip \[pt\].
-    pub(super) fn height(&self) -> f32 {
+    pub fn height(&self) -> f32 {
         self.corner.y - self.area.top() + LINE_HEIGHT
+    }
+
+    /// Returns the right end of the last chip.
+    pub(in crate::gui) fn line_end(&self) -> f32 {
+        self.corner.x - GAP
     }
 
     /// Draws a chip. With a curve sample it is a switch, pale and with a dashed outline while its
     /// curves are hidden; without a sample it is a button on the ground of selected rows.
-    pub(super) fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
+    pub fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
         let text_color = if face.is_hidden() {
             palette.dim_text
         } else {
@@ -177,6 +182,6 @@ fn rounded(place: Rect, radius: f32) -> Vec<Pos2> {
 }
 
 /// Returns the width of a chip without its sample, including the gap to the next chip \[pt\].
-pub(super) fn chip_width(ui: &Ui, text: &str) -> f32 {
+pub fn chip_width(ui: &Ui, text: &str) -> f32 {
     chip_text(ui, text, Color32::PLACEHOLDER).size().x + 2.0 * PAD + GAP
 }

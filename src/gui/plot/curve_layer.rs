@@ -29,11 +29,18 @@ impl CurveLooks<'_> {
         curve.highlighted || self.pointed == Some(&curve.id)
     }
 
-    pub(super) fn style(&self, curve: &BodeCurve, palette: &Palette) -> CurveStyle {
-        let mut style = palette.role_style(curve.role, curve.rejected);
+    /// Returns the style of the curve while it is neither emphasized nor being recomputed.
+    pub(super) fn resting_style(&self, curve: &BodeCurve, palette: &Palette) -> CurveStyle {
+        let style = palette.role_style(curve.role, curve.rejected);
         if self.is_miniature {
-            style = style.in_miniature();
+            style.in_miniature()
+        } else {
+            style
         }
+    }
+
+    pub(super) fn style(&self, curve: &BodeCurve, palette: &Palette) -> CurveStyle {
+        let style = self.resting_style(curve, palette);
         if self.is_emphasized(curve) {
             style.emphasized()
         } else if self.is_stale {

@@ -115,9 +115,7 @@ impl Palette {
             Hue::Accent => self.accent,
             Hue::Warning => self.warning,
             Hue::Good => self.good,
-            Hue::OfAirspeed(step) => self
-                .perturbed
-                .lerp_to_gamma(self.identified, f32::from(step) / f32::from(u8::MAX)),
+            Hue::OfAirspeed(step) => self.airspeed_color(step),
         };
         if color.percent == 100 {
             of_hue
@@ -195,6 +193,8 @@ mod tests {
             Hue::Accent,
             Hue::Warning,
             Hue::Good,
+            Hue::OfAirspeed(0),
+            Hue::OfAirspeed(255),
         ]) {
             let [red, green, blue, _] = light.color(Color::new(hue)).to_array();
             assert_eq!([red, green, blue], hue.on_paper(), "{hue:?}");

@@ -1,13 +1,17 @@
 //! Pane as last drawn, kept between frames: transform, visible points, and the image that replaces
 //! many static curves.
 
-use egui::Context;
+use egui::{Context, Shape};
 use egui_plot::PlotTransform;
 
 use super::cached_raster::{CachedRaster, MANY, RasterImage, RasterScene};
-use super::curve_layer::{add_curve_lines, lies_at_the_bottom};
+use super::curve_layer::{CurveLooks, add_curve_lines, lies_at_the_bottom};
+use super::curve_style::CurveStyle;
 use super::drawn_curves::{BodeCurve, DrawnCurves};
 use crate::gui::widgets::palette::Palette;
+
+/// Minimum number of curves in a small plot that are replaced by an image.
+const MANY_IN_MINIATURE: usize = 8;
 
 /// Pane as last drawn: transform, lines, and the image of its static lines.
 #[derive(Clone, Debug, Default)]
@@ -19,42 +23,86 @@ pub(super) struct DrawnPane {
 }
 
 impl DrawnPane {
-    /// Returns the image of the curves at the bottom if these are static and at least
-    /// [`MANY`] in number.
+    /// Returns the image of the curves at the bottom if these are static and at least [`MANY`] in
+    /// number.
     pub(super) fn image_of_many(
         &mut self,
         ctx: &Context,
         curves: &[BodeCurve],
         transform: &PlotTransform,
+        looks: CurveLooks<'_>,
         palette: &Palette,
     ) -> Option<RasterImage> {
+        let lowest = LowestCurves::new(curves, looks, palette);
+        if lowest.curves.len() < MANY {
+            return None;
+        }
+        let scene = lowest.scene(ctx, transform, &self.curves);
+        let drawn = &self.curves;
+        self.image
+            .image_of(ctx, scene, || lowest.shapes(transform, drawn))
+    }
+
+    /// Returns the image of the curves at the bottom of a small plot if these are at least
+    /// [`MANY_IN_MINIATURE`] in number. The lines of all cells of the overview would take tens of
+    /// megabytes as triangles.
+    pub(super) fn image_in_miniature(
+        &mut self,
+        ctx: &Context,
+        curves: &[BodeCurve],
+        transform: &PlotTransform,
+        looks: CurveLooks<'_>,
+        palette: &Palette,
+    ) -> Option<RasterImage> {
+        let lowest = LowestCurves::new(curves, looks, palette);
+        if lowest.curves.len() < MANY_IN_MINIATURE {
+            return None;
+        }
+        let scene = lowest.scene(ctx, transform, &self.curves);
+        let drawn = &self.curves;
+        self.image
+            .image_at_once(ctx, scene, || lowest.shapes(transform, drawn))
+    }
+}
+
+/// Curves that only show the scatter of their bundle, from bottom to top.
+struct LowestCurves {
+    /// Index in the scene, and style.
+    curves: Vec<(usize, CurveStyle)>,
+}
+
+impl LowestCurves {
+    fn new(curves: &[BodeCurve], looks: CurveLooks<'_>, palette: &Palette) -> Self {
         let mut lowest: Vec<(usize, &BodeCurve)> = curves
             .iter()
             .enumerate()
             .filter(|(_, curve)| lies_at_the_bottom(curve))
             .collect();
-        if lowest.len() < MANY {
-            return None;
-        }
         lowest.sort_by_key(|(_, curve)| curve.role.layer(curve.rejected));
-        let drawn = &self.curves;
-        let mut lines = Vec::with_capacity(lowest.len());
-        let mut still = RasterScene {
+        let mut styled = Vec::with_capacity(lowest.len());
+        for (index, curve) in lowest {
+            styled.push((index, looks.resting_style(curve, palette)));
+        }
+        Self { curves: styled }
+    }
+
+    fn scene(&self, ctx: &Context, transform: &PlotTransform, drawn: &DrawnCurves) -> RasterScene {
+        let mut scene = RasterScene {
             frame: *transform.frame(),
             pixels_per_point: ctx.pixels_per_point(),
-            curves: Vec::with_capacity(lowest.len()),
+            curves: Vec::with_capacity(self.curves.len()),
         };
-        for (index, curve) in lowest {
-            let style = palette.role_style(curve.role, curve.rejected);
-            still.curves.push((drawn.serial(index), style));
-            lines.push((drawn.runs(index), style));
+        for (index, style) in &self.curves {
+            scene.curves.push((drawn.serial(*index), *style));
         }
-        self.image.image_of(ctx, still, || {
-            let mut shapes = Vec::new();
-            for (runs, style) in lines {
-                add_curve_lines(runs, style, transform, &mut shapes);
-            }
-            shapes
-        })
+        scene
+    }
+
+    fn shapes(&self, transform: &PlotTransform, drawn: &DrawnCurves) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        for (index, style) in &self.curves {
+            add_curve_lines(drawn.runs(*index), *style, transform, &mut shapes);
+        }
+        shapes
     }
 }

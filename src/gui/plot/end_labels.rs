@@ -37,6 +37,21 @@ pub(super) fn paint_end_labels(ui: &Ui, frame: Rect, mut labels: Vec<EndLabel>) 
     }
 }
 
+/// Returns as many labels as fit beside `frame`, from the first to the last at equal steps.
+pub(super) fn labels_within(frame: Rect, labels: Vec<EndLabel>) -> Vec<EndLabel> {
+    let room = ((frame.height() - 2.0 * MARGIN) / LABEL_GAP) as usize + 1;
+    if labels.len() <= room {
+        return labels;
+    }
+    if room < 2 {
+        return labels.into_iter().take(room).collect();
+    }
+    let last = labels.len() - 1;
+    (0..room)
+        .map(|place| labels[place * last / (room - 1)].clone())
+        .collect()
+}
+
 /// Moves labels, sorted by height, down until they no longer overlap, then up again if they leave
 /// the plot.
 fn spread(labels: &mut [EndLabel], bottom: f32) {
@@ -53,6 +68,22 @@ fn spread(labels: &mut [EndLabel], bottom: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_that_do_not_fit_are_thinned_from_the_first_to_the_last() {
+        let labels: Vec<EndLabel> = (0..9)
+            .map(|number| EndLabel {
+                y: 0.0,
+                text: number.to_string(),
+                color: Color32::WHITE,
+            })
+            .collect();
+        // Room for three labels at a distance of 14 between margins of 5.
+        let frame = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(100.0, 40.0));
+        let shown = labels_within(frame, labels);
+        let texts: Vec<&str> = shown.iter().map(|label| label.text.as_str()).collect();
+        assert_eq!(texts, ["0", "4", "8"]);
+    }
 
     #[test]
     fn names_keep_clear_of_one_another_and_within_the_plot() {

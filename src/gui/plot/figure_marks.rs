@@ -7,15 +7,16 @@ use gdcm_plot::figure::axis::Scale;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::figure::{Dot, Dots};
 use gdcm_plot::figure::marks::MarkId;
+use gdcm_plot::figure::marks::RING_PT;
 use gdcm_plot::figure::paint::DotStyle;
 use gdcm_plot::figure::{Mark, Panel, Range};
 
-use super::canvas::{Canvas, LETTERS_PT, area};
+use super::canvas::{Canvas, LETTERS_PT, SCALE, area};
 use super::viewed_range::ranges_of;
 use crate::gui::widgets::palette::Palette;
 
 /// Radius of the ring around a focused or highlighted dot \[pt\].
-pub(super) const RING: f32 = 8.0;
+pub(super) const RING: f32 = RING_PT as f32 * SCALE;
 const RING_WIDTH: f32 = 1.4;
 /// Magnification of a highlighted dot.
 const EMPHASIZED: f64 = 1.3;

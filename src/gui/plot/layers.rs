@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use egui::{Color32, Shape, Stroke, Ui};
 use egui_plot::{
-    FilledArea, LineStyle, PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform, PlotUi,
-    Span, VLine,
+    Axis, FilledArea, HLine, LineStyle, PlotBounds, PlotGeometry, PlotItem, PlotItemBase,
+    PlotTransform, PlotUi, Span, VLine,
 };
 
 /// Distance between dots \[pt\].
@@ -14,6 +14,26 @@ const DOT_SPACING: f32 = 4.0;
 /// Shades a horizontal range.
 pub(super) fn add_shade(plot: &mut PlotUi<'_>, range: RangeInclusive<f64>, fill: Color32) {
     plot.span(Span::new("", range).fill(fill).border_width(0.0));
+}
+
+/// Shades a range of values.
+pub(super) fn add_shade_of_values(
+    plot: &mut PlotUi<'_>,
+    range: RangeInclusive<f64>,
+    fill: Color32,
+) {
+    plot.span(
+        Span::new("", range)
+            .axis(Axis::Y)
+            .fill(fill)
+            .border_width(0.0),
+    );
+}
+
+/// Draws a dashed horizontal line across the panel at a value.
+pub(super) fn add_dashed_level(plot: &mut PlotUi<'_>, value: f64, stroke: Stroke) {
+    let line = HLine::new("", value).stroke(stroke);
+    plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
 }
 
 /// Fills the area between two lines through `points`: `[x, lower value, upper value]`, all finite.

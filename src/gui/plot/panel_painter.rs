@@ -6,6 +6,8 @@ use egui::{
 };
 use egui_plot::{Axis, Plot, PlotTransform, PlotUi};
 
+use gdcm_plot::figure::Range;
+
 use super::panel_axis::PanelAxis;
 use super::ticks::GRID_SPACING;
 use crate::gui::widgets::palette::Palette;
@@ -49,6 +51,10 @@ pub(super) struct Follow {
     pub(super) margins: Vec2,
     /// Panels with the same group share their horizontal range.
     pub(super) group: Option<Id>,
+    /// Horizontal range, in axis coordinates, instead of the range of the data.
+    pub(super) whole_across: Option<Range>,
+    /// Range of the values instead of the range of the data.
+    pub(super) values: Option<Range>,
 }
 
 /// Result of drawing a panel.
@@ -126,13 +132,19 @@ fn quiet_plot<'p>(id: Id, palette: &Palette) -> Plot<'p> {
 }
 
 fn following<'p>(plot: Plot<'p>, follow: Follow) -> Plot<'p> {
-    let plot = plot
+    let mut plot = plot
         .sense(Sense::click_and_drag())
         .auto_bounds(true)
         .allow_drag(follow.pans)
         .allow_axis_zoom_drag(true)
         .allow_double_click_reset(true)
         .set_margin_fraction(follow.margins);
+    if let Some(range) = follow.whole_across {
+        plot = plot.default_x_bounds(range.min, range.max);
+    }
+    if let Some(range) = follow.values {
+        plot = plot.default_y_bounds(range.min, range.max);
+    }
     match follow.group {
         Some(group) => plot
             .link_axis(group, Vec2b::new(true, false))

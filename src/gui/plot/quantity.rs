@@ -20,6 +20,8 @@ pub enum BodeQuantity<'a> {
     /// difference between `H_ref` and `H_sim` below (M6). `H_ref` is the identified response,
     /// `H_sim` the response of a physics model.
     Error { phase: PhaseErrorUnit },
+    /// Scheduled minus identified response in every condition.
+    ScheduleError,
 }
 
 /// Subject of a response plot, which distinguishes its controls from those in other plots.
@@ -64,6 +66,12 @@ const FOUND_MODEL_NAMES: PlotNames = PlotNames {
     pane_suffix: " of a found model",
     sentence_suffix: " plot of a found model",
 };
+const SCHEDULE_ERROR_NAMES: PlotNames = PlotNames {
+    salt: "schedule error",
+    label_suffix: ", error of the schedule",
+    pane_suffix: " error in every condition",
+    sentence_suffix: " error of the schedule",
+};
 const ERROR_NAMES: PlotNames = PlotNames {
     salt: "error",
     label_suffix: ", error plot",
@@ -101,6 +109,7 @@ impl BodeQuantity<'_> {
         let subject = match self {
             Self::Response { subject, .. } => subject,
             Self::Error { .. } => return ERROR_NAMES,
+            Self::ScheduleError => return SCHEDULE_ERROR_NAMES,
         };
         match subject {
             ResponseSubject::Condition => CONDITION_NAMES,
@@ -169,7 +178,7 @@ impl BodeQuantity<'_> {
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { .. } => Self::RESPONSE.axis_label(pane),
-            Self::Error { .. } => self.axis_label(pane),
+            Self::Error { .. } | Self::ScheduleError => self.axis_label(pane),
         }
     }
 
@@ -188,6 +197,8 @@ impl BodeQuantity<'_> {
             }
             (Self::Response { .. }, Pane::Magnitude) => "Magnitude [dB]".to_owned(),
             (Self::Response { .. }, Pane::Phase) => "Phase [deg]".to_owned(),
+            (Self::ScheduleError, Pane::Magnitude) => "Error of magnitude [dB]".to_owned(),
+            (Self::ScheduleError, Pane::Phase) => "Error of phase [deg]".to_owned(),
             (Self::Error { .. }, Pane::Magnitude) => "|ident.| / |model| [dB]".to_owned(),
             (
                 Self::Error {
@@ -209,8 +220,8 @@ impl BodeQuantity<'_> {
         match (self, pane) {
             (Self::Response { .. }, Pane::Magnitude) => 4.0,
             (Self::Response { .. }, Pane::Phase) => 20.0,
-            (Self::Error { .. }, Pane::Magnitude) => 1.0,
-            (Self::Error { .. }, Pane::Phase) => 5.0,
+            (Self::Error { .. } | Self::ScheduleError, Pane::Magnitude) => 1.0,
+            (Self::Error { .. } | Self::ScheduleError, Pane::Phase) => 5.0,
         }
     }
 }

@@ -1,24 +1,27 @@
 //! Read-out: values of every role at the pointer, in a strip between the panes.
 
-use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Color32, FontId, Pos2, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-use super::curve_style::Role;
+use super::curve_style::{CurveStyle, Role};
 use super::panel_text::AT_RIGHT;
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Height of the strip \[pt\].
-pub(super) const STRIP_HEIGHT: f32 = 40.0;
-/// Minimum width of a cell \[pt\].
-const LEAST_CELL: f32 = 96.0;
+pub(in crate::gui) const STRIP_HEIGHT: f32 = 40.0;
+/// Minimum gap between the two values of a cell \[pt\].
+const VALUE_GAP: f32 = 10.0;
+/// Minimum width of a name beside its sample \[pt\].
+const LEAST_NAME: f32 = 40.0;
 /// Width of the columns of frequency and difference, whose names are longer, relative to the column
 /// of a role.
 const WIDE_COLUMN: f32 = 1.25;
 /// Padding at the left and at the right of a column \[pt\].
 const PAD: f32 = 8.0;
-/// Length of a sample, and of the gap beside it \[pt\].
-const SAMPLE: f32 = 14.0;
+/// Length of a sample, which shows the pattern of the curve in the panes, and of the gap beside it
+/// \[pt\].
+const SAMPLE: f32 = 22.0;
 const SAMPLE_GAP: f32 = 6.0;
 
 /// Values of a role, or differences between two roles.
@@ -40,14 +43,40 @@ impl ReadoutCell {
         format!("{}: {}, {}", self.name, self.values[0], self.values[1])
     }
 
-    /// Draws the values into a column.
-    fn ui(&self, ui: &Ui, column: Rect, palette: &Palette) {
+    /// Returns the style of the sample; `None` for a difference. The sample has the width and the
+    /// dashes of its curves.
+    fn sample(&self, palette: &Palette) -> Option<CurveStyle> {
+        Some(palette.role_style(self.role?, false))
+    }
+
+    /// Returns the font of the values.
+    fn font(&self, size: f32) -> FontId {
+        if self.role.is_none() {
+            medium(size)
+        } else {
+            FontId::proportional(size)
+        }
+    }
+
+    /// Returns the width that the values and the sample need within a column \[pt\].
+    fn needed_width(&self, ui: &Ui, size: f32) -> f32 {
+        let mut values = VALUE_GAP;
+        for value in &self.values {
+            values += text_width(ui, value, self.font(size));
+        }
+        match self.role {
+            Some(_) => values.max(SAMPLE + SAMPLE_GAP + LEAST_NAME),
+            None => values,
+        }
+    }
+
+    /// Draws the values, in a font of this size, into a column.
+    fn ui(&self, ui: &Ui, column: Rect, size: f32, palette: &Palette) {
         let [upper, lower] = halves(column);
         let mut from = 0.0;
-        if let Some(role) = self.role {
+        if let Some(style) = self.sample(palette) {
             let start = upper.left_center();
             let path = vec![start, start + vec2(SAMPLE, 0.0)];
-            let style = palette.role_style(role, false).in_miniature();
             let mut shapes = Vec::new();
             style.add_shapes(path, &mut shapes);
             ui.painter().extend(shapes);
@@ -55,11 +84,6 @@ impl ReadoutCell {
         }
         let name = self.name_within(ui, upper.width() - from);
         row_text(ui, upper, from, &name, SMALL_SIZE, palette.dim_text);
-        let font = if self.role.is_none() {
-            medium(BODY_SIZE)
-        } else {
-            FontId::proportional(BODY_SIZE)
-        };
         // The magnitude is at the left of the column, the phase at its right.
         for (index, x) in [0.0, AT_RIGHT].into_iter().enumerate() {
             let color = if self.warns[index] {
@@ -67,7 +91,7 @@ impl ReadoutCell {
             } else {
                 palette.text
             };
-            painted_text(ui, lower, x, &self.values[index], font.clone(), color);
+            painted_text(ui, lower, x, &self.values[index], self.font(size), color);
         }
     }
 
@@ -102,25 +126,75 @@ impl Readout {
 
 /// Draws a read-out between the panes, its cells side by side; if there is not enough room, the
 /// first cells are omitted.
-pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
+pub(in crate::gui) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
     ui.painter().rect_filled(strip, 6.0, palette.raised);
-    let most = ((strip.width() / LEAST_CELL) as usize).saturating_sub(1);
-    let left_out = readout.cells.len().saturating_sub(most);
-    let cells = &readout.cells[left_out..];
+    let fit = StripFit::new(ui, strip.width(), readout);
+    let cells = &readout.cells[fit.left_out..];
     let [upper, lower] = halves(column(strip, 0, cells.len()));
     let heading = elided(ui, &readout.heading, upper.width(), SMALL_SIZE);
     row_text(ui, upper, 0.0, &heading, SMALL_SIZE, palette.dim_text);
     let frequency = &readout.frequency;
-    painted_text(ui, lower, 0.0, frequency, medium(BODY_SIZE), palette.text);
+    painted_text(ui, lower, 0.0, frequency, medium(fit.size), palette.text);
     for (index, cell) in cells.iter().enumerate() {
         let column = column(strip, index + 1, cells.len());
         let line = Stroke::new(1.0, palette.line);
         ui.painter()
             .vline(column.left() - PAD, strip.shrink(8.0).y_range(), line);
-        cell.ui(ui, column, palette);
+        cell.ui(ui, column, fit.size, palette);
     }
     let response = ui.interact(strip, ui.scope_id().with("read-out"), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.sentence()));
+}
+
+/// How the cells of a read-out fit into a strip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct StripFit {
+    /// Number of the first cells that are omitted.
+    left_out: usize,
+    /// Font size of the values \[pt\].
+    size: f32,
+}
+
+impl StripFit {
+    /// Returns the fit in which no two values touch: with small values if necessary, and without
+    /// the first cells if that is not enough.
+    fn new(ui: &Ui, width: f32, readout: &Readout) -> Self {
+        let cells = &readout.cells;
+        for left_out in 0..cells.len() {
+            for size in [BODY_SIZE, SMALL_SIZE] {
+                let fit = Self { left_out, size };
+                if fit.has_room(ui, width, readout) {
+                    return fit;
+                }
+            }
+        }
+        Self {
+            left_out: cells.len().saturating_sub(1),
+            size: SMALL_SIZE,
+        }
+    }
+
+    fn has_room(self, ui: &Ui, width: f32, readout: &Readout) -> bool {
+        let cells = &readout.cells[self.left_out..];
+        let strip = Rect::from_min_size(Pos2::ZERO, vec2(width, STRIP_HEIGHT));
+        let frequency = text_width(ui, &readout.frequency, medium(self.size));
+        if column(strip, 0, cells.len()).width() < frequency {
+            return false;
+        }
+        for (index, cell) in cells.iter().enumerate() {
+            let room = column(strip, index + 1, cells.len()).width();
+            if room < cell.needed_width(ui, self.size) {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
+    let color = Color32::PLACEHOLDER;
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
+    galley.size().x
 }
 
 /// Returns the place of a column in a strip with `cells` cells; column 0 shows the frequency.
@@ -149,4 +223,74 @@ fn width_before(place: usize, cells: usize) -> f32 {
 fn halves(column: Rect) -> [Rect; 2] {
     let middle = column.center().y;
     [column.with_max_y(middle), column.with_min_y(middle)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gui::widgets::palette::apply;
+
+    fn readout() -> Readout {
+        let roles = [
+            (Some(Role::Nominal), "nominal, rejected"),
+            (Some(Role::Identified), "identified"),
+            (Some(Role::Corrected), "corrected"),
+            (Some(Role::Scheduled), "scheduled"),
+            (None, "corrected \u{2212} identified"),
+        ];
+        let mut cells = Vec::new();
+        for (role, name) in roles {
+            cells.push(ReadoutCell {
+                role,
+                name: name.to_owned(),
+                values: ["\u{2212}16.7 dB".to_owned(), "\u{2212}209°".to_owned()],
+                warns: [false; 2],
+            });
+        }
+        Readout {
+            heading: "ω at the pointer".to_owned(),
+            frequency: "6.00 rad/s".to_owned(),
+            cells,
+        }
+    }
+
+    fn with_ui(check: impl Fn(&Ui)) {
+        let ctx = egui::Context::default();
+        apply(&ctx);
+        for _ in 0..2 {
+            let output = ctx.run_ui(egui::RawInput::default(), |ui| check(ui));
+            output.drop_without_applying_deltas();
+        }
+    }
+
+    #[test]
+    fn the_two_values_of_a_cell_never_touch() {
+        with_ui(|ui| {
+            let readout = readout();
+            for width in (200..1200).step_by(10) {
+                let strip = Rect::from_min_size(Pos2::ZERO, vec2(width as f32, STRIP_HEIGHT));
+                let fit = StripFit::new(ui, strip.width(), &readout);
+                let cells = &readout.cells[fit.left_out..];
+                for (index, cell) in cells.iter().enumerate() {
+                    let room = column(strip, index + 1, cells.len()).width();
+                    let mut values = 0.0;
+                    for value in &cell.values {
+                        values += text_width(ui, value, cell.font(fit.size));
+                    }
+                    assert!(values + VALUE_GAP <= room, "{width}: {values} in {room}");
+                }
+            }
+            let wide = StripFit::new(ui, 1200.0, &readout);
+            assert_eq!((wide.left_out, wide.size), (0, BODY_SIZE));
+        });
+    }
+
+    #[test]
+    fn samples_have_the_dashes_of_their_curves() {
+        let palette = Palette::dark();
+        for cell in readout().cells {
+            let curve = cell.role.map(|role| palette.role_style(role, false));
+            assert_eq!(cell.sample(&palette), curve);
+        }
+    }
 }

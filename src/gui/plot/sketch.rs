@@ -6,7 +6,7 @@ use egui_plot::PlotTransform;
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::Range;
 
-use super::curve_layer::{CurveLooks, add_curve_lines};
+use super::curve_layer::{CurveLooks, add_curve_lines, lies_at_the_bottom};
 use super::drawn_curves::{BodeCurve, Pane, VisiblePart};
 use super::drawn_pane::DrawnPane;
 use super::viewed_range::{bounds_of, ranges_of};
@@ -44,9 +44,15 @@ impl Sketch<'_> {
             is_miniature: true,
             ..CurveLooks::default()
         };
+        let image =
+            drawn.image_in_miniature(painter.ctx(), self.curves, &transform, looks, self.palette);
         let mut curves: Vec<(usize, &BodeCurve)> = self.curves.iter().enumerate().collect();
-        looks.sort(&mut curves);
         let mut shapes = Vec::new();
+        if let Some(image) = image {
+            shapes.push(image.shape(1.0));
+            curves.retain(|(_, curve)| !lies_at_the_bottom(curve) || looks.is_emphasized(curve));
+        }
+        looks.sort(&mut curves);
         for (index, curve) in curves {
             let style = looks.style(curve, self.palette);
             add_curve_lines(drawn.curves.runs(index), style, &transform, &mut shapes);

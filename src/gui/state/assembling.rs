@@ -57,6 +57,8 @@ pub struct AssemblyState {
     pub sorting: Sorting,
     /// Displayed response of the selected model.
     pub preview: Preview,
+    /// Whether the path field has received the focus, as it does when the import opens.
+    pub had_focus: bool,
     /// Path of a folder or a file, as typed.
     pub source_path: String,
     /// Path of the rules, as typed.

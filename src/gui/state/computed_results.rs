@@ -10,6 +10,7 @@
 
 use std::sync::Arc;
 
+use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::analysis_jobs::{
@@ -20,6 +21,7 @@ use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
 };
+use gdcm_study::jobs::trade_off_job::{TradeOff, TradeOffJob};
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
 use gdcm_study::results::physics_assessment::AssessedPhysics;
@@ -67,6 +69,8 @@ pub struct Results {
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
     /// Responses across conditions, with their job; see `State::across`.
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
+    /// Trade-off of α in the displayed condition, with its job; see `State::trade_off`.
+    pub trade_off: Option<(TradeOffJob, Result<Arc<TradeOff>, ProblemError>)>,
     /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
     /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
@@ -83,7 +87,7 @@ pub struct Results {
         RecordHistoryJob,
         Result<Arc<RecordHistory>, NoRecordHistory>,
     )>,
-    /// Models' responses to all records, with their job; see `State::time_histories`.
+    /// Models' responses to the held-out records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Comparisons of models with a record in the time domain, or the reasons for their absence.

@@ -135,6 +135,25 @@ impl ConditionRecords {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
 
+    /// Returns the number, counted from 0, of the record that the latest identification used under
+    /// this name, whatever has changed since.
+    pub fn record_of_name(&self, name: &str) -> Option<usize> {
+        let (job, _) = self.found.as_ref()?;
+        job.request
+            .records
+            .iter()
+            .position(|record| record.name == name)
+    }
+
+    /// Returns χ²/dof of the record with this name in the latest identification, whatever has
+    /// changed since; `None` if it was not used.
+    pub fn fit_cost(&self, name: &str) -> Option<f64> {
+        let number = self.record_of_name(name)?;
+        let fits = &self.identification()?.record_fits;
+        let fit = fits.iter().find(|fit| fit.record == number)?;
+        Some(fit.cost)
+    }
+
     /// Returns the identified models to put into the condition; `None` without a successful
     /// identification.
     pub fn adopted(
@@ -163,6 +182,8 @@ impl ConditionRecords {
             self.found = now.found;
         }
         self.choose(now.chosen);
+        self.is_chosen = now.is_chosen;
+        self.opening = now.opening;
         self
     }
 

@@ -32,6 +32,13 @@ pub enum AddedRecord {
     KnownAlready,
 }
 
+/// Input and number of records for which the displayed record was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opening {
+    pub input: usize,
+    pub records: usize,
+}
+
 /// Flight records of a condition, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
@@ -39,6 +46,10 @@ pub struct ConditionRecords {
     pub rows: Vec<LaidOutRecord>,
     /// Index of the displayed row.
     pub chosen: usize,
+    /// Whether the engineer has chosen the displayed row; otherwise it follows the input in focus.
+    pub is_chosen: bool,
+    /// Input for which the displayed row was found, while the engineer has not chosen one.
+    pub opening: Option<Opening>,
     /// Delay and hold of each input.
     pub inputs: Vec<ChannelPreparation>,
     /// Delay and hold of each output.
@@ -89,8 +100,8 @@ impl ConditionRecords {
         true
     }
 
-    /// Adds a part behind its record. The whole record is no longer used, so that no sample counts
-    /// twice.
+    /// Adds a part behind its record, and displays it. The whole record is no longer used, so that no
+    /// sample counts twice. A part of a part is a part of the whole record.
     ///
     /// # Errors
     /// A message, if the record has no samples in that time span.
@@ -100,18 +111,11 @@ impl ConditionRecords {
         part_s: [f64; 2],
         channels: &RecordChannels,
     ) -> Result<(), Message> {
+        let index = self.whole_index(index);
         let Some(whole) = self.rows.get_mut(index) else {
             return Err(Message::new("unknown-record", "there is no such record"));
         };
-        // A pointer gives more digits than anyone can read: hundredths of a second are enough.
-        let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
-        let table = Arc::new(whole.table.part_of_time(part_s));
-        let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
-        if let Some(flight) = &part.flight
-            && flight.time_s.len() < 2
-        {
-            return Err(Message::new("no-samples", no_samples(whole, part_s)));
-        }
+        let part = part_of(whole, part_s, channels)?;
         let source = whole.table.source.clone();
         let was_used = whole.used;
         if whole.table.part_s.is_none() {
@@ -128,6 +132,45 @@ impl ConditionRecords {
             position += 1;
         }
         self.rows.insert(position, part);
+        self.chosen = position;
+        self.is_chosen = true;
+        Ok(())
+    }
+
+    /// Returns the index of the whole record of a row, or of the row itself if the whole is not
+    /// loaded.
+    fn whole_index(&self, index: usize) -> usize {
+        let Some(row) = self.rows.get(index) else {
+            return index;
+        };
+        let source = &row.table.source;
+        let whole = self
+            .rows
+            .iter()
+            .position(|other| other.table.part_s.is_none() && other.table.source == *source);
+        whole.unwrap_or(index)
+    }
+
+    /// Moves the ends of the part in a row \[s\]; its use and manoeuvre are kept.
+    ///
+    /// # Errors
+    /// A message, if the row is no part, or if the record has no samples in that time span.
+    pub fn move_part(
+        &mut self,
+        index: usize,
+        part_s: [f64; 2],
+        channels: &RecordChannels,
+    ) -> Result<(), Message> {
+        let row = match self.rows.get(index) {
+            Some(row) if row.table.part_s.is_some() => row,
+            _ => return Err(Message::new("unknown-record", "there is no such part")),
+        };
+        let whole = &self.rows[self.whole_index(index)];
+        let mut part = part_of(whole, part_s, channels)?;
+        part.used = row.used;
+        part.guess = row.guess.clone();
+        part.layout = row.layout.clone();
+        self.rows[index] = part.laid_out(row.layout.clone(), channels);
         Ok(())
     }
 
@@ -235,6 +278,27 @@ impl ConditionRecords {
     pub fn choose(&mut self, index: usize) {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
+}
+
+/// Creates a part of a record between two times \[s\].
+///
+/// # Errors
+/// A message, if the record has no samples in that time span.
+fn part_of(
+    whole: &LaidOutRecord,
+    part_s: [f64; 2],
+    channels: &RecordChannels,
+) -> Result<LaidOutRecord, Message> {
+    // A pointer gives more digits than anyone can read: hundredths of a second are enough.
+    let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
+    let table = Arc::new(whole.table.part_of_time(part_s));
+    let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
+    if let Some(flight) = &part.flight
+        && flight.time_s.len() < 2
+    {
+        return Err(Message::new("no-samples", no_samples(whole, part_s)));
+    }
+    Ok(part)
 }
 
 /// Returns the message for a part \[s\] without samples.

@@ -1,14 +1,14 @@
 //! Forms in front of the window, and their contents.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::export::ExportFormat;
-use gdcm_model::dataset::{ConditionId, ModelId};
+use gdcm_model::dataset::ModelId;
 use gdcm_plot::figure::ColumnWidth;
 use gdcm_words::Table;
 
+use super::export_form::ExportForm;
 use super::view::View;
 
 /// Requirement table that the engineer supplies as a file.
@@ -27,10 +27,10 @@ pub enum FormKind {
     FindDataset,
     /// Path of the study.
     Save,
-    /// Corrections to export, and the folder.
+    /// Files to export, their contents and folder.
     Export,
-    /// Export format for other tools, and the path.
-    ExportAs,
+    /// Messages of the session.
+    Messages,
     /// Reason for a rejection, in the engineer's words.
     Reason,
     /// Path of a table to save.
@@ -39,6 +39,8 @@ pub enum FormKind {
     Models,
     /// Channels and path for a dataset made from records.
     RecordDataset,
+    /// Path of flight records to add.
+    AddRecords,
     /// Path and printed width of a figure.
     SaveFigure,
     /// Path of the report.
@@ -86,10 +88,7 @@ pub struct Forms {
     pub figure: Option<View>,
     /// Printed width of the figure.
     pub figure_width: ColumnWidth,
-    /// Conditions whose corrections are exported.
-    pub exported: BTreeSet<ConditionId>,
-    /// Export format for other tools.
-    pub export_format: ExportFormat,
+    pub export: ExportForm,
     pub palette: PaletteForm,
     /// Files that the form's action would overwrite; if there are any, the form asks for consent.
     pub existing: Vec<String>,

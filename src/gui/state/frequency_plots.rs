@@ -1,12 +1,14 @@
 //! State of the frequency plots, kept between frames.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::error::ErrorCache;
 use gdcm_plot::figure::responses::{AirspeedCache, ResponseCache};
-use gdcm_study::AcrossRole;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 
+use super::across_display::{AcrossDisplay, AcrossFit};
 use crate::gui::plot::overview_scene::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
@@ -17,12 +19,14 @@ pub struct FrequencyPlots {
     pub bode: BodeView,
     /// Axis ranges and transforms of the error plot (ratio and phase difference of the models).
     pub error: BodeView,
-    /// Model role displayed by the plot across conditions.
-    pub across_role: AcrossRole,
+    /// Models and conditions in the plots across conditions.
+    pub across_display: AcrossDisplay,
     /// Axis ranges and transforms of the plot across conditions.
     pub across: BodeView,
-    /// Response and role for which the axes of the plot across conditions were last fitted.
-    pub across_fitted: Option<(Pair, AcrossRole)>,
+    /// Axis ranges and transforms of the plot of the error of the schedule.
+    pub across_error: BodeView,
+    /// Content for which the axes of both plots were last fitted.
+    pub across_fitted: Option<AcrossFit>,
     /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
     pub overview: OverviewView,
@@ -37,11 +41,21 @@ pub struct FrequencyPlots {
 }
 
 impl FrequencyPlots {
+    /// Drops the shapes of responses that do not belong to these curves, with the curves of other
+    /// conditions that they keep in memory.
+    pub fn keep_shapes_of(&mut self, curves: Option<&Arc<ConditionCurves>>) {
+        match curves {
+            Some(curves) => self.shapes.retain(|_, cache| cache.is_from(curves)),
+            None => self.shapes.clear(),
+        }
+    }
+
     /// Requests that all axes be fitted to their curves in the next frame.
     pub fn fit(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();
         self.across.request_fit();
+        self.across_error.request_fit();
     }
 
     /// Requests that the value axes be fitted to other curves, except axes that have been zoomed.

@@ -3,7 +3,8 @@
 
 use super::assessment_display::AssessmentDisplay;
 use super::mapped_cost::MappedCost;
-use super::requirements_page::RequirementsPage;
+use super::requirements_display::RequirementsDisplay;
+use crate::gui::plot::figure_view::FigureView;
 use crate::gui::widgets::tables::Sorting;
 
 /// Display options of the assessment, the requirements, the variants and the cost map.
@@ -14,8 +15,9 @@ pub struct JudgingDisplay {
     pub assessment_sorting: Sorting,
     /// Whether responses to a test input are shown even if flight records are available.
     pub shows_test: bool,
-    pub requirements_page: RequirementsPage,
-    pub requirements_sorting: [Sorting; 2],
+    pub requirements: RequirementsDisplay,
+    /// Plots of the record or of the test input among the details of a requirement.
+    pub history_figure: FigureView,
     /// Typed name under which the current decisions are stored as a variant.
     pub variant_name: String,
     /// Variant whose corrected model and net gains are overlaid.

@@ -16,7 +16,7 @@ pub struct Layout {
     pub left_open: Option<bool>,
     /// Open sheet, which covers part of the views; `None` if it is closed.
     pub sheet: Option<Sheet>,
-    /// Whether the settings are unfolded; they then replace the results below the verdict.
+    /// Whether the settings are open; they then replace the models.
     pub settings_open: bool,
     /// Whether the rarely changed settings are unfolded.
     pub advanced_open: bool,

@@ -3,17 +3,23 @@
 //! Begin with [`window_state`]; its `State` contains everything else. [`shown_results`] says which
 //! results are shown, [`display`] holds the display options of all views.
 
+pub mod across_display;
 pub mod assembling;
 pub mod assembly_columns;
 pub mod assessment_display;
 pub mod background;
 pub mod channels_view;
+pub mod column_groups;
 pub mod computed_results;
+pub mod condition_fit;
 mod condition_identification;
 pub mod condition_records;
 pub mod curve_display;
 pub mod display;
 pub mod evidence_cache;
+pub mod excited_input;
+pub mod export_form;
+pub mod export_plan;
 pub mod forms;
 pub mod frequency_plots;
 pub mod gain_display;
@@ -31,8 +37,9 @@ pub mod preferences;
 pub mod record_change;
 pub mod records;
 pub mod records_page;
-pub mod requirements_page;
+pub mod requirements_display;
 pub mod selection;
+pub mod settings_session;
 pub mod sheet;
 pub mod shown_results;
 pub mod value_uncertainty;

@@ -1,4 +1,6 @@
-//! Messages to the engineer: short notices in the status bar, and bars that remain until closed.
+//! Messages to the engineer: toasts in the top bar, and bars that remain until closed.
+
+use std::path::PathBuf;
 
 use gdcm_study::decisions::dataset_differences::Difference;
 
@@ -64,11 +66,250 @@ pub enum NoticeKind {
     Trouble,
 }
 
-/// Short message in the status bar; the next decision or notice replaces it.
+/// What the engineer can do about a notice, with a button.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoticeAction {
+    /// Opens a folder in the desktop.
+    ShowFolder(PathBuf),
+    /// Undoes the last step.
+    Undo,
+    /// Asks for another path of the study.
+    SaveElsewhere,
+    /// Asks for another file to open.
+    OpenAnother,
+    /// Starts the stopped computation again.
+    Compute,
+}
+
+/// Activity that a notice reports. A success resolves the failures of the same activity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// A decision about the study.
+    Decision,
+    Opening,
+    Saving,
+    Report,
+    Export,
+    Other,
+}
+
+/// Short message about a completed or failed action.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     pub kind: NoticeKind,
     /// Stable code, for tests.
     pub code: &'static str,
     pub text: String,
+    pub activity: Activity,
+    pub action: Option<NoticeAction>,
+    /// Time of day: "14:32".
+    pub at: String,
+    /// Number in the session, from 0.
+    pub number: u64,
+}
+
+/// Time \[s\] for which a success is shown.
+pub const SHOWN_FOR_S: f64 = 6.0;
+/// Maximum number of messages kept in a session.
+const MOST_MESSAGES: usize = 500;
+/// Maximum number of toasts; older ones are in the list of messages only.
+const MOST_TOASTS: usize = 20;
+
+/// Notice in the top bar.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Toast {
+    pub notice: Notice,
+    /// Time \[s\] for which it is still shown; `None` until it is dismissed or resolved.
+    pub remaining_s: Option<f64>,
+}
+
+/// Messages of the session, and those of them that the top bar shows.
+#[derive(Debug, Default)]
+pub struct Notices {
+    /// Oldest first.
+    messages: Vec<Notice>,
+    /// Oldest first.
+    toasts: Vec<Toast>,
+    /// Whether the list of toasts is open below the newest.
+    pub is_list_open: bool,
+    /// Whether the pointer is on a toast, so that no time passes for them.
+    pub is_held: bool,
+    /// Time of the last call of [`Self::pass_time`] \[s, window clock\].
+    seen_at_s: f64,
+    next_number: u64,
+}
+
+impl Notices {
+    /// Adds a notice, and shows it. It resolves failures of the same activity if it is a success.
+    pub fn add(&mut self, mut notice: Notice) {
+        notice.number = self.next_number;
+        self.next_number += 1;
+        let remaining_s = match notice.kind {
+            NoticeKind::Done => {
+                self.resolve(notice.activity);
+                Some(SHOWN_FOR_S)
+            }
+            NoticeKind::Trouble => None,
+        };
+        self.messages.push(notice.clone());
+        if self.messages.len() > MOST_MESSAGES {
+            self.messages.remove(0);
+        }
+        self.toasts.push(Toast {
+            notice,
+            remaining_s,
+        });
+        if self.toasts.len() > MOST_TOASTS {
+            self.toasts.remove(0);
+        }
+    }
+
+    /// Removes the failures of an activity from the top bar; those of [`Activity::Other`] remain
+    /// until they are dismissed.
+    pub fn resolve(&mut self, activity: Activity) {
+        if activity == Activity::Other {
+            return;
+        }
+        self.toasts.retain(|toast| {
+            toast.notice.kind == NoticeKind::Done || toast.notice.activity != activity
+        });
+    }
+
+    /// Removes what a new decision makes obsolete: refused decisions, and offers to undo an earlier
+    /// one.
+    pub fn follow_decision(&mut self) {
+        self.resolve(Activity::Decision);
+        self.toasts
+            .retain(|toast| toast.notice.action != Some(NoticeAction::Undo));
+    }
+
+    /// Removes a notice from the top bar.
+    pub fn dismiss(&mut self, number: u64) {
+        self.toasts.retain(|toast| toast.notice.number != number);
+        if self.toasts.len() < 2 {
+            self.is_list_open = false;
+        }
+    }
+
+    /// Removes all notices from the top bar.
+    pub fn dismiss_all(&mut self) {
+        self.toasts.clear();
+        self.is_list_open = false;
+    }
+
+    /// Lets time pass until `now_s` \[s, window clock\] unless the pointer holds the toasts; removes
+    /// those whose time is over. Returns the time \[s\] until the next one disappears.
+    pub fn pass_time(&mut self, now_s: f64) -> Option<f64> {
+        let passed_s = (now_s - self.seen_at_s).max(0.0);
+        self.seen_at_s = now_s;
+        let is_held = std::mem::take(&mut self.is_held) || self.is_list_open;
+        let mut next_s: Option<f64> = None;
+        for toast in &mut self.toasts {
+            let Some(remaining_s) = &mut toast.remaining_s else {
+                continue;
+            };
+            if !is_held {
+                *remaining_s -= passed_s;
+            }
+            next_s = Some(next_s.map_or(*remaining_s, |next_s| next_s.min(*remaining_s)));
+        }
+        self.toasts
+            .retain(|toast| toast.remaining_s.is_none_or(|left_s| left_s > 0.0));
+        if self.toasts.len() < 2 {
+            self.is_list_open = false;
+        }
+        next_s
+    }
+
+    /// Returns the toasts, newest first.
+    pub fn toasts(&self) -> impl Iterator<Item = &Toast> {
+        self.toasts.iter().rev()
+    }
+
+    /// Returns the newest message, whether or not it is still shown.
+    pub fn newest(&self) -> Option<&Notice> {
+        self.messages.last()
+    }
+
+    /// Returns the messages of the session, oldest first.
+    pub fn messages(&self) -> &[Notice] {
+        &self.messages
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn notice(kind: NoticeKind, activity: Activity, code: &'static str) -> Notice {
+        Notice {
+            kind,
+            code,
+            text: code.to_owned(),
+            activity,
+            action: None,
+            at: String::new(),
+            number: 0,
+        }
+    }
+
+    fn shown(notices: &Notices) -> Vec<&'static str> {
+        notices.toasts().map(|toast| toast.notice.code).collect()
+    }
+
+    #[test]
+    fn a_success_disappears_after_its_time_unless_it_is_held_and_a_failure_stays() {
+        let mut notices = Notices::default();
+        notices.pass_time(100.0);
+        notices.add(notice(NoticeKind::Trouble, Activity::Other, "failed"));
+        notices.add(notice(NoticeKind::Done, Activity::Other, "done"));
+        notices.pass_time(100.0 + 0.9 * SHOWN_FOR_S);
+        assert_eq!(shown(&notices), ["done", "failed"]);
+        notices.is_held = true;
+        notices.pass_time(100.0 + 5.0 * SHOWN_FOR_S);
+        assert_eq!(shown(&notices), ["done", "failed"], "held by the pointer");
+        notices.pass_time(100.0 + 5.2 * SHOWN_FOR_S);
+        assert_eq!(shown(&notices), ["failed"]);
+        notices.pass_time(1e6);
+        assert_eq!(shown(&notices), ["failed"]);
+        let codes: Vec<&str> = notices
+            .messages()
+            .iter()
+            .map(|message| message.code)
+            .collect();
+        assert_eq!(codes, ["failed", "done"], "the session keeps both");
+    }
+
+    #[test]
+    fn a_success_resolves_the_failures_of_its_activity() {
+        let mut notices = Notices::default();
+        notices.add(notice(NoticeKind::Trouble, Activity::Saving, "not-saved"));
+        notices.add(notice(NoticeKind::Trouble, Activity::Opening, "not-opened"));
+        notices.add(notice(NoticeKind::Done, Activity::Saving, "saved"));
+        assert_eq!(shown(&notices), ["saved", "not-opened"]);
+    }
+
+    #[test]
+    fn a_decision_removes_refusals_and_offers_to_undo() {
+        let mut notices = Notices::default();
+        notices.add(notice(NoticeKind::Trouble, Activity::Decision, "refused"));
+        let adopted = Notice {
+            action: Some(NoticeAction::Undo),
+            ..notice(NoticeKind::Done, Activity::Other, "adopted")
+        };
+        notices.add(adopted);
+        notices.follow_decision();
+        assert_eq!(shown(&notices), [""; 0]);
+        assert_eq!(notices.messages().len(), 2);
+    }
+
+    #[test]
+    fn the_messages_of_a_long_session_are_bounded() {
+        let mut notices = Notices::default();
+        for _ in 0..2 * MOST_MESSAGES {
+            notices.add(notice(NoticeKind::Trouble, Activity::Other, "again"));
+        }
+        assert_eq!(notices.messages().len(), MOST_MESSAGES);
+        assert_eq!(notices.toasts().count(), MOST_TOASTS);
+    }
 }

@@ -15,10 +15,17 @@ pub enum RecordChange {
     },
     /// The columns of a record, and of similar records of all conditions.
     Columns { record: String },
-    /// Units of the dataset for columns without units.
+    /// The assumed units were confirmed.
     DatasetUnits,
     /// Records were added to their conditions.
     Add { records: usize },
+    /// Added records without a condition were assigned to one.
+    Assign {
+        records: usize,
+        condition: ConditionId,
+    },
+    /// An added record without a condition was removed.
+    Discard { record: String },
 }
 
 /// A change of the records of a condition.
@@ -51,6 +58,9 @@ pub enum ConditionRecordChange {
     AddPart {
         record: String,
     },
+    MovePart {
+        record: String,
+    },
     RemovePart {
         record: String,
     },
@@ -66,8 +76,15 @@ impl RecordChange {
                 format!("{} (condition {condition})", change.name())
             }
             Self::Columns { record } => format!("columns of {record}"),
-            Self::DatasetUnits => "units of the dataset's channels".to_owned(),
+            Self::DatasetUnits => "confirm the assumed units".to_owned(),
             Self::Add { records } => format!("add {}", counted(*records, "record")),
+            Self::Assign { records, condition } => {
+                format!(
+                    "assign {} to condition {condition}",
+                    counted(*records, "record")
+                )
+            }
+            Self::Discard { record } => format!("remove {record}"),
         }
     }
 }
@@ -90,6 +107,7 @@ impl ConditionRecordChange {
             Self::Search => "identification search settings".to_owned(),
             Self::References => "references".to_owned(),
             Self::AddPart { record } => format!("part of {record}"),
+            Self::MovePart { record } => format!("ends of {record}"),
             Self::RemovePart { record } => format!("remove {record}"),
             Self::Records => "records".to_owned(),
         }

@@ -8,12 +8,11 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::time_histories::HistoryRecords;
-use gdcm_sysid::records::LayoutProblem;
+use gdcm_sysid::records::LaidOutRecord;
 
 pub use super::condition_records::ConditionRecords;
-pub use super::records_page::{RecordsPage, TimeModel};
+pub use super::records_page::{RecordsPage, TimeRole};
 pub use super::wanted_dataset::WantedDataset;
-use crate::gui::widgets::tables::Sorting;
 
 /// State of the records before or after an edit, which an undo or redo step restores. Only the
 /// conditions changed by the edit are included.
@@ -23,6 +22,17 @@ pub struct RecordsBefore {
     pub conditions: BTreeMap<ConditionId, Option<ConditionRecords>>,
     /// The added files and folders, if the edit changes them.
     pub sources: Option<Vec<PathBuf>>,
+    /// Records without a condition, if the edit changes them.
+    pub unassigned: Option<Vec<LaidOutRecord>>,
+}
+
+/// Section below the records that can be unfolded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RecordsFold {
+    /// Columns and units of all records.
+    Columns,
+    /// Settings of the identification of the displayed condition.
+    Settings,
 }
 
 /// State of the Records view. Not saved: records stay in their files.
@@ -33,18 +43,19 @@ pub struct RecordsState {
     /// The example that the dataset is, if any: its records are part of the program.
     pub example: Option<Example>,
     pub page: RecordsPage,
-    /// Sorting of the table of conditions.
-    pub sorting: Sorting,
-    /// Models whose responses to the recorded inputs are drawn.
-    pub time_models: BTreeSet<TimeModel>,
-    /// Whether dragging in the time charts selects parts of the record.
-    pub chooses_parts: bool,
+    /// Roles whose curves over time are hidden.
+    pub hidden_roles: BTreeSet<TimeRole>,
+    /// Outputs drawn over time below the output in focus, by index; `None` selects the first two
+    /// others.
+    pub more_outputs: Option<Vec<usize>>,
     /// Index of the input shown by the spectrogram.
     pub spectrogram: Option<usize>,
     /// Search setting whose field is to be focused.
     pub advanced_field: Option<&'static str>,
-    /// Typed path of record files.
-    pub path: String,
+    /// Section that is unfolded below the records.
+    pub open_fold: Option<RecordsFold>,
+    /// Added records whose names match no condition of the dataset.
+    pub unassigned: Vec<LaidOutRecord>,
     /// The added files and folders.
     pub sources: Vec<PathBuf>,
     /// Paths of the files read, by SHA-256, to recognise changed files.
@@ -71,6 +82,7 @@ impl RecordsState {
         RecordsBefore {
             conditions,
             sources: None,
+            unassigned: None,
         }
     }
 
@@ -88,29 +100,22 @@ impl RecordsState {
         now.sources = before
             .sources
             .map(|sources| std::mem::replace(&mut self.sources, sources));
+        now.unassigned = before
+            .unassigned
+            .map(|unassigned| std::mem::replace(&mut self.unassigned, unassigned));
         now
     }
 
-    /// Returns the channels that lack a unit, with the numbers of affected records and conditions;
-    /// `None` if no unit is missing.
-    pub fn open_units(&self) -> Option<OpenUnits> {
-        let mut open = OpenUnits::default();
-        for (id, records) in &self.conditions {
-            let before = open.records;
-            for row in &records.rows {
-                if open.add_channels(&row.problems) {
-                    open.records += 1;
-                }
-            }
-            if open.records > before {
-                open.conditions += 1;
-                open.first.get_or_insert(*id);
-            }
+    /// Adds a record without a condition; returns false if it is already there.
+    pub fn add_unassigned(&mut self, row: LaidOutRecord) -> bool {
+        let is_known = self
+            .unassigned
+            .iter()
+            .any(|other| other.table.is_same_record(&row.table));
+        if !is_known {
+            self.unassigned.push(row);
         }
-        if open.records == 0 {
-            return None;
-        }
-        Some(open)
+        !is_known
     }
 
     /// Returns the conditions that have records in use.
@@ -144,6 +149,16 @@ impl RecordsState {
         histories
     }
 
+    /// Returns the held-out records in use, of the conditions that have some.
+    pub fn held_out_records(&self) -> Vec<HistoryRecords> {
+        let mut histories = self.history_records();
+        for history in &mut histories {
+            history.records.retain(|record| record.held_out);
+        }
+        histories.retain(|history| !history.records.is_empty());
+        histories
+    }
+
     /// Adds an identification job; it replaces a waiting or running job for the same condition.
     pub fn request_job(&mut self, job: IdentifyJob) {
         let before = self.running.len();
@@ -170,35 +185,5 @@ impl RecordsState {
         let mut jobs = self.running.clone();
         jobs.sort_by_key(|job| job.condition != shown);
         jobs
-    }
-}
-
-/// Channels whose unit is missing in a record, summed over all records.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct OpenUnits {
-    /// Names of the channels, with their units in the dataset.
-    pub channels: Vec<(String, String)>,
-    /// Number of affected records.
-    pub records: usize,
-    /// Number of affected conditions.
-    pub conditions: usize,
-    /// The first affected condition.
-    pub first: Option<ConditionId>,
-}
-
-impl OpenUnits {
-    /// Adds the channels whose unit is missing in a record; returns whether there are any.
-    fn add_channels(&mut self, problems: &[LayoutProblem]) -> bool {
-        let mut is_open = false;
-        for problem in problems {
-            let LayoutProblem::UnsaidUnit { channel, unit, .. } = problem else {
-                continue;
-            };
-            is_open = true;
-            if !self.channels.iter().any(|(known, _)| known == channel) {
-                self.channels.push((channel.clone(), unit.clone()));
-            }
-        }
-        is_open
     }
 }

@@ -1,6 +1,8 @@
-//! Pages of the Records view, and the models compared there.
+//! Pages of the Records view, and the roles of the curves over time.
 
 use egui::Color32;
+
+use gdcm_plot::figure::Role;
 
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
@@ -8,46 +10,29 @@ use crate::gui::widgets::palette::Palette;
 /// A page of the Records view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RecordsPage {
-    /// Every channel of the selected record over time.
+    /// The displayed record over time, and the response in focus with its models.
     #[default]
-    Histories,
+    Fit,
     /// Excitation of the inputs, and its highest frequency.
     Inputs,
-    /// Measured frequency response, compared with the models.
-    Response,
-    /// Poles over the model order.
-    Stabilisation,
-    /// Poles of the recommended model with standard deviations.
-    Poles,
-    /// Quality of fit of each record and output.
-    Fit,
+    /// Models of all orders: fit, stabilisation diagram and poles; what further sweeps would bring.
+    Order,
     /// Columns assigned to channels.
     Columns,
-    /// Identification results in every condition.
-    Conditions,
 }
 
 impl RecordsPage {
     /// All pages, in display order.
-    pub const ALL: [Self; 8] = [
-        Self::Histories,
-        Self::Inputs,
-        Self::Response,
-        Self::Stabilisation,
-        Self::Poles,
-        Self::Fit,
-        Self::Columns,
-        Self::Conditions,
-    ];
+    pub const ALL: [Self; 4] = [Self::Fit, Self::Inputs, Self::Order, Self::Columns];
 
     /// Returns the texts of the page's tab.
     pub fn words(self) -> PageWords {
         match self {
-            Self::Histories => PageWords {
-                name: "Time",
-                short_name: "Time",
-                purpose: "Every channel of the selected record over time; bridged gaps and cut parts are \
-                marked",
+            Self::Fit => PageWords {
+                name: "Fit",
+                short_name: "Fit",
+                purpose: "The selected record over time with the models' responses; the measured \
+                response, and the identified model with its confidence band",
             },
             Self::Inputs => PageWords {
                 name: "Inputs",
@@ -55,69 +40,92 @@ impl RecordsPage {
                 purpose: "Spectrum of each input in each record: which inputs are excited, and up to which \
                 frequency",
             },
-            Self::Response => PageWords {
-                name: "Response",
-                short_name: "Response",
-                purpose: "Measured response with error bars, and the models with their confidence bands",
-            },
-            Self::Stabilisation => PageWords {
-                name: "Stabilisation",
-                short_name: "Orders",
-                purpose: "Poles over the model order: poles of the aircraft remain as the order increases",
-            },
-            Self::Poles => PageWords {
-                name: "Identified poles",
-                short_name: "Poles",
-                purpose: "Poles of the recommended model with their standard deviations; grey: not \
-                determined by the records",
-            },
-            Self::Fit => PageWords {
-                name: "Fit",
-                short_name: "Fit",
-                purpose: "Fit of the model to each record and output, in the frequency and time domains",
+            Self::Order => PageWords {
+                name: "Order",
+                short_name: "Order",
+                purpose: "Fit and poles over the model order, poles of the recommended model, and the \
+                intervals that further sweeps would bring",
             },
             Self::Columns => PageWords {
                 name: "Columns",
                 short_name: "Columns",
                 purpose: "Assignment of the record's columns to time and channels",
             },
-            Self::Conditions => PageWords {
-                name: "Conditions",
-                short_name: "Conditions",
-                purpose: "Identification results of every condition; click a row to show its condition",
-            },
         }
     }
 }
 
-/// A model that can be compared with a record in the time domain.
+/// Role of a curve over time, in the order of the chips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum TimeModel {
-    /// The recommended identified model.
-    Identified,
+pub enum TimeRole {
     /// The physics representative.
     Physics,
+    /// The recommended identified model.
+    Identified,
     /// The corrected physics representative.
     Corrected,
+    /// The samples of the record.
+    Measured,
 }
 
-impl TimeModel {
-    /// All models, in display order.
-    pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
+impl TimeRole {
+    /// All roles, in display order.
+    pub const ALL: [Self; 4] = [
+        Self::Physics,
+        Self::Identified,
+        Self::Corrected,
+        Self::Measured,
+    ];
+
+    /// Roles of the models, whose responses to the recorded inputs are simulated.
+    pub const MODELS: [Self; 3] = [Self::Physics, Self::Identified, Self::Corrected];
 
     pub fn name(self) -> &'static str {
         match self {
-            Self::Identified => "identified",
             Self::Physics => "physics",
+            Self::Identified => "identified",
             Self::Corrected => "corrected",
+            Self::Measured => "measured",
         }
     }
 
+    /// Returns the colour of the role, which is that of the same role in the Bode view.
     pub fn color(self, palette: &Palette) -> Color32 {
+        let role = match self {
+            Self::Physics => Role::Representative,
+            Self::Identified => Role::IdentifiedRepresentative,
+            Self::Corrected => Role::Corrected,
+            Self::Measured => return palette.text,
+        };
+        palette.role_style(role, false).color
+    }
+
+    /// Returns the line width over time \[pt\].
+    pub fn width(self) -> f32 {
         match self {
-            Self::Identified => palette.accent,
-            Self::Physics => palette.nominal,
-            Self::Corrected => palette.corrected,
+            Self::Identified => 2.0,
+            Self::Physics | Self::Corrected | Self::Measured => 1.3,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roles_over_time_have_the_colours_of_the_bode_view() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let colors = TimeRole::ALL.map(|role| role.color(&palette));
+            assert_eq!(
+                colors,
+                [
+                    palette.perturbed,
+                    palette.identified,
+                    palette.corrected,
+                    palette.text
+                ]
+            );
         }
     }
 }

@@ -11,6 +11,8 @@ pub enum Sheet {
     Models,
     /// Identified models, beside the narrow form of the left panel.
     Identified,
+    /// Flight records of the displayed condition, beside the narrow form of the left panel.
+    Records,
     /// Derivation of a value.
     Derivation,
 }
@@ -22,6 +24,7 @@ impl Sheet {
             Self::Reasons => "Reasons for the result",
             Self::Models => "Physics models",
             Self::Identified => "Identified models",
+            Self::Records => "Records",
             Self::Derivation => QUESTION,
         }
     }
@@ -31,7 +34,7 @@ impl Sheet {
     pub fn is_on_right(self) -> bool {
         match self {
             Self::Reasons | Self::Derivation => true,
-            Self::Models | Self::Identified => false,
+            Self::Models | Self::Identified | Self::Records => false,
         }
     }
 
@@ -40,7 +43,7 @@ impl Sheet {
         match self {
             Self::Reasons => 380.0,
             Self::Derivation => 440.0,
-            Self::Models | Self::Identified => 272.0,
+            Self::Models | Self::Identified | Self::Records => 272.0,
         }
     }
 }

@@ -17,7 +17,7 @@
 //! | `assessment`                   | displayed dataset and choice                | may be older |
 //! | `test_answers`                 | displayed dataset, condition and input      | may be older |
 //! | `record_history`               | condition and record of the requested job   | may be older |
-//! | `time_histories`               | the records now in use                      | may be older |
+//! | `time_histories`               | the held-out records                        | may be older |
 //! | `couplings`                    | displayed dataset and assessed couplings    | may be older |
 //! | `physics`                      | displayed dataset and assessed parameters   | may be older |
 //! | `uncertainty`                  | newest analysis                             | its own     |
@@ -35,6 +35,7 @@ use gdcm_study::decisions::physics_settings::PhysicsCorrection;
 use gdcm_study::jobs::analysis_jobs::Toggles;
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, ConditionModes};
 use gdcm_study::jobs::requirement_jobs::RecordHistoryJob;
+use gdcm_study::jobs::trade_off_job::TradeOff;
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::couplings_assessment::AssessedCouplings;
@@ -215,11 +216,11 @@ impl State {
         Some(history)
     }
 
-    /// Returns the responses of the models to all records; until they are ready, the responses from
-    /// an older analysis with the same records.
+    /// Returns the responses of the models to the held-out records; until they are ready, the
+    /// responses from an older analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, histories) = self.results.time_histories.as_ref()?;
-        if job.records != self.records.history_records() {
+        if job.records != self.records.held_out_records() {
             return None;
         }
         Some(histories)
@@ -295,6 +296,44 @@ impl State {
             condition: self.condition().id(),
             uncertainty: uncertainty.map(AsRef::as_ref),
         }
+    }
+
+    /// Returns the uncertainty of the values in the displayed condition for painting: while the
+    /// settings are open, it may belong to earlier settings, and is then dimmed.
+    pub fn painted_uncertainty(&self) -> ValueUncertainty<'_> {
+        let current = self.value_uncertainty();
+        if current.uncertainty.is_some() {
+            return current;
+        }
+        ValueUncertainty {
+            uncertainty: self.older_uncertainty(),
+            ..current
+        }
+    }
+
+    /// Returns the newest uncertainty while the settings are open and their change has made it
+    /// older than the results; `None` otherwise.
+    pub fn older_uncertainty(&self) -> Option<&Uncertainty> {
+        let (job, uncertainty) = self.results.uncertainty.as_ref()?;
+        let is_current = self.uncertainty().is_some() && !self.others_are_older();
+        if self.settings_session.is_none()
+            || is_current
+            || !self.is_shown_dataset(&job.analysis.study.dataset)
+        {
+            return None;
+        }
+        Some(uncertainty)
+    }
+
+    /// Returns the trade-off of α in the displayed condition; until it is ready, the trade-off for
+    /// other settings.
+    pub fn trade_off(&self) -> Option<&TradeOff> {
+        let (_, trade_off) = self.results.trade_off.as_ref()?;
+        let trade_off = trade_off.as_ref().ok()?;
+        if trade_off.condition != self.condition().id() {
+            return None;
+        }
+        Some(trade_off)
     }
 
     /// Returns the newest analysis with the uncertainty computed so far; used by exported files and

@@ -75,13 +75,16 @@ pub enum View {
     /// Phase change by delay or lead in each channel, and the gain that leads add above the band,
     /// up to ten times the band.
     Leads,
+    /// Net gain of the response in focus over airspeed, and J before the correction, at each optimum
+    /// and under the schedule.
+    ScheduleCost,
     /// Flight records in the condition, and models identified from them.
     Records,
 }
 
 impl View {
     /// Every view, in menu order.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -91,6 +94,7 @@ impl View {
         Self::Couplings,
         Self::Records,
         Self::NetGain,
+        Self::ScheduleCost,
         Self::Channels,
         Self::Leads,
         Self::Evidence,
@@ -171,6 +175,7 @@ impl View {
             Self::Couplings => COUPLINGS,
             Self::Records => RECORDS,
             Self::NetGain => NET_GAIN,
+            Self::ScheduleCost => SCHEDULE_COST,
             Self::Channels => CHANNELS,
             Self::Leads => LEADS,
             Self::Evidence => EVIDENCE,
@@ -255,6 +260,17 @@ const NET_GAIN: ViewFacts = ViewFacts {
     long_name: Some("Net gain over airspeed"),
     is_of_all_conditions: true,
     figure: Some(FigureKind::NetGain),
+    ..ViewFacts::PLAIN
+};
+
+const SCHEDULE_COST: ViewFacts = ViewFacts {
+    name: "Schedule cost",
+    purpose: "Net gain of the response in focus over airspeed, and its J before the correction, \
+              at the optimum of each condition and under the schedule",
+    group: ViewGroup::Schedule,
+    is_docked: true,
+    is_of_all_conditions: true,
+    figure: Some(FigureKind::ScheduleCost),
     ..ViewFacts::PLAIN
 };
 

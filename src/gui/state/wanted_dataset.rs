@@ -8,9 +8,8 @@ use gdcm_model::names::ChannelRule;
 use gdcm_model::units::number;
 use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
 use gdcm_sysid::records::record_channels::ResamplingWish;
-use gdcm_sysid::records::{RecordChannels, RecordColumn, RecordTable};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordColumn, RecordTable};
 
-use super::condition_records::ConditionRecords;
 use crate::gui::widgets::number_entry::typed_number;
 use crate::message::Message;
 
@@ -35,13 +34,17 @@ pub struct WantedDataset {
 }
 
 impl WantedDataset {
-    /// Creates a proposal from the records of a condition. It contains the channels whose role the
+    /// Creates a proposal from records. It contains the channels whose role the
     /// documentation of the logging system states; others must be typed.
-    pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
+    pub fn proposed<'r>(
+        records: impl IntoIterator<Item = &'r LaidOutRecord>,
+        band: Band,
+        path: String,
+    ) -> Self {
         let mut inputs = Vec::new();
         let mut outputs = Vec::new();
         let mut columns = BTreeSet::new();
-        for row in &records.rows {
+        for row in records {
             for column in &row.table.columns {
                 columns.insert(column_description(&row.table, column));
                 match known_side(column) {

@@ -16,9 +16,11 @@ use super::assembling::AssemblyState;
 use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
-use super::notices::{MessageBar, Notice};
+use super::notices::{MessageBar, Notices};
 use super::record_change::RecordChange;
 use super::records::{RecordsBefore, RecordsState};
+use super::settings_session::SettingsSession;
+use super::view::View;
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +52,8 @@ pub struct State {
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: UndoHistory,
+    /// Session of the settings panel, while it is open.
+    pub settings_session: Option<SettingsSession>,
     /// File name of the study, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.
@@ -60,8 +64,8 @@ pub struct State {
     pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
-    /// Short message in the status bar.
-    pub notice: Option<Notice>,
+    /// Messages of the session, and toasts.
+    pub notices: Notices,
     /// Persistent messages, in bars below the menu.
     pub message_bars: Vec<MessageBar>,
     /// Recently opened and saved files, newest first.
@@ -99,13 +103,14 @@ impl State {
             example: None,
             on_start_page: false,
             history: History::default(),
+            settings_session: None,
             study_name,
             unsaved: false,
             display,
             results: Results::default(),
             file_cautions,
             differences: Vec::new(),
-            notice: None,
+            notices: Notices::default(),
             message_bars: Vec::new(),
             recent: Vec::new(),
             opening: None,
@@ -114,6 +119,11 @@ impl State {
             records: RecordsState::default(),
             assembling: None,
         }
+    }
+
+    /// Returns whether a view is shown, in front or beside it.
+    pub fn shows_view(&self, view: View) -> bool {
+        !self.on_start_page && self.display.layout.arrangement.is_shown(view)
     }
 
     /// Returns the window title: the study, marked if unsaved, and the dataset.

@@ -1,68 +1,104 @@
-//! Plot across conditions: the response in focus of a model of every condition, coloured by
-//! airspeed.
+//! Plots across conditions: the response in focus of every condition, coloured by airspeed, and
+//! beside it the error that the schedule leaves. The chips are in `across_chips`, the values at the
+//! pointer in `across_readout`.
 
-use egui::{Align2, Pos2, Rect, Ui, vec2};
+use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
-use gdcm_plot::figure::responses::AirspeedResponse;
+use gdcm_model::dataset::ConditionId;
+use gdcm_plot::figure::responses::{AirspeedCurves, AirspeedResponse};
 use gdcm_study::AcrossRole;
 use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::stages::condition_curves::display_band;
 
+use super::PageEntry;
+use super::across_chips::across_chips_ui;
+use super::across_readout::AcrossReadout;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::bode_event::BodeEvent;
+use crate::gui::plot::bode_scene::{EndName, PaneNote};
 use crate::gui::plot::pointed_curve_text::pointed_curve_text;
 use crate::gui::plot::quantity::BodeQuantity;
-use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
+use crate::gui::plot::readout_strip::{STRIP_HEIGHT, readout_strip_ui};
+use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, bode_ui};
+use crate::gui::state::across_display::{AcrossConditions, AcrossFit, AcrossPage};
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::choices::{DropDown, PageWords};
+use crate::gui::widgets::palette::Palette;
 
 /// Number of frequencies on each curve.
 const POINTS: usize = 300;
-/// Number of steps in the colour key of the airspeeds.
-const KEY_STEPS: u8 = 24;
-/// Size of the colour key \[pt\].
-const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
+/// Share of the responses in the width, beside the errors.
+const RESPONSE_PART: f32 = 0.62;
+/// Gap between responses and errors \[pt\].
+const GAP: f32 = 8.0;
+/// Gap between the magnitude plot and the read-out \[pt\].
+const READOUT_GAP: f32 = 6.0;
 
-/// Draws the selector of the models and the colour key of the airspeed, from right to left.
+/// Returns the pages of the view: none where the window has room for both plots.
+pub fn across_pages(state: &State) -> Vec<PageEntry> {
+    if shows_both(state) {
+        return Vec::new();
+    }
+    let shown = state.display.frequency.across_display.page;
+    let words = [
+        (
+            AcrossPage::Response,
+            PageWords {
+                name: "response",
+                short_name: "Response",
+                purpose: "Magnitude and phase in every condition",
+            },
+        ),
+        (
+            AcrossPage::Error,
+            PageWords {
+                name: "schedule error",
+                short_name: "Error",
+                purpose: "Scheduled minus identified response in every condition",
+            },
+        ),
+    ];
+    let mut entries = Vec::new();
+    for (page, words) in words {
+        entries.push(PageEntry {
+            words,
+            is_shown: page == shown,
+            command: DisplayCommand::ShowAcrossPage(page).into(),
+        });
+    }
+    entries
+}
+
+/// Returns whether responses and errors are drawn side by side.
+fn shows_both(state: &State) -> bool {
+    state.display.layout.is_wide && state.display.layout.arrangement.beside().is_none()
+}
+
+/// Draws the selector of the conditions.
 pub fn across_header_ui(
     ui: &mut Ui,
     state: &State,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let mut role = state.display.frequency.across_role;
-    let roles = AcrossRole::ALL.map(|role| (role, role.name(), "Model drawn for each condition"));
-    choice_ui(ui, "Model of each condition", &mut role, &roles);
-    if role != state.display.frequency.across_role {
-        commands.push(DisplayCommand::ShowAcross(role).into());
+    let shown = state.display.frequency.across_display.conditions;
+    let list = DropDown {
+        name: "Conditions in the plots",
+        width: 60.0,
+        text: shown.name(),
+    };
+    let choices =
+        AcrossConditions::ALL.map(|choice| (choice, choice == shown, choice.name().to_owned()));
+    if let Some(conditions) = list.ui(ui, choices) {
+        commands.push(DisplayCommand::ShowAcrossConditions(conditions).into());
     }
-    let (least, most) = state.dataset().airspeed_range_kt();
-    ui.label(palette.small(format!("{most:.0} kt")));
-    let (rect, _) = ui.allocate_exact_size(KEY_SIZE, egui::Sense::hover());
-    paint_key(ui, rect, palette);
-    ui.label(palette.small(format!("{least:.0} kt")));
+    ui.label(palette.dim("conditions"));
 }
 
-/// Paints the colours from the slowest condition to the fastest.
-fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
-    let width = rect.width() / f32::from(KEY_STEPS);
-    for step in 0..KEY_STEPS {
-        let corner = Pos2::new(rect.left() + width * f32::from(step), rect.top());
-        let role = Role::OfAirspeed(step.saturating_mul(u8::MAX / (KEY_STEPS - 1)));
-        let color = palette.role_style(role, false).color;
-        ui.painter().rect_filled(
-            Rect::from_min_size(corner, vec2(width + 0.5, rect.height())),
-            0.0,
-            color,
-        );
-    }
-}
-
-/// Draws magnitude and phase of the response in focus for a model of every condition; a click
-/// selects a condition.
+/// Draws magnitude and phase of the response in focus in every condition, and the error of the
+/// schedule; a click selects a condition.
 pub fn across_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -71,51 +107,223 @@ pub fn across_view_ui(
 ) {
     let curves = across_curves(state);
     fit_across(state);
+    let area = ui.available_rect_before_wrap();
+    let chips = across_chips_ui(ui, area, state, palette, commands);
+    let plots = area.with_min_y(area.top() + chips);
+    let frequency = &mut state.display.frequency;
+    let pointed = frequency
+        .across
+        .pointed_omega
+        .or(frequency.across_error.pointed_omega);
+    let mut responses = std::mem::take(&mut frequency.across);
+    let mut errors = std::mem::take(&mut frequency.across_error);
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.selection.pair);
-    let quantity = BodeQuantity::RESPONSE_OF_EVERY_CONDITION;
-    let unit = state.display.curves.unit;
-    let scene = BodeScene {
-        quantity,
-        unit,
+    let names = end_names(state, &curves.responses);
+    let response_scene = BodeScene {
+        quantity: BodeQuantity::RESPONSE_OF_EVERY_CONDITION,
+        unit: state.display.curves.unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(state.results.absence()),
-        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
+        cursor: pointed,
+        end_names: &names,
+        reserves_readout: true,
+        ..BodeScene::new(&title, &curves.responses, (band.min(), band.max()))
     };
-    for event in bode_ui(ui, &scene, &mut state.display.frequency.across, palette) {
-        if let BodeEvent::Clicked(CurveId::Model(id)) = event {
-            commands.push(SelectionCommand::SelectCondition(id.condition).into());
-        }
+    let optima_note = PaneNote {
+        cost: "green: range of optima".to_owned(),
+        ..PaneNote::default()
+    };
+    let error_message = error_message(state);
+    let error_scene = BodeScene {
+        quantity: BodeQuantity::ScheduleError,
+        curves: &curves.errors,
+        optima: curves.optima.as_ref(),
+        notes: [Some(&optima_note), None],
+        message: Some(error_message),
+        end_names: &[],
+        ..response_scene
+    };
+    let (response_area, error_area) = if shows_both(state) {
+        let middle = plots.left() + RESPONSE_PART * plots.width();
+        (
+            Some(plots.with_max_x(middle)),
+            Some(plots.with_min_x(middle + GAP)),
+        )
+    } else if state.display.frequency.across_display.page == AcrossPage::Error {
+        (None, Some(plots))
+    } else {
+        (Some(plots), None)
+    };
+    let mut strip = None;
+    if let Some(area) = response_area {
+        let plot = AcrossPlot {
+            state,
+            scene: response_scene,
+            palette,
+        };
+        plot.ui(ui, area, &mut responses, commands);
+        strip = readout_place(&responses, strip);
+    } else {
+        responses.pointed_omega = None;
     }
-    let view = &state.display.frequency.across;
-    if let Some(words) = pointed_curve_text(view, &curves, quantity, unit) {
-        commands.push(SelectionCommand::Tell(words).into());
+    if let Some(area) = error_area {
+        let plot = AcrossPlot {
+            state,
+            scene: error_scene,
+            palette,
+        };
+        plot.ui(ui, area, &mut errors, commands);
+        strip = readout_place(&errors, strip);
+    } else {
+        errors.pointed_omega = None;
     }
-    if let Some(transform) = view.transform(Pane::Magnitude)
-        && !curves.is_empty()
-    {
-        let place = transform.frame().right_top() + vec2(-8.0, 6.0);
-        ui.painter().text(
-            place,
-            Align2::RIGHT_TOP,
-            title,
-            egui::FontId::proportional(SMALL_SIZE),
-            palette.text,
-        );
+    if response_area.is_some() && error_area.is_some() {
+        errors.share_frequencies(&responses);
+    }
+    let source = AcrossReadout {
+        curves: &curves,
+        condition: state.condition().id(),
+        band: (band.min(), band.max()),
+        unit: state.display.curves.unit,
+    };
+    if let (Some(strip), Some(readout)) = (strip, source.readout(pointed)) {
+        readout_strip_ui(ui, strip, &readout, palette);
+    }
+    ui.advance_cursor_after_rect(area);
+    state.display.frequency.across = responses;
+    state.display.frequency.across_error = errors;
+}
+
+/// Returns the message shown without errors of the schedule.
+fn error_message(state: &State) -> &'static str {
+    match state.analysis() {
+        Some(analysis) if analysis.schedule.is_err() => "There is no schedule",
+        Some(_) => "The response cannot be compared",
+        None => state.results.absence(),
     }
 }
 
-/// Fits the value axes in each frame until the curves of a newly selected response or model are
-/// available.
-fn fit_across(state: &mut State) {
-    let asked = (
-        state.display.selection.pair,
-        state.display.frequency.across_role,
+/// Returns the place of the read-out below the magnitude plots, widened by a further plot; `None`
+/// if the plot has no room for it.
+fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
+    let magnitude = *view.transform(Pane::Magnitude)?.frame();
+    let phase = *view.transform(Pane::Phase)?.frame();
+    let top = magnitude.bottom() + READOUT_GAP;
+    if phase.top() - magnitude.bottom() < STRIP_HEIGHT + 2.0 * READOUT_GAP {
+        return before;
+    }
+    let strip = Rect::from_min_size(
+        pos2(magnitude.left(), top),
+        vec2(magnitude.width(), STRIP_HEIGHT),
     );
-    if state.display.frequency.across_fitted == Some(asked) {
+    Some(match before {
+        Some(before) => before.union(strip),
+        None => strip,
+    })
+}
+
+/// Magnitude above phase over the conditions.
+struct AcrossPlot<'a> {
+    state: &'a State,
+    scene: BodeScene<'a>,
+    palette: &'a Palette,
+}
+
+impl AcrossPlot<'_> {
+    /// Draws the plot into an area, and pushes the commands for clicks and for the curve under the
+    /// pointer.
+    fn ui(self, ui: &mut Ui, area: Rect, view: &mut BodeView, commands: &mut Vec<Command>) {
+        let scene = self.scene;
+        let builder = UiBuilder::new().max_rect(area);
+        let events = ui
+            .scope_builder(builder, |ui| bode_ui(ui, &scene, view, self.palette))
+            .inner;
+        for event in events {
+            if let BodeEvent::Clicked(CurveId::OfCondition(condition, _)) = event {
+                commands.push(SelectionCommand::SelectCondition(condition).into());
+            }
+        }
+        if let Some(CurveId::OfCondition(condition, _)) = view.hovered {
+            commands.push(SelectionCommand::HoverCondition(condition).into());
+        }
+        let unit = self.state.display.curves.unit;
+        if let Some(words) = pointed_curve_text(view, scene.curves, scene.quantity, unit) {
+            commands.push(SelectionCommand::Tell(words).into());
+        }
+    }
+}
+
+/// Returns a name for each airspeed, with its number of conditions if there are several: "140 kt ×
+/// 2".
+fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
+    struct Named {
+        airspeed_kt: f64,
+        conditions: Vec<ConditionId>,
+        name: EndName,
+    }
+    let mut named: Vec<Named> = Vec::new();
+    for curve in curves {
+        let CurveId::OfCondition(id, _) = curve.id else {
+            continue;
+        };
+        let Some(condition) = state.dataset().condition(id) else {
+            continue;
+        };
+        let airspeed_kt = condition.flight_state().airspeed_kt;
+        let place = named
+            .iter()
+            .position(|known| known.airspeed_kt == airspeed_kt);
+        let place = place.unwrap_or_else(|| {
+            named.push(Named {
+                airspeed_kt,
+                conditions: Vec::new(),
+                name: EndName {
+                    text: String::new(),
+                    role: curve.role,
+                    curves: Vec::new(),
+                },
+            });
+            named.len() - 1
+        });
+        let entry = &mut named[place];
+        if !entry.conditions.contains(&id) {
+            entry.conditions.push(id);
+        }
+        entry.name.curves.push(curve.id.clone());
+    }
+    named.sort_by(|a, b| a.airspeed_kt.total_cmp(&b.airspeed_kt));
+    let mut names = Vec::new();
+    for Named {
+        airspeed_kt,
+        conditions,
+        mut name,
+    } in named
+    {
+        name.text = match conditions.len() {
+            1 => format!("{airspeed_kt:.0} kt"),
+            count => format!("{airspeed_kt:.0} kt × {count}"),
+        };
+        names.push(name);
+    }
+    names
+}
+
+/// Fits the value axes in each frame until the curves of a newly selected response, role or
+/// condition are available.
+fn fit_across(state: &mut State) {
+    let display = &state.display.frequency.across_display;
+    let asked = AcrossFit {
+        pair: state.display.selection.pair,
+        condition: state.condition().id(),
+        roles: display.roles.clone(),
+        conditions: display.conditions,
+    };
+    if state.display.frequency.across_fitted.as_ref() == Some(&asked) {
         return;
     }
     state.display.frequency.across.request_refit();
+    state.display.frequency.across_error.request_refit();
     // Until then, the previous curves are drawn, and the fit must be repeated.
     if let Some((job, _)) = &state.results.across
         && job.models == across_job(state).models
@@ -124,37 +332,55 @@ fn fit_across(state: &mut State) {
     }
 }
 
-/// Returns the job that computes the responses in the view: a model of each condition.
+/// Returns the job that computes the responses in the view: the models of each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
-    AcrossJob::for_role(
-        &state.study.dataset,
-        state.analysis(),
-        state.display.frequency.across_role,
-        grid,
-    )
+    AcrossJob::for_conditions(&state.study.dataset, state.analysis(), grid)
 }
 
-/// Returns the curves of the response in focus for a model of each condition; empty until the
-/// responses are available.
-pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
-    let Some(curves) = state.across().cloned() else {
-        return Vec::new();
+/// Returns the curves of the response in focus in each condition; empty until the responses are
+/// available.
+pub fn across_curves(state: &mut State) -> AirspeedCurves {
+    let Some(responses) = state.across().cloned() else {
+        return AirspeedCurves::default();
     };
     let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
+    let display = &state.display.frequency.across_display;
     let response = AirspeedResponse {
         dataset: state.dataset(),
         analysis: state.analysis(),
-        role: state.display.frequency.across_role,
+        roles: &display.roles,
+        conditions: &display.conditions.of_study(&state.study),
         pair: state.display.selection.pair,
-        responses: &curves,
+        band: state.study.settings.band,
+        responses: &responses,
     };
     let mut drawn = response.curves(&mut cached);
-    for curve in &mut drawn {
-        curve.highlighted =
-            matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
+    let selected = state.condition().id();
+    let hovered = state.display.selection.hovered_condition;
+    for curve in drawn.responses.iter_mut().chain(&mut drawn.errors) {
+        if let CurveId::OfCondition(id, _) = curve.id {
+            curve.highlighted = id == selected || Some(id) == hovered;
+        }
         curve.detail.push_str(" · click to show the condition");
     }
     state.display.frequency.across_shapes = cached;
     drawn
+}
+
+/// Returns the text about the conditions beside the title: "all 11 conditions".
+pub fn across_context(state: &State) -> String {
+    let all = state.dataset().conditions().len();
+    let shown = state.display.frequency.across_display.conditions;
+    match shown {
+        AcrossConditions::All => format!("all {all} conditions"),
+        AcrossConditions::InSchedule => {
+            format!("{} of {all} conditions", shown.of_study(&state.study).len())
+        }
+    }
+}
+
+/// Returns whether the models of a role are drawn.
+pub(super) fn is_role_shown(state: &State, role: AcrossRole) -> bool {
+    state.display.frequency.across_display.roles.contains(&role)
 }

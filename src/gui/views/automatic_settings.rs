@@ -9,9 +9,14 @@ use gdcm_words::setting_words::setting_words;
 
 use super::setting_controls::{SettingControls, number_field};
 use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named_switch;
 use crate::gui::widgets::number_field::{Entered, NumberField};
+
+/// Explanation of the check box that lets the program determine a value.
+const AUTOMATIC: &str = "On: from the quantiles of each condition. Off: set by hand, the same for every \
+    condition";
 
 /// Whether the program determines a value.
 #[derive(Clone, Copy)]
@@ -32,7 +37,8 @@ impl SettingControls<'_, '_> {
             return self.small_ui("…");
         };
         let field = number_field(setting, setting_words(setting).label, range);
-        let typed = field.ui(self.ui, setting.unit.scale * number);
+        let help = setting_words(setting).help;
+        let typed = self.explained(help, |ui| field.ui(ui, setting.unit.scale * number));
         let switched = self.automatic_ui(setting, value);
         if typed.value.is_none() {
             match switched {
@@ -78,6 +84,9 @@ impl SettingControls<'_, '_> {
         if nothing.is_some() {
             switched = self.automatic_ui(setting, value);
         }
+        if low.is_dragged || high.is_dragged {
+            self.commands.push(StudyCommand::DragEdit.into());
+        }
         if low.value.is_some() || high.value.is_some() {
             let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
             match setting.check(ends) {
@@ -108,18 +117,16 @@ impl SettingControls<'_, '_> {
             shows_unit: false,
             ..number_field(setting, name, limits)
         };
-        field.ui(self.ui, value)
+        self.explained(setting_words(setting).help, |ui| field.ui(ui, value))
     }
 
     /// Draws the check box that lets the program determine a value; returns its new state after a
     /// click.
     fn automatic_ui(&mut self, setting: &Setting, value: Value) -> Option<Automatic> {
         let mut is_automatic = value == Value::Nothing;
-        let response = self.ui.checkbox(&mut is_automatic, "auto");
+        let response = self.explained(AUTOMATIC, |ui| ui.checkbox(&mut is_automatic, "auto"));
         let name = format!("{} automatic", setting_words(setting).caption);
-        let hint = "On: from the quantiles of each condition. Off: set by hand, the same for every condition";
-        let response =
-            named_switch(response, Role::CheckBox, is_automatic, name).on_hover_text(hint);
+        let response = named_switch(response, Role::CheckBox, is_automatic, name);
         if !response.changed() {
             return None;
         }

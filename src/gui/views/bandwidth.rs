@@ -1,139 +1,145 @@
-//! Plots of phase delay over bandwidth; a click on a mark, or on a row of the table, shows the
-//! response in the Bode view.
+//! Phase delay over bandwidth of a response, in the details of a requirement; a click on a mark
+//! selects its condition.
 
-use egui::{Ui, Vec2, vec2};
+use egui::{Grid, Ui, Vec2, vec2};
 
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::units::telling;
-use gdcm_plot::figure::Figure;
+use gdcm_model::number_format::decimals_or_dash;
+use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::marks::MarkId;
-use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_plot::figure::requirements::{
+    BandwidthDetail, bandwidth_detail_figure, bandwidth_pairs, bandwidth_place,
+};
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
+use gdcm_words::missing_results::no_bandwidth_text;
 
-use super::figures::figure_of;
+use super::requirement_cards::role_color;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::curve_command::CurveCommand;
-use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
 /// Minimum plot size \[pt\].
-const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
+const LEAST_PLOT: Vec2 = vec2(120.0, 80.0);
 
-/// Draws phase delay over bandwidth; a click on a mark shows the response in the Bode view.
-pub(super) fn bandwidth_plots_ui(
+/// Draws phase delay over bandwidth of the response in focus.
+pub(super) fn bandwidth_detail_ui(
     ui: &mut Ui,
     state: &mut State,
     requirements: &Requirements,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
-    let pairs = bandwidth_pairs(requirements);
-    figure_legend_ui(ui, &figure, palette);
+    let pair = state.display.selection.pair;
+    let condition = state.condition().id();
+    if !bandwidth_pairs(requirements).contains(&pair) {
+        ui.label(palette.dim(absence_text(state, requirements, pair)));
+        return;
+    }
+    let role = state.display.judging.requirements.role();
+    let settings = &state.study.requirements;
+    let detail = BandwidthDetail {
+        requirements,
+        levels: &settings.levels,
+        pair,
+        condition,
+        role,
+        bandwidth: settings.overview.bandwidth,
+        phase_delay_s: settings.overview.phase_delay_s,
+    };
+    let figure = bandwidth_detail_figure(&detail, state.dataset());
     // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
         .remove(&View::Requirements)
         .unwrap_or_default();
-    let message = "No on-axis response is an angle or an angular rate, or none crosses −135° \
-        and −180°. The table lists the reasons";
+    view.set_subject(&figure.title);
     let words = BandwidthWords {
         state,
         requirements,
-        pairs: &pairs,
+        pair,
     };
     let scene = FigureScene {
-        selected: Some(MarkId::Condition(state.condition().id())),
+        selected: Some(MarkId::Condition(condition)),
         zooms: true,
-        accented: pairs
-            .iter()
-            .position(|pair| *pair == state.display.selection.pair),
-        ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
+        ..FigureScene::new("requirements", &figure, LEAST_PLOT, "", &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
-        if let FigureEvent::Clicked(plot, MarkId::Condition(condition), _) = event
-            && let Some(pair) = pairs.get(plot)
-        {
-            let mut model = BandwidthModel {
-                condition,
-                pair: *pair,
-                role: RequirementRole::Corrected,
-            };
-            // Several marks of a condition have the same id; the position distinguishes them.
-            if let Some(place) = view.pointed_at()
-                && let Some(role) = role_at(requirements, model, place)
-            {
-                model.role = role;
+        match event {
+            FigureEvent::Clicked(_, MarkId::Condition(id), _) => {
+                commands.push(SelectionCommand::SelectCondition(id).into());
             }
-            commands.extend(bode_commands(requirements, model));
+            FigureEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
+            FigureEvent::Pointed(MarkId::Condition(id)) => {
+                commands.push(SelectionCommand::HoverCondition(id).into());
+            }
+            _ => {}
         }
     }
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// Returns the commands for a click on a row of the bandwidth table.
-pub(super) fn bandwidth_row_commands(requirements: &Requirements, row: usize) -> Vec<Command> {
-    match requirements.bandwidth.get(row) {
-        Some(finding) => bode_commands(requirements, BandwidthModel::new(finding)),
-        None => Vec::new(),
+/// Returns why the response in focus has no bandwidth to plot.
+fn absence_text(state: &State, requirements: &Requirements, pair: Pair) -> String {
+    let name = state.dataset().pair_name(pair);
+    let condition = state.condition().id();
+    let finding = RequirementRole::ALL
+        .into_iter()
+        .find_map(|role| requirements.bandwidth_of(condition, pair, role));
+    match finding.and_then(|finding| finding.absent.get("omega_bw_rad_s")) {
+        Some(why) => format!("{name}: {}", no_bandwidth_text(why)),
+        None => format!("{name} is not on-axis: it has no bandwidth"),
     }
 }
 
-/// Model with a bandwidth, given by condition, response and role.
-#[derive(Clone, Copy)]
-struct BandwidthModel {
+/// Draws bandwidth and phase delay of every model in the displayed condition.
+pub(super) fn bandwidth_numbers_ui(
+    ui: &mut Ui,
+    state: &State,
+    requirements: &Requirements,
+    palette: &Palette,
+) {
+    let condition = state.condition().id();
+    let pair = state.display.selection.pair;
+    Grid::new("bandwidths of the response")
+        .num_columns(3)
+        .show(ui, |ui| {
+            for heading in ["", "bandwidth, rad/s", "phase delay, ms"] {
+                ui.label(palette.small(heading));
+            }
+            ui.end_row();
+            for role in RequirementRole::ALL {
+                let Some(finding) = requirements.bandwidth_of(condition, pair, role) else {
+                    continue;
+                };
+                ui.colored_label(role_color(palette, role), role.name());
+                ui.label(decimals_or_dash(finding.omega_bw_rad_s, 2));
+                ui.label(decimals_or_dash(finding.phase_delay_s.map(s_to_ms), 0));
+                ui.end_row();
+            }
+        });
+}
+
+/// Returns the commands that show a response in the Bode view, with marks at the frequencies that
+/// define the bandwidth and the phase delay of the model in a role.
+pub(super) fn bode_commands(
+    requirements: &Requirements,
     condition: ConditionId,
     pair: Pair,
     role: RequirementRole,
-}
-
-impl BandwidthModel {
-    fn new(finding: &BandwidthFinding) -> Self {
-        Self {
-            condition: finding.condition,
-            pair: finding.pair,
-            role: finding.role,
-        }
-    }
-
-    fn finding(self, requirements: &Requirements) -> Option<&BandwidthFinding> {
-        requirements.bandwidth_of(self.condition, self.pair, self.role)
-    }
-}
-
-/// Returns the role of the mark at a position \[rad/s, ms\] in the plot of a response; of several
-/// marks there, the topmost.
-fn role_at(
-    requirements: &Requirements,
-    model: BandwidthModel,
-    place: [f64; 2],
-) -> Option<RequirementRole> {
-    for role in RequirementRole::ALL.into_iter().rev() {
-        let finding = BandwidthModel { role, ..model }.finding(requirements);
-        if finding.and_then(bandwidth_place) == Some(place) {
-            return Some(role);
-        }
-    }
-    None
-}
-
-/// Returns the commands that show the response in the Bode view, with marks at the frequencies that
-/// define its bandwidth and phase delay.
-fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Command> {
+) -> Vec<Command> {
     let mut commands: Vec<Command> = vec![
-        SelectionCommand::SelectCondition(model.condition).into(),
-        SelectionCommand::FocusPair(model.pair).into(),
+        SelectionCommand::SelectCondition(condition).into(),
+        SelectionCommand::FocusPair(pair).into(),
         CurveCommand::UnpinCursors.into(),
     ];
-    if let Some(finding) = model.finding(requirements) {
+    if let Some(finding) = requirements.bandwidth_of(condition, pair, role) {
         let mut crossings = Vec::new();
         for (name, omega) in [
             ("ω_phase", finding.omega_phase_rad_s),
@@ -150,30 +156,26 @@ fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Comm
     commands
 }
 
-/// Accessible names of the bandwidth plots, and descriptions of their marks.
+/// Accessible name of the bandwidth plot, and descriptions of its marks.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,
-    pairs: &'a [Pair],
+    pair: Pair,
 }
 
 impl FigureWords for BandwidthWords<'_> {
-    fn plot_name(&self, plot: usize) -> String {
-        let name = match self.pairs.get(plot) {
-            Some(pair) => self.state.dataset().pair_name(*pair),
-            None => String::new(),
-        };
+    fn plot_name(&self, _: usize) -> String {
+        let name = self.state.dataset().pair_name(self.pair);
         format!("Phase delay over bandwidth of {name}")
     }
 
-    fn status_text(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
-        let pair = self.pairs.get(plot)?;
+    fn status_text(&self, _: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else {
             return None;
         };
         let mut words = vec![format!("condition {id}")];
         for role in RequirementRole::ALL {
-            let finding = self.requirements.bandwidth_of(*id, *pair, role);
+            let finding = self.requirements.bandwidth_of(*id, self.pair, role);
             if let Some([bandwidth_rad_s, delay_ms]) = finding.and_then(bandwidth_place) {
                 words.push(format!(
                     "{} {} rad/s, {} ms",
@@ -183,7 +185,6 @@ impl FigureWords for BandwidthWords<'_> {
                 ));
             }
         }
-        words.push("click: show in Bode".to_owned());
         Some(words.join(" · "))
     }
 }

@@ -7,7 +7,7 @@ use egui::{Button, Ui};
 use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries};
 use gdcm_study::decisions::requirement_settings::RequirementPart;
 
-use super::requirement_limits::requirement_edit;
+use super::requirement_edits::requirement_edit;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::state::forms::RequirementTable;

@@ -3,11 +3,13 @@
 
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
-use gdcm_plot::figure::gains::{Across, GainAxes, GainQuantity, Measure, channels_figure, quieten};
+use gdcm_plot::figure::gains::{
+    Across, GainAxes, GainQuantity, Measure, add_previous, channels_figure, quieten,
+};
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Figure, all_channels};
 
-use super::error_bars::{error_bars_switch_ui, shown_uncertainty};
+use super::error_bars::{dim_older_bars, error_bars_switch_ui, painted_uncertainty};
 use super::gain_plots::{GainPlots, LEAST_PLOT, gain_command};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -156,11 +158,17 @@ pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let mut quantities = Vec::new();
     if let Some(analysis) = state.analysis() {
         let channels = all_channels(state.dataset());
-        let uncertainty = shown_uncertainty(state);
+        let uncertainty = painted_uncertainty(state);
         let axes = GainAxes { measure, across };
         figure = channels_figure(analysis, uncertainty, &channels, axes);
+        dim_older_bars(state, &mut figure);
         for channel in channels {
             quantities.push(GainQuantity::of_channel(channel, measure));
+        }
+        if across == Across::Airspeed
+            && let Some(previous) = state.previous_analysis()
+        {
+            add_previous(&mut figure, &quantities, previous);
         }
     }
     GainPlots {

@@ -24,7 +24,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::restore_panel_size;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
+use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
@@ -244,13 +244,7 @@ impl CouplingsWords<'_> {
     ) {
         ui.add_space(10.0);
         ui.add(Label::new(RichText::new(&table.title).font(medium(BODY_SIZE))).wrap());
-        ScrollArea::horizontal()
-            .id_salt(("couplings", &table.title))
-            .show(ui, |ui| {
-                ui.spacing_mut().interact_size.y = 16.0;
-                let mut unsorted = Sorting::default();
-                table_grid_ui(ui, table, &mut unsorted, &look, self.palette, commands);
-            });
+        table_block_ui(ui, table, &look, self.palette, commands);
     }
 
     /// Builds the loop table: in each condition, the minimum singular value, and the on-axis

@@ -4,6 +4,8 @@ use egui::Ui;
 
 use gdcm_method::uncertainty::{Bar, Scalar};
 use gdcm_model::units::s_to_ms;
+use gdcm_plot::figure::marks::Mark;
+use gdcm_plot::figure::{Color, Figure};
 use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_words::uncertainty::bar_remark_texts;
 
@@ -19,6 +21,41 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     } else {
         state.uncertainty().map(AsRef::as_ref)
     }
+}
+
+/// Returns the uncertainty that is drawn in plots of gains: while the settings are open, it may
+/// belong to earlier settings, and [`dim_older_bars`] dims it.
+pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
+    if state.display.gains.hide_bars {
+        return None;
+    }
+    match state.older_uncertainty() {
+        Some(older) => Some(older),
+        None => shown_uncertainty(state),
+    }
+}
+
+/// Dims the error bars and bands of a figure if they belong to earlier settings.
+pub fn dim_older_bars(state: &State, figure: &mut Figure) {
+    if state.older_uncertainty().is_none() {
+        return;
+    }
+    for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
+        panel
+            .marks
+            .retain(|mark| !matches!(mark, Mark::Brackets(_)));
+        for mark in &mut panel.marks {
+            match mark {
+                Mark::Intervals(bars) => dim(&mut bars.stroke.color),
+                Mark::Envelope(band) => dim(&mut band.color),
+                _ => {}
+            }
+        }
+    }
+}
+
+fn dim(color: &mut Color) {
+    *color = color.tint(color.percent / 2);
 }
 
 /// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".

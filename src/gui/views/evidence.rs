@@ -1,9 +1,10 @@
 //! Evidence view: significant differences between net gains at equal airspeed, sources of their
 //! scatter, and the variables and the form of schedule that they require.
 
-use egui::{Grid, RichText, ScrollArea, Ui, vec2};
+use egui::{RichText, ScrollArea, Ui, vec2};
 
 use gdcm_study::results::uncertainty::{AirspeedDifference, Uncertainty};
+use gdcm_words::Table;
 use gdcm_words::uncertainty::{
     difference_table, difference_verdict, differences_summary, second_variable_table,
 };
@@ -14,7 +15,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
-use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
+use crate::gui::widgets::tables::{Sorting, TableLook, table_block_ui, table_height, table_ui};
 
 /// Maximum table height \[pt\]; longer tables scroll.
 const MOST_TABLE: f32 = 330.0;
@@ -38,7 +39,7 @@ pub fn evidence_view_ui(
     let mut sortings = state.display.gains.evidence_tables;
     ui.label(RichText::new(differences_summary(&uncertainty)).font(medium(BODY_SIZE)));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        page.differences_ui(ui, state);
+        page.differences_ui(ui, state, commands);
         page.second_variable_ui(ui, state);
         let bars = ScatterBars {
             uncertainty: &uncertainty,
@@ -64,8 +65,8 @@ impl EvidencePage<'_> {
         difference.is_significant(self.uncertainty.level)
     }
 
-    /// Draws the significant differences in aligned columns.
-    fn differences_ui(&self, ui: &mut Ui, state: &State) {
+    /// Draws the significant differences.
+    fn differences_ui(&self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let significant: Vec<&AirspeedDifference> = self
             .uncertainty
             .differences
@@ -79,18 +80,15 @@ impl EvidencePage<'_> {
                 identification"
             )));
         }
-        Grid::new("significant differences")
-            .num_columns(4)
-            .spacing([16.0, 1.0])
-            .min_row_height(16.0)
-            .show(ui, |ui| {
-                for difference in significant {
-                    for words in difference_cells(state, difference) {
-                        ui.label(RichText::new(words).size(SMALL_SIZE));
-                    }
-                    ui.end_row();
-                }
-            });
+        if significant.is_empty() {
+            return;
+        }
+        let columns = ["response", "conditions", "difference", "ratio"];
+        let mut table = Table::new("Significant differences", columns);
+        for difference in significant {
+            table.row(difference_cells(state, difference));
+        }
+        table_block_ui(ui, &table, &TableLook::PLAIN, self.palette, commands);
     }
 
     /// Draws a note if the schedule has a second variable although no response needs it.
@@ -212,9 +210,7 @@ fn heading_ui(ui: &mut Ui, text: &str) {
 
 /// Draws a table no higher than its rows, because other tables follow in the same scroll area.
 fn with_height_of_rows<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
-    let row = ui.spacing().interact_size.y + 3.0;
-    let bar = ui.spacing().scroll.allocated_width();
-    let height = (row * (rows + 1) as f32 + bar + 4.0).min(MOST_TABLE);
+    let height = table_height(ui, rows).min(MOST_TABLE);
     ui.allocate_ui(vec2(ui.available_width(), height), add)
         .inner
 }

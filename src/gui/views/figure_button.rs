@@ -1,4 +1,4 @@
-//! Save menu of a view: copies or saves its figure, or the tables that it shows instead.
+//! Save menu of a view: copies or saves its figure or its tables.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
@@ -13,8 +13,9 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named;
 
-/// Returns the tables that a view shows instead of a figure; `None` if it shows a figure.
-pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
+/// Returns the tables that a view shows above its figure and that are saved as its numbers; `None`
+/// if the numbers are those of its figure.
+pub fn tables_of_view(state: &State, view: View) -> Option<Vec<Table>> {
     match view {
         View::Requirements => requirement_tables(state),
         _ => None,
@@ -22,11 +23,10 @@ pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
 }
 
 /// Draws the button that copies or saves a view's content.
-pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
+pub fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
     if view.figure().is_none() {
         return;
     }
-    let has_figure = tables_in_place(state, view).is_none();
     let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
         if ui
             .button("Copy the numbers")
@@ -37,9 +37,6 @@ pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut V
             ui.close();
         }
         for format in FigureFormat::ALL {
-            if !has_figure && format != FigureFormat::Csv {
-                continue;
-            }
             let text = format!("Save as {}…", format.extension().to_uppercase());
             if ui.button(text).on_hover_text(format.words()).clicked() {
                 commands.push(OutputCommand::AskSaveFigure(view, format).into());

@@ -44,7 +44,10 @@ pub fn figure_name(state: &State, view: View) -> String {
             parts.push(state.condition().id().to_string());
         }
     }
-    if matches!(view, View::Bode | View::Error | View::Across | View::Leads) {
+    if matches!(
+        view,
+        View::Bode | View::Error | View::Across | View::Leads | View::ScheduleCost
+    ) {
         let (output, input) = state.dataset().channel_names(state.display.selection.pair);
         parts.push(input);
         parts.push(output);
@@ -76,6 +79,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         values,
         ..bode_options(state)
     };
+    let across_display = &display.frequency.across_display;
     let assessed = Some(state.assessment_choice());
     let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
@@ -88,7 +92,8 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         measure,
         across,
         assessed,
-        across_role: display.frequency.across_role,
+        across_roles: across_display.roles.clone(),
+        across_conditions: across_display.conditions.of_study(&state.study),
         bode,
         couplings,
         physics: shown_physics(state, kind),

@@ -1,5 +1,7 @@
 //! Curves over frequency in the displayed condition, with their options and their source.
 
+use std::sync::Arc;
+
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;
@@ -62,6 +64,8 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
 /// Returns all curves for a response in the displayed condition; empty until its responses are
 /// available.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let shown = state.curves().map(Arc::clone);
+    state.display.frequency.keep_shapes_of(shown.as_ref());
     let mut cache = state
         .display
         .frequency
@@ -76,6 +80,23 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
     let drawn = with_interaction(state, curves, None);
     state.display.frequency.shapes.insert(pair, cache);
     drawn
+}
+
+/// Returns all curves for a response in the displayed condition with unwrapped phases, whatever the
+/// engineer has hidden, isolated or shifted; empty until its responses are available.
+pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    let mut cache = state
+        .display
+        .frequency
+        .shapes
+        .remove(&pair)
+        .unwrap_or_default();
+    let curves = match condition_source(state) {
+        Some(source) => source.response_curves(pair, &BodeOptions::default(), &mut cache),
+        None => Vec::new(),
+    };
+    state.display.frequency.shapes.insert(pair, cache);
+    curves
 }
 
 /// Returns the error curves of a response in the displayed condition, as used by the fit; empty

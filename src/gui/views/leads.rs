@@ -3,6 +3,7 @@
 use egui::{Panel, Ui, vec2};
 
 use gdcm_method::correction::{Channel, LeadPrice};
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::PhaseCorrection;
@@ -16,7 +17,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
+use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
 /// Initial table width, as a share of the view's width.
 const TABLE_PART: f32 = 0.5;
@@ -46,9 +47,7 @@ pub fn leads_view_ui(
                 ..TableLook::PLAIN
             };
             ui.label(palette.small_warning(&table.title));
-            ui.spacing_mut().interact_size.y = 16.0;
-            let mut unsorted = Sorting::default();
-            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
+            table_block_ui(ui, &table, &look, palette, commands);
         });
     }
     let figure = figure(state);
@@ -123,7 +122,7 @@ pub fn leads_table(state: &State) -> Option<Table> {
                 telling(filter.zero_rad_s(), 0),
                 telling(filter.lag_rad_s(), 0)
             ),
-            None => "–".to_owned(),
+            None => NO_VALUE.to_owned(),
         };
         let gain_db = match &price {
             Some(price) => price.gains_db[channel],

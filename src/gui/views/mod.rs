@@ -2,6 +2,8 @@
 //! header, background jobs and figure.
 
 pub mod across;
+mod across_chips;
+mod across_readout;
 pub mod assembling;
 pub mod assessment;
 mod assessment_bar_words;
@@ -39,12 +41,19 @@ pub mod overview;
 pub mod physics;
 pub mod poles;
 pub mod records;
-pub mod requirement_histories;
+mod requirement_cards;
+mod requirement_details;
+mod requirement_edits;
+mod requirement_grid;
+mod requirement_histories;
 pub mod requirement_history_jobs;
-pub mod requirement_limits;
+mod requirement_limits;
+mod requirement_modes;
+pub mod requirement_selection;
 mod requirement_tables;
 pub mod requirements;
 mod scatter_bars;
+mod schedule_cost;
 mod schedule_tables;
 pub mod setting_controls;
 pub mod variant_analyses;
@@ -63,7 +72,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
-use across::{across_header_ui, across_job, across_view_ui};
+use across::{across_header_ui, across_job, across_pages, across_view_ui};
 use assessment::assessment_view_ui;
 use assessment_content::assessed_pairs;
 use assessment_header::assessment_header_ui;
@@ -71,6 +80,7 @@ use bode::bode_view_ui;
 use channels::{channels_header_ui, channels_view_ui};
 use compare::compare_view_ui;
 use couplings::{couplings_header_ui, couplings_view_ui};
+use error_bars::error_bars_switch_ui;
 use evidence::evidence_view_ui;
 use leads::leads_view_ui;
 use model_error::{error_header_ui, error_view_ui};
@@ -79,12 +89,17 @@ use net_gain::net_gain_view_ui;
 use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::overview_view_ui;
-use physics::{physics_header_ui, physics_job, physics_pages, physics_view_ui};
-use poles::{poles_header_ui, poles_view_ui};
-use records::{records_header_ui, records_view_ui, simulation_jobs};
-use requirements::{
-    NOT_A_QUALIFICATION, requirements_needs, requirements_pages, requirements_view_ui,
+use physics::{
+    physics_evidence_ui, physics_header_ui, physics_job, physics_pages, physics_view_ui,
 };
+use poles::{poles_header_ui, poles_view_ui};
+use records::{
+    records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
+};
+use requirements::{
+    requirements_needs, requirements_tools_ui, requirements_view_ui, requirements_words,
+};
+use schedule_cost::{schedule_cost_view_ui, schedule_cost_words};
 use variant_analyses::variant_jobs;
 
 pub use couplings_use::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
@@ -108,8 +123,12 @@ pub fn view_content(view: View) -> ViewContent {
         View::Requirements => REQUIREMENTS,
         View::Leads => LEADS,
         View::NetGain => NET_GAIN,
+        View::ScheduleCost => SCHEDULE_COST,
     }
 }
+
+/// Draws the right panel below the verdict.
+pub type SideUi = fn(&mut Ui, &State, &Palette, &mut Vec<Command>);
 
 /// Content of a view.
 #[derive(Clone, Copy)]
@@ -125,6 +144,8 @@ pub struct ViewContent {
     pub tools_width: f32,
     /// Computations needed in addition to the analysis of the current settings.
     pub needs: fn(&State) -> Vec<Need>,
+    /// Content of the right panel below the verdict; `None` for the result and the constraint matrix.
+    pub side: Option<SideUi>,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
@@ -138,6 +159,7 @@ impl ViewContent {
         tools: |_, _, _, _| {},
         tools_width: 0.0,
         needs: |_| Vec::new(),
+        side: None,
         figure_pairs: |_| Vec::new(),
     };
 }
@@ -159,7 +181,11 @@ pub enum ViewTitle {
     ResponseAndCondition,
     /// The response in focus without the condition, for views of all conditions.
     ResponseOnly,
+    /// This name of the view, and the condition.
+    NameAndCondition(&'static str),
     Words(fn(&State) -> String),
+    /// A name, and further words, which are cut first.
+    Named(&'static str, fn(&State) -> String),
 }
 
 const BODE: ViewContent = ViewContent {
@@ -188,7 +214,8 @@ const ACROSS: ViewContent = ViewContent {
     draw: across_view_ui,
     title: ViewTitle::ResponseOnly,
     tools: across_header_ui,
-    tools_width: 330.0,
+    tools_width: 190.0,
+    pages: across_pages,
     needs: |state| vec![Need::Across(across_job(state))],
     figure_pairs: focused_pair,
     ..ViewContent::PLAIN
@@ -209,6 +236,7 @@ const PHYSICS: ViewContent = ViewContent {
     pages: physics_pages,
     tools: physics_header_ui,
     tools_width: 240.0,
+    side: Some(physics_evidence_ui),
     needs: |state| vec![Need::Physics(physics_job(state))],
     ..ViewContent::PLAIN
 };
@@ -224,9 +252,11 @@ const COUPLINGS: ViewContent = ViewContent {
 
 const RECORDS: ViewContent = ViewContent {
     draw: records_view_ui,
-    title: ViewTitle::Condition,
+    title: ViewTitle::NameAndCondition("Records"),
     tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
     tools_width: 380.0,
+    pages: records_pages,
+    side: Some(records_side_ui),
     needs: |state| {
         simulation_jobs(state)
             .into_iter()
@@ -266,8 +296,9 @@ const COMPARE: ViewContent = ViewContent {
 
 const REQUIREMENTS: ViewContent = ViewContent {
     draw: requirements_view_ui,
-    title: ViewTitle::Words(|_| NOT_A_QUALIFICATION.to_owned()),
-    pages: requirements_pages,
+    title: ViewTitle::Named("Requirements", requirements_words),
+    tools: requirements_tools_ui,
+    tools_width: 290.0,
     needs: requirements_needs,
     ..ViewContent::PLAIN
 };
@@ -288,6 +319,17 @@ const NET_GAIN: ViewContent = ViewContent {
     ..ViewContent::PLAIN
 };
 
+const SCHEDULE_COST: ViewContent = ViewContent {
+    draw: schedule_cost_view_ui,
+    title: ViewTitle::Words(schedule_cost_words),
+    tools: |ui, state, _, commands| {
+        error_bars_switch_ui(ui, state, "bars of the schedule cost", commands);
+    },
+    tools_width: 60.0,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
 fn focused_pair(state: &State) -> Vec<Pair> {
     vec![state.display.selection.pair]
 }
@@ -301,7 +343,11 @@ fn modes_needs(state: &State) -> Vec<Need> {
     }
 }
 
+/// Returns the assessment of the current analysis; none while a setting is dragged.
 fn assessment_needs(state: &State) -> Vec<Need> {
+    if state.is_setting_dragged() {
+        return Vec::new();
+    }
     match current_analysis(state) {
         Some(analysis) => vec![Need::Assessment(AssessmentJob {
             analysis: analysis.into(),

@@ -30,7 +30,7 @@ pub enum Need {
     TestAnswers(TestAnswersJob),
     /// Models' responses to a flight record.
     RecordHistory(RecordHistoryJob),
-    /// Models' responses to all flight records.
+    /// Models' responses to the held-out flight records.
     TimeHistories(TimeHistoriesJob),
 }
 

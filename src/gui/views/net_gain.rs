@@ -4,10 +4,12 @@
 use egui::{Panel, RichText, ScrollArea, Ui};
 
 use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
+use gdcm_plot::figure::gains::{
+    Across, GainQuantity, add_previous, add_variant, net_gain_figure, quieten,
+};
 use gdcm_plot::figure::marks::MarkId;
 
-use super::error_bars::shown_uncertainty;
+use super::error_bars::{dim_older_bars, painted_uncertainty};
 use super::gain_plots::{GainPlots, gain_command};
 use super::net_gain_pairs::net_gain_pairs;
 use super::schedule_tables::{FormsTable, coefficient_table, lead_degrees_table, residual_table};
@@ -19,7 +21,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::panel_layout::restore_panel_size;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
+use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
 /// Draws the net gain of each displayed response over airspeed.
 pub fn net_gain_view_ui(
@@ -104,9 +106,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
         ];
         for table in tables.into_iter().flatten() {
             ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-            let mut unsorted = Sorting::default();
-            let look = TableLook::PLAIN;
-            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
+            table_block_ui(ui, &table, &TableLook::PLAIN, palette, commands);
         }
     });
     state.display.gains.evidence = cached;
@@ -120,9 +120,13 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let mut figure = Figure::default();
     if let Some(analysis) = state.analysis() {
         pairs = net_gain_pairs(state);
-        figure = net_gain_figure(analysis, shown_uncertainty(state), &pairs);
+        figure = net_gain_figure(analysis, painted_uncertainty(state), &pairs);
+        dim_older_bars(state, &mut figure);
     }
     let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
+    if let Some(previous) = state.previous_analysis() {
+        add_previous(&mut figure, &quantities, previous);
+    }
     if let Some((name, analysis)) = overlaid_analysis(state) {
         add_variant(&mut figure, &quantities, analysis, name);
     }

@@ -114,6 +114,7 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         &setting::TAU_DEGREE,
         &setting::AIRSPEED_TOLERANCE,
     ];
+    let mut help = None;
     Grid::new("form of the schedule")
         .num_columns(2)
         .spacing([12.0, 6.0])
@@ -128,9 +129,12 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                     state,
                     palette,
                     commands,
+                    help: &mut help,
                 };
                 controls.control_ui(setting);
                 ui.end_row();
             }
         });
+    // The line keeps its place, so that nothing moves under the pointer.
+    ui.label(palette.small(help.unwrap_or(" ")));
 }

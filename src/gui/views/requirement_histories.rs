@@ -1,54 +1,162 @@
-//! Requirements over time: flight records with their corridors and the models' responses; without
-//! records, a step or a doublet (M17.2).
+//! A flight record with its tolerances, or the responses to a test input, in the details of a
+//! requirement (M17.2).
 
-use egui::{CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use egui::{Grid, Label, Ui, Vec2, vec2};
 
-use gdcm_method::requirements::{TestInput, TestInputShape};
-use gdcm_model::units::number;
+use gdcm_method::requirements::{RecordCheck, TestInput, TestInputShape};
+use gdcm_model::number_format::decimals;
+use gdcm_model::units::{number, telling};
 use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::figure::Plot;
 use gdcm_plot::figure::request::OverTime;
+use gdcm_plot::figure::requirements::{quantity_figure, test_answers_figure};
 use gdcm_study::decisions::requirement_settings::RequirementPart;
-use gdcm_study::results::record_comparison::Trend;
-use gdcm_words::Table;
-use gdcm_words::time_histories::record_history_table;
+use gdcm_study::results::record_history::{QuantityHistory, RecordHistory};
+use gdcm_study::results::requirement_grid::{Requirement, RequirementLimit};
+use gdcm_words::missing_results::not_in_history_text;
+use gdcm_words::requirement_grid::limit_description;
 
-use super::figures::figure_of;
-use super::requirement_history_jobs::{over_time, record_job};
-use super::requirement_limits::{requirement_edit, tolerances_ui};
+use super::requirement_cards::role_color;
+use super::requirement_edits::requirement_edit;
+use super::requirement_history_jobs::{compared_record, over_time, record_job};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::form::FormCommand;
-use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
-use crate::gui::state::view::View;
+use crate::gui::state::requirements_display::{RecordChoice, RequirementsDisplay};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::panel_layout::restore_panel_size;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 use crate::message::Message;
 
 /// Minimum plot size \[pt\].
-const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
-/// Minimum size of a record's plot, with the difference from flight below it \[pt\].
-const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
-/// Initial table height, as a share of the view's height.
-const TABLE_PART: f32 = 0.32;
+const LEAST_PLOT: Vec2 = vec2(140.0, 90.0);
+/// Relative height of the panel with the test input.
+const INPUT_WEIGHT: f64 = 0.4;
 
-/// Draws the flight record or the test input, and the models' responses.
-pub fn histories_ui(
+/// Draws the selector between the condition's records, the held-out ones first, and a test input;
+/// draws nothing without records.
+pub(super) fn record_choice_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let condition = state.condition().id();
+    let mut choices: Vec<(Option<usize>, &str, &str)> = Vec::new();
+    if let Some(records) = state.records.conditions.get(&condition) {
+        for is_held_out in [true, false] {
+            for (index, row) in records.used_rows() {
+                if row.guess.held_out == is_held_out {
+                    let hint = if is_held_out {
+                        "Held out of the identification: it is judged in the grid"
+                    } else {
+                        "Used by the identification: it is not judged"
+                    };
+                    choices.push((Some(index), &row.table.name, hint));
+                }
+            }
+        }
+    }
+    if choices.is_empty() {
+        return;
+    }
+    choices.push((
+        None,
+        "test input",
+        "A step or a doublet of the input in focus, from rest",
+    ));
+    let mut shown = None;
+    if !state.display.judging.shows_test {
+        shown = compared_record(state);
+    }
+    let mut chosen = shown;
+    choice_ui(ui, "Record or test input", &mut chosen, &choices);
+    if chosen != shown {
+        commands.push(DisplayCommand::ShowTest(chosen.is_none()).into());
+        if let Some(index) = chosen {
+            let display = RequirementsDisplay {
+                record: Some(RecordChoice { condition, index }),
+                ..state.display.judging.requirements
+            };
+            commands.push(DisplayCommand::ShowRequirements(display).into());
+        }
+    }
+}
+
+/// Returns the subject of the details: the quantity with its unit, and the record.
+pub(super) fn time_subject(state: &State, selected: Option<Requirement>) -> String {
+    match over_time(state) {
+        Some(Ok(OverTime::Record(history, _))) => {
+            let held_out = if history.held_out { ", held out" } else { "" };
+            let record = &history.record;
+            match shown_quantity(state, &history, selected) {
+                Some(quantity) => format!(
+                    "{} [{}], {record}{held_out}",
+                    quantity.tolerance.quantity, quantity.unit
+                ),
+                None => format!("{record}{held_out}"),
+            }
+        }
+        Some(Ok(OverTime::Test(_))) => {
+            let pair = state.dataset().pair_name(state.display.selection.pair);
+            format!("{pair}, test input from rest, no flight data")
+        }
+        _ => String::new(),
+    }
+}
+
+/// Returns the quantity to draw: that of the selected requirement, else the first of the output in
+/// focus, else the first of the record.
+fn shown_quantity<'a>(
+    state: &State,
+    history: &'a RecordHistory,
+    selected: Option<Requirement>,
+) -> Option<&'a QuantityHistory> {
+    let drawn = || {
+        history
+            .quantities
+            .iter()
+            .filter(|quantity| !quantity.models.is_empty())
+    };
+    if let Some(Requirement::PeakError(row)) = selected
+        && let Some(tolerance) = state.study.requirements.tolerances.rows().get(row)
+        && let Some(found) = drawn().find(|quantity| {
+            quantity.tolerance.quantity == tolerance.quantity
+                && quantity.tolerance.channel == tolerance.channel
+        })
+    {
+        return Some(found);
+    }
+    let focused = state.display.selection.pair.output;
+    drawn()
+        .find(|quantity| quantity.output == focused)
+        .or_else(|| drawn().next())
+}
+
+/// Draws the input that was moved, the quantity with its corridor and the error of every model; for
+/// the test input, the input and the output in focus.
+pub(super) fn time_detail_ui(
     ui: &mut Ui,
     state: &mut State,
+    selected: Option<Requirement>,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    subject_ui(ui, state, palette, commands);
-    let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
-    title.show(ui, |ui| tolerances_ui(ui, state, palette, commands));
-    let responses = match over_time(state) {
-        Some(Ok(responses)) => responses,
+    if record_job(state).is_none() {
+        test_ui(ui, state, palette, commands);
+    }
+    let figure = match over_time(state) {
+        Some(Ok(OverTime::Record(history, input))) => {
+            let Some(quantity) = shown_quantity(state, &history, selected) else {
+                for why in &history.missing {
+                    ui.label(palette.small_warning(not_in_history_text(why)));
+                }
+                return;
+            };
+            shares_ui(ui, quantity, palette);
+            quantity_figure(&history, quantity, state.dataset(), input)
+        }
+        Some(Ok(OverTime::Test(answers))) => {
+            let figure = test_answers_figure(&answers, state.dataset());
+            output_figure(figure, state.display.selection.pair.output)
+        }
         Some(Err(why)) => {
             ui.label(palette.small_warning(why));
             return;
@@ -58,153 +166,115 @@ pub fn histories_ui(
             return;
         }
     };
-    if let OverTime::Record(history, _) = &responses {
-        let table = record_history_table(history);
-        shares_panel_ui(ui, state, &table, palette, commands);
-    }
-    plots_ui(ui, state, &responses, palette);
-}
-
-/// Draws the table of the shares of time inside the corridor, in a panel below the plots.
-fn shares_panel_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    table: &Table,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    restore_panel_size(ui, "tolerances");
-    let size = TABLE_PART * ui.available_height();
-    let panel = Panel::bottom("tolerances")
-        .resizable(true)
-        .default_size(size)
-        .min_size(60.0);
-    panel.show(ui, |ui| {
-        let shares = SharesTable { table, palette };
-        let sorting = &mut state.display.judging.requirements_sorting[0];
-        shares.ui(ui, sorting, commands);
-    });
-}
-
-/// Draws the responses over time below their caption and legend.
-fn plots_ui(ui: &mut Ui, state: &mut State, responses: &OverTime, palette: &Palette) {
-    let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
-    ui.add(Label::new(palette.small(&figure.caption)).wrap());
-    figure_legend_ui(ui, &figure, palette);
     // The scene borrows the state, so the view is taken out of it while the figure is drawn.
-    let mut view = state
-        .display
-        .figures
-        .remove(&View::Requirements)
-        .unwrap_or_default();
+    let mut view = std::mem::take(&mut state.display.judging.history_figure);
     view.set_subject(&figure.title);
     let words = HistoryWords(&figure);
-    let mut scene = FigureScene {
+    let scene = FigureScene {
         zooms: true,
         ..FigureScene::new(
             "requirements in time",
             &figure,
-            LEAST_RECORD,
+            LEAST_PLOT,
             "No response over time",
             &words,
         )
     };
-    if let OverTime::Test(_) = responses {
-        // `1 +`: the first plot shows the input.
-        scene.accented = Some(1 + state.display.selection.pair.output);
-        scene.least_plot_size = LEAST_PLOT;
-    }
     figure_ui(ui, &scene, &mut view, palette);
-    state.display.figures.insert(View::Requirements, view);
+    state.display.judging.history_figure = view;
 }
 
-/// Draws the selector between the condition's records and a test input.
-fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let records = state.records.conditions.get(&state.condition().id());
-    let mut choices: Vec<(Option<usize>, &str, &str)> = Vec::new();
-    if let Some(records) = records {
-        for (index, row) in records.used_rows() {
-            let name = row.table.name.as_str();
-            choices.push((Some(index), name, "A flight record of this condition"));
-        }
-    }
-    if choices.is_empty() {
-        let words = match &state.records.reading {
-            Some(reading) => format!("reading {reading} …"),
-            None => "No flight record of this condition is in use (view Records): responses to a \
-                test input are shown instead"
-                .to_owned(),
-        };
-        ui.label(palette.small(words));
-    } else {
-        choices.push((
-            None,
-            "test input",
-            "A step or a doublet of the input in focus, from rest",
-        ));
-        let mut shown = None;
-        if !state.display.judging.shows_test {
-            shown = records.map(|records| records.chosen);
-        }
-        let mut chosen = shown;
-        choice_ui(ui, "Record or test input", &mut chosen, &choices);
-        if chosen != shown {
-            commands.push(DisplayCommand::ShowTest(chosen.is_none()).into());
-            if let Some(index) = chosen {
-                commands.push(RecordsCommand::Choose(index).into());
+/// Keeps the plots of the test input and of an output, above each other.
+fn output_figure(figure: Figure, output: usize) -> Figure {
+    let mut plot = Plot::new("");
+    for (index, found) in figure.plots.iter().enumerate() {
+        // The first plot shows the input.
+        if index == 0 {
+            for panel in &found.panels {
+                plot = plot.panel(panel.clone().weight(INPUT_WEIGHT));
+            }
+        } else if index == 1 + output {
+            for panel in &found.panels {
+                plot = plot.panel(panel.clone());
             }
         }
     }
-    if record_job(state).is_none() {
-        test_ui(ui, state, palette, commands);
+    Figure {
+        plots: vec![plot],
+        ..figure
     }
 }
 
-/// Indices of the columns with the share of time inside the corridor, the largest excess, and the
-/// trend.
-const SHARE: usize = 4;
-const EXCESS: usize = 5;
-const TREND: usize = 7;
-
-/// Table with the share of time inside the corridor and the largest excess, for every quantity and
-/// model.
-struct SharesTable<'a> {
-    table: &'a Table,
-    palette: &'a Palette,
-}
-
-impl SharesTable<'_> {
-    fn ui(&self, ui: &mut Ui, sorting: &mut Sorting, commands: &mut Vec<Command>) {
-        let look = TableLook {
-            color: &|row, column| self.color(row, column),
-            ..TableLook::PLAIN
-        };
-        ScrollArea::vertical()
-            .id_salt("tolerances")
-            .auto_shrink(false)
-            .show(ui, |ui| {
-                ui.label(self.palette.small(&self.table.title));
-                table_grid_ui(ui, self.table, sorting, &look, self.palette, commands);
-            });
-    }
-
-    /// Returns a cell's colour: the warning colour outside the corridor, and for an opposite trend.
-    fn color(&self, row: usize, column: usize) -> Option<Color32> {
-        let cells = &self.table.rows[row];
-        match column {
-            SHARE | EXCESS if cells[EXCESS] == "none" => Some(self.palette.good),
-            SHARE | EXCESS => Some(self.palette.warning),
-            TREND if cells[TREND] == Trend::Opposite.name() => Some(self.palette.warning),
-            _ => None,
+/// Draws the share of time that each model is inside the tolerance, in the model's colour.
+fn shares_ui(ui: &mut Ui, quantity: &QuantityHistory, palette: &Palette) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 8.0;
+        ui.label(palette.small("time inside, %"));
+        for (role, check) in &quantity.models {
+            let share = rounded_down_percent(check);
+            let text = palette.small(format!("{} {share}", role.name()));
+            ui.label(text.color(role_color(palette, *role)));
         }
-    }
+    });
+}
+
+/// Formats the share of time inside in percent, rounded down: only the whole is 100.
+fn rounded_down_percent(check: &RecordCheck) -> String {
+    decimals((100.0 * check.share_inside()).floor(), 0)
+}
+
+/// Draws the share of time inside, the peak error and its time, for every model, above the
+/// tolerance.
+pub(super) fn time_numbers_ui(
+    ui: &mut Ui,
+    state: &State,
+    selected: Option<Requirement>,
+    palette: &Palette,
+) {
+    let Some(Ok(OverTime::Record(history, _))) = over_time(state) else {
+        return;
+    };
+    let Some(quantity) = shown_quantity(state, &history, selected) else {
+        return;
+    };
+    Grid::new("peak errors of the models")
+        .num_columns(4)
+        .show(ui, |ui| {
+            for heading in ["", "inside, %", "peak, %", "at, s"] {
+                ui.label(palette.small(heading));
+            }
+            ui.end_row();
+            for (role, check) in &quantity.models {
+                ui.colored_label(role_color(palette, *role), role.name());
+                ui.label(rounded_down_percent(check));
+                if let Some(peak) = check.peak() {
+                    ui.label(decimals(100.0 * peak.peak_error, 0));
+                    ui.label(telling(peak.peak_error_at_s, 1));
+                }
+                ui.end_row();
+            }
+        });
+    let limit = RequirementLimit::Tolerance(quantity.tolerance.clone());
+    let text = format!(
+        "Tolerance: {}. Windows of at most 10 s, each from an estimated initial state.",
+        limit_description(Requirement::PeakError(0), &limit)
+    );
+    ui.add(Label::new(palette.small(text)).wrap());
 }
 
 /// Draws the fields of the test input: shape, size and duration.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    if let Some(reading) = &state.records.reading {
+        ui.label(palette.small(format!("reading {reading} …")));
+    } else if compared_record(state).is_none() {
+        ui.add(
+            Label::new(palette.small("No flight record of this condition (view Records)"))
+                .truncate(),
+        );
+    }
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.selection.pair.input];
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         let mut shape = test.shape;
         let choices = [
             (
@@ -224,7 +294,7 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             let changed = TestInput { shape, ..test };
             commands.push(set_test_input(state, RequirementPart::TestShape, changed));
         }
-        ui.label(palette.small(format!("of {}, the input in focus, by", input.name)));
+        ui.label(palette.small(format!("of {} by", input.name)));
         let size = test_number_ui(ui, "Size of the test input", test.size, commands);
         if let Some(size) = size {
             let changed = TestInput { size, ..test };
@@ -247,7 +317,7 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
 
 /// Draws a number field; returns the typed number.
 fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
-    number_entry_ui(ui, name, &number(value), "", 56.0, commands)?
+    number_entry_ui(ui, name, &number(value), "", 48.0, commands)?
 }
 
 /// Returns the command that changes the test input, or that reports why it is refused.
@@ -262,7 +332,7 @@ fn set_test_input(state: &State, part: RequirementPart, test: TestInput) -> Comm
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {
-    fn plot_name(&self, plot: usize) -> String {
-        format!("{} over time", self.0.plots[plot].title)
+    fn plot_name(&self, _: usize) -> String {
+        format!("{} over time", self.0.title)
     }
 }

@@ -10,10 +10,31 @@ use gdcm_study::results::time_histories::HistoryRecord;
 use gdcm_words::missing_results::{no_record_history_text, no_result_text};
 
 use super::need::{Need, current_analysis};
-use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::requirements_display::RequirementDetail;
 use crate::gui::state::window_state::State;
 
-/// Returns the job of the record shown over time; `None` without a record, or if the test input is
+/// Returns the index of the record in the details: the chosen record, else the first held-out
+/// record, else the first record in use; `None` without records.
+pub(super) fn compared_record(state: &State) -> Option<usize> {
+    let condition = state.condition().id();
+    let records = state.records.conditions.get(&condition)?;
+    if let Some(choice) = state.display.judging.requirements.record
+        && choice.condition == condition
+        && records.used_rows().any(|(index, _)| index == choice.index)
+    {
+        return Some(choice.index);
+    }
+    let mut first = None;
+    for (index, row) in records.used_rows() {
+        if row.guess.held_out {
+            return Some(index);
+        }
+        first = first.or(Some(index));
+    }
+    first
+}
+
+/// Returns the job of the record in the details; `None` without a record, or if the test input is
 /// shown instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current_analysis(state)?;
@@ -22,7 +43,7 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
         return None;
     }
     let records = state.records.conditions.get(&condition)?;
-    let row = records.rows.get(records.chosen)?;
+    let row = records.rows.get(compared_record(state)?)?;
     let record = HistoryRecord {
         flight: Arc::clone(row.used_flight()?).into(),
         held_out: row.guess.held_out,
@@ -37,10 +58,10 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     })
 }
 
-/// Returns the job for all models' responses to all records; `None` without records.
+/// Returns the job for all models' responses to the held-out records; `None` without any.
 pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current_analysis(state)?;
-    let records = state.records.history_records();
+    let records = state.records.held_out_records();
     if records.is_empty() {
         return None;
     }
@@ -74,10 +95,11 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     match record_job(state) {
         Some(job) => {
             let found = match state.record_history(&job)? {
-                Ok(history) => Ok(OverTime::Record(
-                    Arc::clone(history),
-                    state.display.selection.pair.input,
-                )),
+                Ok(history) => {
+                    let focused = state.display.selection.pair.input;
+                    let input = history.moved_input.unwrap_or(focused);
+                    Ok(OverTime::Record(Arc::clone(history), input))
+                }
                 Err(why) => Err(no_record_history_text(why)),
             };
             Some(found)
@@ -91,8 +113,9 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
 
 /// Returns the models' responses over time for a figure; `None` if the figure does not show them.
 pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
-    let is_shown = kind == FigureKind::Requirements
-        && state.display.judging.requirements_page == RequirementsPage::Histories;
+    let requirements = &state.display.judging.requirements;
+    let is_shown =
+        kind == FigureKind::Requirements && requirements.detail == RequirementDetail::Time;
     if is_shown {
         over_time(state)?.ok()
     } else {

@@ -1,82 +1,70 @@
-//! Requirements in addition to J, as in a qualification, evaluated for the physics, corrected,
-//! scheduled and identified models side by side (M17).
+//! Requirements in addition to J, as in a qualification: a grid of requirements and conditions above
+//! the details of the selected cell (M17).
 
 use std::sync::Arc;
 
-use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui};
+use egui::{Align, Layout, Ui, vec2};
 
-use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_plot::figure::Color;
+use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::requirement_jobs::RequirementsJob;
+use gdcm_study::results::requirement_grid::RequirementGrid;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_words::Table;
 use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
+use gdcm_words::requirement_grid::{count_details_text, met_text};
 
-use super::PageEntry;
-use super::bandwidth::{bandwidth_plots_ui, bandwidth_row_commands};
-use super::bandwidth_settings::bandwidth_inputs_ui;
 use super::need::{Need, current_analysis};
-use super::requirement_histories::histories_ui;
+use super::requirement_details::details_ui;
+use super::requirement_grid::{grid_legend_ui, grid_ui};
 use super::requirement_history_jobs::{over_time_need, time_histories_job};
-use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui};
-use super::requirement_tables::page_tables;
+use super::requirement_limits::limits_menu_ui;
+use super::requirement_selection::shown_grid;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::state::requirements_page::RequirementsPage;
-use crate::gui::state::view::View;
+use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::PageWords;
-use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::panel_layout::restore_panel_size;
-use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
+use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
+use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Text above every page.
-pub(super) const NOT_A_QUALIFICATION: &str =
-    "These values describe models and do not replace a qualification (docs/requirements.md)";
-/// Initial table height, as a share of the view's height.
-const TABLE_PART: f32 = 0.34;
+/// Height of the line with the counts \[pt\].
+const COUNTS: f32 = 24.0;
 
-/// Returns the pages, in display order.
-pub fn requirements_pages(state: &State) -> Vec<PageEntry> {
-    let shown = state.display.judging.requirements_page;
-    let pages = [
+/// Returns the context of the view: what is compared, and that it is no qualification.
+pub fn requirements_words(_: &State) -> String {
+    "corrected vs identified models, and vs held-out records; not a qualification".to_owned()
+}
+
+/// Draws the options of the view, from right to left.
+pub fn requirements_tools_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    limits_menu_ui(ui, state, palette, commands);
+    let display = state.display.judging.requirements;
+    let mut judges_schedule = display.judges_schedule;
+    let choices = [
         (
-            RequirementsPage::Bandwidth,
-            "bandwidth",
-            "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)",
+            false,
+            "own",
+            "Models with the correction of their own condition",
         ),
         (
-            RequirementsPage::Histories,
-            "in time",
-            "Flight records with tolerances, or responses to a step or a doublet",
-        ),
-        (
-            RequirementsPage::Modes,
-            "modes",
-            "Modes of the condition and their tolerances",
-        ),
-        (
-            RequirementsPage::Summary,
-            "summary",
-            "Corrected models compared with identified models: mean J, shares of the band inside \
-            the MUAD envelopes, deviations over time",
+            true,
+            "schedule",
+            "Models with the correction scheduled over airspeed",
         ),
     ];
-    let mut entries = Vec::new();
-    for (page, name, purpose) in pages {
-        entries.push(PageEntry {
-            words: PageWords {
-                name,
-                short_name: name,
-                purpose,
-            },
-            is_shown: page == shown,
-            command: DisplayCommand::ShowRequirements(page).into(),
-        });
+    choice_ui(ui, "Correction", &mut judges_schedule, &choices);
+    ui.label(palette.small("correction"));
+    if judges_schedule != display.judges_schedule {
+        let display = RequirementsDisplay {
+            judges_schedule,
+            ..display
+        };
+        commands.push(DisplayCommand::ShowRequirements(display).into());
     }
-    entries
 }
 
 /// Returns the job for the displayed requirements; `None` until there is an analysis.
@@ -90,76 +78,85 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     })
 }
 
-/// Returns the computations needed by the selected page.
+/// Returns the computations needed by the grid and by the details.
 pub fn requirements_needs(state: &State) -> Vec<Need> {
-    let page = state.display.judging.requirements_page;
-    if page == RequirementsPage::Histories {
-        return over_time_need(state).into_iter().collect();
-    }
     let mut needs = Vec::new();
     needs.extend(requirements_job(state).map(Need::Requirements));
-    if page == RequirementsPage::Summary {
+    // All records are awaited, so that the grid is not computed again for each condition.
+    if state.records.reading.is_none() {
         needs.extend(time_histories_job(state).map(Need::TimeHistories));
+    }
+    if !state.display.judging.requirements.are_details_hidden {
+        needs.extend(over_time_need(state));
     }
     needs
 }
 
-/// Draws the selected page below the notes that concern all pages.
+/// Draws the counts, the grid, and the drawer with the details.
 pub fn requirements_view_ui(
     ui: &mut Ui,
     state: &mut State,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    if state.display.judging.requirements_page == RequirementsPage::Histories {
-        return histories_ui(ui, state, palette, commands);
-    }
     let Some(requirements) = state.requirements().cloned() else {
         ui.label(palette.dim(state.results.absence()));
         return;
     };
-    let view = RequirementsView {
+    let Some(grid) = shown_grid(state) else {
+        return;
+    };
+    if !state.display.judging.requirements.are_details_hidden {
+        details_ui(ui, state, &grid, &requirements, palette, commands);
+    }
+    let header = RequirementsHeader {
+        grid: &grid,
         requirements: &requirements,
         palette,
     };
-    view.reservations_ui(ui, state.dataset());
-    match state.display.judging.requirements_page {
-        RequirementsPage::Bandwidth => {
-            bandwidth_inputs_ui(ui, state, palette, commands);
-            restore_panel_size(ui, "requirements");
-            let size = TABLE_PART * ui.available_height();
-            let panel = Panel::bottom("requirements")
-                .resizable(true)
-                .default_size(size)
-                .min_size(60.0);
-            panel.show(ui, |ui| view.tables_ui(ui, state, commands));
-            bandwidth_plots_ui(ui, state, &requirements, palette, commands);
-        }
-        RequirementsPage::Modes => {
-            let title =
-                CollapsingHeader::new("Tolerances of modes").id_salt("edited tolerances of modes");
-            title.show(ui, |ui| mode_tolerances_ui(ui, state, palette, commands));
-            view.tables_ui(ui, state, commands);
-        }
-        RequirementsPage::Histories | RequirementsPage::Summary => {
-            let title = CollapsingHeader::new("Limits of the overview")
-                .id_salt("edited limits of the overview");
-            title.show(ui, |ui| overview_limits_ui(ui, state, palette, commands));
-            view.tables_ui(ui, state, commands);
-        }
-    }
+    header.ui(ui, state.dataset());
+    grid_ui(ui, state, &grid, palette, commands);
 }
 
-/// Context for drawing the computed requirements.
-struct RequirementsView<'a> {
+/// The line above the grid.
+struct RequirementsHeader<'a> {
+    grid: &'a RequirementGrid,
     requirements: &'a Requirements,
     palette: &'a Palette,
 }
 
-impl RequirementsView<'_> {
-    /// Draws a line for each kind of missing result, and the reservations about the available
+impl RequirementsHeader<'_> {
+    /// Draws the counts at the left, and the legend at the right.
+    fn ui(&self, ui: &mut Ui, dataset: &Dataset) {
+        let palette = self.palette;
+        let width = ui.available_width();
+        let size = vec2(width, COUNTS);
+        let (row, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let legend = in_line_ui(ui, row, true, |ui| grid_legend_ui(ui, palette));
+        let rest = row.with_max_x(legend.response.rect.left() - 8.0);
+        let layout = Layout::left_to_right(Align::Center);
+        let builder = egui::UiBuilder::new().max_rect(rest).layout(layout);
+        ui.scope_builder(builder, |ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            let count = self.grid.count();
+            let met = egui::RichText::new(met_text(count)).font(medium(BODY_SIZE));
+            ui.label(met);
+            ui.label(palette.dim(count_details_text(count)));
+            let notes = self.notes(dataset);
+            if !notes.is_empty() {
+                let words = match notes.len() {
+                    1 => "\u{26a0} 1 note".to_owned(),
+                    count => format!("\u{26a0} {count} notes"),
+                };
+                ui.label(palette.small_warning(words))
+                    .on_hover_text(notes.join("\n"));
+            }
+        });
+    }
+
+    /// Returns a line for each kind of missing result, and for each reservation about the available
     /// results.
-    fn reservations_ui(&self, ui: &mut Ui, dataset: &Dataset) {
+    fn notes(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = Vec::new();
         for missing in &self.requirements.missing {
             let condition = match missing.condition {
@@ -170,85 +167,9 @@ impl RequirementsView<'_> {
             lines.push(format!("{condition}no {}: {why}", missing.what));
         }
         for caution in &self.requirements.cautions {
-            lines.push(format!(
-                "⚠ Condition {}: {}",
-                caution.condition,
-                reversed_phase_text(caution, dataset)
-            ));
+            let text = reversed_phase_text(caution, dataset);
+            lines.push(format!("Condition {}: {text}", caution.condition));
         }
-        for line in lines {
-            ui.add(Label::new(self.palette.small_warning(&line)).truncate())
-                .on_hover_text(line);
-        }
+        lines
     }
-
-    /// Draws the tables of the page; a click on a row shows its response or condition.
-    fn tables_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
-        let condition = state.condition().id();
-        let mut sortings = state.display.judging.requirements_sorting;
-        ScrollArea::both()
-            .id_salt("requirement tables")
-            .auto_shrink(false)
-            .show(ui, |ui| {
-                let pages = page_tables(state, self.requirements);
-                for (page, sorting) in pages.into_iter().zip(&mut sortings) {
-                    let table = &page.table;
-                    ui.add(Label::new(self.palette.small(&table.title)).extend());
-                    if table.rows.is_empty() {
-                        ui.label(self.palette.dim(self.absence_of_rows(state)));
-                        continue;
-                    }
-                    let look = TableLook {
-                        color: &|row, column| {
-                            let hue = page.hue(row, column)?;
-                            Some(self.palette.color(Color::new(hue)))
-                        },
-                        selected: &|row| {
-                            table.columns[0] == "condition"
-                                && table.rows[row][0] == condition.to_string()
-                        },
-                    };
-                    let click = table_grid_ui(ui, table, sorting, &look, self.palette, commands);
-                    if let Some(click) = click {
-                        commands.extend(self.click_commands(state, table, click));
-                    }
-                    ui.add_space(8.0);
-                }
-            });
-        state.display.judging.requirements_sorting = sortings;
-    }
-
-    /// Returns why a table has no rows.
-    fn absence_of_rows(&self, state: &State) -> String {
-        if state.display.judging.requirements_page == RequirementsPage::Modes
-            && let Some(why) = self.requirements.no_modes(state.condition().id())
-        {
-            return missing_reason_text(why);
-        }
-        "No condition has a result".to_owned()
-    }
-
-    /// Returns the commands for a click on a row.
-    fn click_commands(&self, state: &State, table: &Table, click: TableClick) -> Vec<Command> {
-        match state.display.judging.requirements_page {
-            RequirementsPage::Bandwidth => bandwidth_row_commands(self.requirements, click.row),
-            RequirementsPage::Histories | RequirementsPage::Summary => {
-                match clicked_condition(table, click) {
-                    Some(id) => vec![SelectionCommand::SelectCondition(id).into()],
-                    None => Vec::new(),
-                }
-            }
-            RequirementsPage::Modes => vec![LayoutCommand::ShowView(View::Poles).into()],
-        }
-    }
-}
-
-/// Returns the clicked condition, which is a row in the summary and a column in the overview.
-fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
-    if let Some(cells) = table.rows.get(click.row)
-        && let Ok(id) = cells[0].parse()
-    {
-        return Some(ConditionId(id));
-    }
-    table.columns[click.column].parse().ok().map(ConditionId)
 }

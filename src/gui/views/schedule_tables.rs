@@ -10,6 +10,7 @@ use gdcm_method::schedule::ScheduleKind;
 use gdcm_method::schedule::form_comparison::{FormComparison, FormFit};
 use gdcm_method::schedule::lead_degree_comparison::LeadDegreeFit;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::decisions::setting;
 use gdcm_words::Table;
@@ -120,7 +121,7 @@ fn kind_name(kind: ScheduleKind) -> String {
 fn percent_text(rms_ln: Option<f64>) -> String {
     match rms_ln {
         Some(rms_ln) => format!("{:.2}", 100.0 * rms_ln),
-        None => "–".to_owned(),
+        None => NO_VALUE.to_owned(),
     }
 }
 
@@ -128,7 +129,7 @@ fn percent_text(rms_ln: Option<f64>) -> String {
 fn delay_text(error_s: Option<f64>) -> String {
     match error_s {
         Some(error_s) => format!("{:.2}", s_to_ms(error_s)),
-        None => "–".to_owned(),
+        None => NO_VALUE.to_owned(),
     }
 }
 
@@ -187,7 +188,7 @@ pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> O
         for pair in &pairs {
             cells.push(match form.pairs[*pair].residuals.get(index) {
                 Some(Some(residual)) => signed(residual.percent, 2),
-                _ => "–".to_owned(),
+                _ => NO_VALUE.to_owned(),
             });
         }
         table.row(cells);

@@ -4,7 +4,10 @@
 //! A drag pushes a change in each frame; `StudyCommand::EndEdit` ends the undo step that they
 //! share.
 
-use egui::{Role, Slider, Ui, WidgetInfo};
+use egui::{
+    Align2, ComboBox, Rect, RichText, Role, Sense, Slider, Stroke, StrokeKind, Ui, UiBuilder,
+    WidgetInfo, vec2,
+};
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_study::PhaseCorrection;
@@ -16,27 +19,27 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::controls::named_switch;
+use crate::gui::widgets::controls::{named, named_switch};
 use crate::gui::widgets::number_field::{Entered, NumberField};
-use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
+use crate::gui::widgets::palette::{Palette, body, small};
 
 /// Maximum value on a slider; larger values can be typed.
-const SLIDER_END: f64 = 1e3;
+pub const SLIDER_END: f64 = 1e3;
 /// Value below which a slider snaps to zero.
-const SLIDER_START: f64 = 1e-3;
+pub const SLIDER_START: f64 = 1e-3;
 
-const LABEL_WIDTH: f32 = 60.0;
-const TYPED_WIDTH: f32 = 62.0;
+/// Width of a typed number beside a caption \[pt\].
+const TYPED_WIDTH: f32 = 54.0;
+/// Explanation of a source of G without effect.
+const IDLE_SOURCE: &str = "With leads, G is computed from the difference between the representatives that \
+    remains after the leads";
 
-/// Tooltip of the phase correction: summary of its method (M15) in five steps.
-const LEADS_IN_SHORT: &str = "Delay or lead:\n\
-    1  For each response, a straight line through the origin is fitted to the missing phase over the band. Its slope is a delay or, \
-    if negative, a lead.\n\
-    2  Each channel gets one signed delay τ, so that every held response gets exactly the delay or lead of its line.\n\
-    3  A positive τ is a pure delay. A negative τ is a filter that replaces a slow servo or sensor by a faster one.\n\
-    4  The gains are then computed as without leads, for the remaining error.\n\
-    5  The price is gain above the band [dB].";
+/// Height of a row with a caption, and of a segmented control \[pt\].
+const ROW: f32 = 20.0;
+const SEGMENTS: f32 = 24.0;
+/// Radius of the handle of a slider relative to the height of the slider, as in egui.
+const HANDLE_PART: f32 = 0.4;
 
 /// Context for drawing the controls of settings; collects the commands for changed settings. The
 /// entry points are [`Self::controls_ui`], [`Self::control_ui`] and [`Self::slider_ui`].
@@ -45,6 +48,8 @@ pub struct SettingControls<'a, 'c> {
     pub state: &'a State,
     pub palette: &'a Palette,
     pub commands: &'c mut Vec<Command>,
+    /// Receives the explanation of the control under the pointer.
+    pub help: &'c mut Option<&'static str>,
 }
 
 impl SettingControls<'_, '_> {
@@ -63,14 +68,64 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the caption; for the phase correction, with a summary as tooltip.
-    pub fn caption_ui(&mut self, setting: &Setting) {
-        let label = self
-            .ui
-            .label(self.palette.dim(setting_words(setting).caption));
-        if *setting == setting::PHASE {
-            label.on_hover_text(LEADS_IN_SHORT);
+    /// Draws a part of the panel; while the pointer is on it, the panel shows its explanation.
+    pub(super) fn explained<T>(
+        &mut self,
+        explanation: &'static str,
+        add: impl FnOnce(&mut Ui) -> T,
+    ) -> T {
+        let shown = self.ui.scope(add);
+        if self.ui.rect_contains_pointer(shown.response.rect) {
+            *self.help = Some(explanation);
         }
+        shown.inner
+    }
+
+    /// Draws the caption, in the text colour if the setting has changed since the panel was opened.
+    pub fn caption_ui(&mut self, setting: &'static Setting) {
+        let words = setting_words(setting);
+        let text = self.caption(setting);
+        self.explained(words.help, |ui| ui.label(text));
+    }
+
+    fn caption(&self, setting: &'static Setting) -> RichText {
+        let caption = setting_words(setting).caption;
+        if self.state.previous_setting(setting).is_some() {
+            RichText::new(caption)
+        } else {
+            self.palette.dim(caption)
+        }
+    }
+
+    /// Draws the caption in a row of its own, and the value at the opening of the panel at `end`
+    /// points from the right, if the setting has changed.
+    fn captioned_row_ui(&mut self, setting: &'static Setting, end: f32) -> Rect {
+        let width = self.ui.available_width();
+        let (row, response) = self
+            .ui
+            .allocate_exact_size(vec2(width, ROW), Sense::hover());
+        if response.contains_pointer() {
+            *self.help = Some(setting_words(setting).help);
+        }
+        let caption = setting_words(setting).caption;
+        let color = if self.state.previous_setting(setting).is_some() {
+            self.palette.text
+        } else {
+            self.palette.dim_text
+        };
+        painted_text(self.ui, row, 0.0, caption, body(), color);
+        if let Some(was) = self.was_text(setting) {
+            let place = row.with_max_x(row.right() - end);
+            let dim = self.palette.dim_text;
+            painted_text(self.ui, place, AT_RIGHT_END, &was, small(), dim);
+        }
+        row
+    }
+
+    /// Returns "was 1" if the setting has changed since the panel was opened.
+    fn was_text(&self, setting: &'static Setting) -> Option<String> {
+        let previous = self.state.previous_setting(setting)?;
+        Some(format!("was {}", setting.text(previous)))
     }
 
     pub(super) fn small_ui(&mut self, text: &str) {
@@ -95,9 +150,7 @@ impl SettingControls<'_, '_> {
         if *setting == setting::GAIN_SOURCE && is_idle {
             self.ui.label("");
             let text = self.palette.small_warning("No effect with leads");
-            self.ui
-                .label(text)
-                .on_hover_text(format!("G from {}", settings.gain_source_words()));
+            self.explained(IDLE_SOURCE, |ui| ui.label(text));
             self.ui.end_row();
         }
     }
@@ -116,34 +169,115 @@ impl SettingControls<'_, '_> {
             (Kind::Range { .. }, value) => self.range_ui(setting, value),
             (Kind::Flag { .. }, Value::Flag(flag)) => self.flag_ui(setting, flag),
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
-                let mut chosen = index;
-                let mut choices = Vec::new();
-                let meanings = setting_words(setting).meanings;
-                for (index, ([_, text], hint)) in words.iter().zip(meanings).enumerate() {
-                    choices.push((index, *text, *hint));
-                }
-                choice_ui(self.ui, setting_words(setting).label, &mut chosen, &choices);
-                if chosen != index {
-                    self.set(setting, Value::Choice(chosen));
-                }
+                self.list_ui(setting, index, words);
             }
             _ => {}
         }
     }
 
     fn flag_ui(&mut self, setting: &'static Setting, mut flag: bool) {
-        let response = self.ui.checkbox(&mut flag, setting_words(setting).label);
-        if response
-            .on_hover_text(setting_words(setting).help)
-            .changed()
-        {
+        let words = setting_words(setting);
+        let response = self.explained(words.help, |ui| ui.checkbox(&mut flag, words.label));
+        if response.changed() {
             self.set(setting, flag);
+        }
+    }
+
+    /// Draws the choices in a list; pointing at a choice explains it.
+    fn list_ui(&mut self, setting: &'static Setting, chosen: usize, texts: &[[&'static str; 2]]) {
+        let words = setting_words(setting);
+        let mut clicked = None;
+        let mut pointed = None;
+        let current = match texts.get(chosen) {
+            Some([_, text]) => text,
+            None => "…",
+        };
+        self.explained(words.help, |ui| {
+            let list = ComboBox::from_id_salt(words.label)
+                .selected_text(current)
+                .width(60.0)
+                .show_ui(ui, |ui| {
+                    for (index, [_, text]) in texts.iter().enumerate() {
+                        let entry = ui.selectable_label(index == chosen, *text);
+                        if entry.hovered() {
+                            pointed = words.meanings.get(index).copied();
+                        }
+                        if entry.clicked() {
+                            clicked = Some(index);
+                        }
+                    }
+                });
+            named(list.response, Role::ComboBox, words.label);
+        });
+        if pointed.is_some() {
+            *self.help = pointed;
+        }
+        if let Some(index) = clicked
+            && index != chosen
+        {
+            self.set(setting, Value::Choice(index));
+        }
+    }
+
+    /// Draws a caption, and the choices as joined segments below; pointing at a segment explains
+    /// it.
+    pub fn segments_ui(&mut self, setting: &'static Setting) {
+        let Kind::Choice { words: texts, .. } = setting.kind else {
+            return;
+        };
+        let Value::Choice(chosen) = setting.value(&self.state.study.settings) else {
+            return;
+        };
+        self.captioned_row_ui(setting, 0.0);
+        let words = setting_words(setting);
+        let size = vec2(self.ui.available_width(), SEGMENTS);
+        let (frame, _) = self.ui.allocate_exact_size(size, Sense::hover());
+        let palette = self.palette;
+        let outline = Stroke::new(1.0, palette.line);
+        let inside = StrokeKind::Inside;
+        self.ui
+            .painter()
+            .rect(frame, 6.0, palette.background, outline, inside);
+        let inner = frame.shrink(2.0);
+        let width = inner.width() / texts.len() as f32;
+        for (index, [short, long]) in texts.iter().enumerate() {
+            let corner = inner.min + vec2(width * index as f32, 0.0);
+            let place = Rect::from_min_size(corner, vec2(width, inner.height()));
+            let id = self.ui.scope_id().with((words.label, index));
+            let response = self.ui.interact(place, id, Sense::click());
+            let is_chosen = index == chosen;
+            if is_chosen || response.hovered() {
+                self.ui.painter().rect_filled(place, 4.5, palette.raised);
+            }
+            if response.has_focus() {
+                let focus = Stroke::new(1.0, palette.accent);
+                self.ui.painter().rect_stroke(place, 4.5, focus, inside);
+            }
+            if response.contains_pointer() {
+                *self.help = words.meanings.get(index).copied();
+            }
+            let color = if is_chosen {
+                palette.text
+            } else {
+                palette.dim_text
+            };
+            let at = place.center();
+            self.ui
+                .painter()
+                .text(at, Align2::CENTER_CENTER, *short, body(), color);
+            let name = format!("{}: {long}", words.label);
+            let response = named_switch(response, Role::RadioButton, is_chosen, name);
+            if response.clicked() && !is_chosen {
+                self.set(setting, Value::Choice(index));
+                self.commands.push(StudyCommand::EndEdit.into());
+            }
         }
     }
 
     fn number_ui(&mut self, setting: &'static Setting, value: f64, range: [f64; 2]) {
         let field = number_field(setting, setting_words(setting).label, range);
-        let entered = field.ui(self.ui, setting.unit.scale * value);
+        let help = setting_words(setting).help;
+        let entered = self.explained(help, |ui| field.ui(ui, setting.unit.scale * value));
         self.apply(setting, entered);
     }
 
@@ -151,52 +285,66 @@ impl SettingControls<'_, '_> {
     pub(super) fn apply(&mut self, setting: &'static Setting, entered: Entered) {
         if let Some(value) = entered.value {
             self.set(setting, value / setting.unit.scale);
+            if entered.is_dragged {
+                self.commands.push(StudyCommand::DragEdit.into());
+            }
         }
         self.end(entered);
     }
 
-    /// Draws a number on a slider, with a field beside it.
-    pub fn slider_ui(&mut self, setting: &'static Setting) {
+    /// Draws a number in a row with its caption and its value at the opening of the panel, and a
+    /// slider below, on which that value is marked; returns the place of the slider's rail.
+    pub fn slider_ui(&mut self, setting: &'static Setting) -> Option<Rect> {
         let Kind::Number { range, .. } = setting.kind else {
-            return;
+            return None;
         };
         let Value::Number(now) = setting.value(&self.state.study.settings) else {
-            return;
+            return None;
         };
-        let mut value = now;
-        let label = setting_words(setting).label;
+        let words = setting_words(setting);
         let field = NumberField {
             step: 0.01 * now.max(0.01),
             width: TYPED_WIDTH,
-            ..number_field(setting, label, range)
+            ..number_field(setting, words.label, range)
         };
-        let (slider, typed) = self
+        let row = self.captioned_row_ui(setting, TYPED_WIDTH + 8.0);
+        let place = row.with_min_x(row.right() - TYPED_WIDTH);
+        let typed = self
             .ui
-            .horizontal(|ui| {
-                let caption = ui.label(self.palette.dim(setting_words(setting).caption));
-                ui.add_space((LABEL_WIDTH - caption.rect.width()).max(0.0));
-                let gap = ui.spacing().item_spacing.x;
-                ui.spacing_mut().slider_width =
-                    (ui.available_width() - TYPED_WIDTH - 2.0 * gap).max(60.0);
-                let slider = Slider::new(&mut value, 0.0..=SLIDER_END)
-                    .logarithmic(true)
-                    .smallest_positive(SLIDER_START)
-                    .show_value(false);
-                let slider = ui.add(slider);
-                slider.widget_info(|| {
-                    WidgetInfo::labeled(Role::Slider, true, format!("{label} slider"))
-                });
-                (slider, field.ui(ui, now))
-            })
+            .scope_builder(UiBuilder::new().max_rect(place), |ui| field.ui(ui, now))
             .inner;
+        let mut value = now;
+        let slider = self.explained(words.help, |ui| {
+            ui.spacing_mut().slider_width = ui.available_width();
+            let slider = Slider::new(&mut value, 0.0..=SLIDER_END)
+                .logarithmic(true)
+                .smallest_positive(SLIDER_START)
+                .show_value(false);
+            ui.add(slider)
+        });
+        slider.widget_info(|| {
+            WidgetInfo::labeled(Role::Slider, true, format!("{} slider", words.label))
+        });
+        let rail = slider
+            .rect
+            .shrink2(vec2(HANDLE_PART * slider.rect.height(), 0.0));
+        if let Some(Value::Number(previous)) = self.state.previous_setting(setting) {
+            let x = slider_place(rail, previous);
+            let mark = Stroke::new(1.5, self.palette.text);
+            let height = rail.y_range().shrink(0.15 * rail.height());
+            self.ui.painter().vline(x, height, mark);
+        }
         if slider.changed() {
             self.set(setting, value);
+            if slider.dragged() {
+                self.commands.push(StudyCommand::DragEdit.into());
+            }
         }
         if slider.drag_stopped() || slider.lost_focus() {
             self.commands.push(StudyCommand::EndEdit.into());
         }
-        slider.on_hover_text(setting_words(setting).help);
         self.apply(setting, typed);
+        Some(rail)
     }
 
     /// Draws a check box that enables a threshold, and a field for the threshold; `initial` is its
@@ -209,25 +357,18 @@ impl SettingControls<'_, '_> {
         range: [f64; 2],
     ) {
         let mut counts = value != Value::Nothing;
-        let response = self.ui.checkbox(&mut counts, "from");
-        let response = named_switch(
-            response,
-            Role::CheckBox,
-            counts,
-            format!("{} counts", setting_words(setting).caption),
-        );
-        let clicked = response
-            .on_hover_text(setting_words(setting).help)
-            .changed();
+        let words = setting_words(setting);
+        let response = self.explained(words.help, |ui| ui.checkbox(&mut counts, "from"));
+        let name = format!("{} counts", words.caption);
+        let clicked = named_switch(response, Role::CheckBox, counts, name).changed();
         let shown = match value {
             Value::Number(value) => value,
             _ => initial,
         };
         let field = number_field(setting, setting_words(setting).label, range);
-        let entered = self
-            .ui
-            .add_enabled_ui(counts, |ui| field.ui(ui, shown))
-            .inner;
+        let entered = self.explained(words.help, |ui| {
+            ui.add_enabled_ui(counts, |ui| field.ui(ui, shown)).inner
+        });
         if clicked {
             let enabled = if counts { Some(initial) } else { None };
             self.set(setting, enabled);
@@ -236,6 +377,14 @@ impl SettingControls<'_, '_> {
         }
         self.apply(setting, entered);
     }
+}
+
+/// Returns the horizontal place of a value on the rail of a slider.
+pub fn slider_place(rail: Rect, value: f64) -> f32 {
+    let ends = [SLIDER_START.log10(), SLIDER_END.log10()];
+    let log = value.max(SLIDER_START).log10().clamp(ends[0], ends[1]);
+    let part = (log - ends[0]) / (ends[1] - ends[0]);
+    rail.left() + part as f32 * rail.width()
 }
 
 /// Creates the number field of a setting in display units; the limits are in stored units.
@@ -251,9 +400,10 @@ pub(super) fn number_field(
         is_whole,
         step: setting.control.step,
         digits: setting.control.digits,
+        // The panel shows the explanation itself.
         ..NumberField::new(
             name,
-            setting_words(setting).help,
+            "",
             setting.unit.scale * least..=setting.unit.scale * most,
         )
     }

@@ -1,6 +1,7 @@
 //! Table of the effects of the current decisions and of each variant.
 
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::signed;
 use gdcm_study::Analysis;
 use gdcm_words::Table;
@@ -27,7 +28,7 @@ pub(super) fn effect_table(state: &State) -> Table {
             cells.push(match analysis {
                 Some(analysis) => effect
                     .text(state, analysis)
-                    .unwrap_or_else(|| "–".to_owned()),
+                    .unwrap_or_else(|| NO_VALUE.to_owned()),
                 None => "…".to_owned(),
             });
         }

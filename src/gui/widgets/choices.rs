@@ -3,7 +3,7 @@
 //! [`choice_ui`] changes a value in place; [`DropDown`] returns the chosen entry, which may be a
 //! command.
 
-use egui::{Button, ComboBox, Response, Role, Ui, WidgetInfo};
+use egui::{Button, ComboBox, Role, Ui, WidgetInfo};
 
 use super::controls::{hint_ui, named, named_switch};
 
@@ -115,15 +115,4 @@ pub struct PageWords {
     pub short_name: &'static str,
     /// Sentence about the content.
     pub purpose: &'static str,
-}
-
-/// Draws the tab of a page of a view; returns whether it was clicked. Its accessible name is "Page
-/// NAME".
-pub fn page_tab_ui(ui: &mut Ui, is_shown: bool, words: PageWords) -> (Response, bool) {
-    let name = words.name;
-    let tab = ui.selectable_label(is_shown, words.short_name);
-    let tab = named_switch(tab, Role::Button, is_shown, format!("Page {name}"))
-        .on_hover_text(format!("{name}: {}", words.purpose));
-    let is_clicked = tab.clicked();
-    (tab, is_clicked)
 }

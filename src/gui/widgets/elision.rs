@@ -8,6 +8,11 @@ pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     elided_at(ui, text, room, size, 0.5)
 }
 
+/// Like [`elided`], with the end of a sentence elided.
+pub fn end_elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
+    elided_at(ui, text, room, size, 1.0)
+}
+
 /// Like [`elided`], for a name in a list: if another name would be shortened to the same text, the
 /// gap moves to the beginning or to the end.
 pub fn elided_among(

@@ -17,6 +17,7 @@ pub mod painted_text;
 pub mod palette;
 pub mod panel_layout;
 pub mod sorting;
+mod table_layout;
 pub mod tables;
 pub mod text_fields;
 pub mod window_regions;

@@ -11,6 +11,7 @@ use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
 use gdcm_model::number_format::{gain_text, number, significant};
 use gdcm_study::decisions::setting_row::Digits;
 
+use super::controls::hint_ui;
 use crate::message::Message;
 
 /// Height of a number field \[pt\].
@@ -24,7 +25,7 @@ const PASSES_AFTER_ESCAPE: u64 = 2;
 pub struct NumberField<'a> {
     /// Accessible name, unique in the window.
     pub name: &'a str,
-    /// Tooltip: meaning and unit.
+    /// Tooltip: meaning and unit; empty for none.
     pub hint: &'a str,
     /// Unit of the number; empty if dimensionless.
     pub unit: &'static str,
@@ -102,7 +103,7 @@ impl<'a> NumberField<'a> {
         self.note_escape(ui, &response);
         ui.data_mut(|data| data.insert_temp(field_key(self.name), response.id));
         let outcome = self.outcome(value, edited, unparsed.into_inner(), &response);
-        response.on_hover_text(self.hint);
+        hint_ui(response, self.hint);
         outcome
     }
 
@@ -237,15 +238,38 @@ fn number_in(text: &str, unit: &str) -> Option<f64> {
 /// Formats a number with the digits chosen for the field.
 fn number_text(digits: Digits, value: f64) -> String {
     match digits {
-        Digits::Significant => significant(value),
+        Digits::Significant => significant_text(value),
         Digits::Decimals(decimals) => format!("{value:.decimals$}"),
         Digits::Gain => gain_text(value),
     }
 }
 
+/// Formats a number with three significant digits, and with at most two decimals where further
+/// decimals are zero: "0.50" and "0.525".
+fn significant_text(value: f64) -> String {
+    let mut text = significant(value);
+    if let Some(point) = text.find('.')
+        && !text.contains('e')
+    {
+        while text.len() > point + 3 && text.ends_with('0') {
+            text.pop();
+        }
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_is_shown_with_the_digits_that_matter() {
+        let shown = [0.5, 0.525, 1.0, 10.0, 12.0, 0.05, 0.0123, 1e10].map(significant_text);
+        let expected = [
+            "0.50", "0.525", "1.00", "10.0", "12.0", "0.05", "0.0123", "1.00e10",
+        ];
+        assert_eq!(shown, expected);
+    }
 
     #[test]
     fn a_number_is_read_as_engineers_type_it() {

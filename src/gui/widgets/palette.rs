@@ -6,6 +6,8 @@ mod plot_style;
 
 use egui::{Color32, FontFamily, FontId, RichText, Visuals};
 
+use gdcm_plot::figure::drawing::AirspeedPlace;
+
 pub use egui_style::apply;
 pub use plot_style::{CurveColors, PlotStyle};
 
@@ -91,6 +93,8 @@ pub struct Palette {
     pub quiet_mark: Color32,
     /// Colours of J at [`HEAT_COSTS`]: a single hue with increasing contrast to the background.
     pub heat: [Color32; 5],
+    /// Colours of airspeeds, from the lowest to the highest; no role has them.
+    pub airspeeds: [Color32; 5],
     /// Factor on the widths of curves.
     pub line_width: f32,
 }
@@ -127,6 +131,13 @@ impl Palette {
                 hex(0xe07f45),
                 hex(0xffb083),
             ],
+            airspeeds: [
+                hex(0x6a5ad6),
+                hex(0xa35fd0),
+                hex(0xd76fb8),
+                hex(0xf09cb4),
+                hex(0xfbd0dc),
+            ],
             line_width: 1.0,
         }
     }
@@ -162,6 +173,13 @@ impl Palette {
                 hex(0xd1661f),
                 hex(0x8c3706),
             ],
+            airspeeds: [
+                hex(0x3a1f7a),
+                hex(0x7a2f95),
+                hex(0xb04487),
+                hex(0xcf6f8f),
+                hex(0xdd9aa4),
+            ],
             line_width: 1.0,
         }
     }
@@ -194,6 +212,13 @@ impl Palette {
             .max(1);
         let part = (cost - HEAT_COSTS[above - 1]) / (HEAT_COSTS[above] - HEAT_COSTS[above - 1]);
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
+    }
+
+    /// Returns the colour of an airspeed, from 0 at the lowest to 255 at the highest.
+    pub fn airspeed_color(&self, step: u8) -> Color32 {
+        let place = AirspeedPlace::new(step);
+        let below = self.airspeeds[place.stop];
+        below.lerp_to_gamma(self.airspeeds[place.stop + 1], place.part as f32)
     }
 
     /// Returns the colour of a name beside a curve of colour `curve`.
@@ -337,6 +362,20 @@ mod tests {
                     "{name:?} of {theme:?}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn airspeeds_differ_in_lightness_from_the_slowest_to_the_fastest() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let steps = [0, 32, 64, 96, 128, 160, 191, 224, 255];
+            let lightness = steps.map(|step| luminance(palette.airspeed_color(step)));
+            assert!(
+                lightness.is_sorted_by(|slower, faster| slower < faster),
+                "{lightness:?}"
+            );
+            assert_eq!(palette.airspeed_color(0), palette.airspeeds[0]);
+            assert_eq!(palette.airspeed_color(255), palette.airspeeds[4]);
         }
     }
 

@@ -1,5 +1,8 @@
 //! Order of the rows of a table: a click on a heading sorts by its column, numbers by value.
 
+use std::cmp::Ordering;
+
+use gdcm_model::number_format::NO_VALUE;
 use gdcm_words::Table;
 
 /// Order of a table's rows; the default is the original order.
@@ -31,8 +34,8 @@ impl Sorting {
         }
     }
 
-    /// Returns the sorted row indices: numbers by value, text alphabetically, empty cells last.
-    /// Equal rows keep their order.
+    /// Returns the sorted row indices: numbers by value, then text alphabetically; cells without a
+    /// value last, in both directions. Equal rows keep their order.
     pub fn order(self, table: &Table) -> Vec<usize> {
         self.order_of(table.rows.len(), |row, column| {
             table.rows[row].get(column).cloned().unwrap_or_default()
@@ -46,38 +49,98 @@ impl Sorting {
         let Some(key) = self.key else {
             return order;
         };
-        let cells: Vec<String> = order.iter().map(|&row| cell(row, key.column)).collect();
+        let mut cells = Vec::new();
+        for row in 0..rows {
+            cells.push(SortedCell::new(cell(row, key.column)));
+        }
         order.sort_by(|a, b| {
             let a = &cells[*a];
             let b = &cells[*b];
-            let compared = match (number_in(a), number_in(b)) {
-                (Some(a), Some(b)) => a.total_cmp(&b),
-                _ => a.cmp(b),
-            };
-            let compared = if key.is_descending {
-                compared.reverse()
+            if !key.is_descending
+                || matches!((a, b), (SortedCell::Missing, _) | (_, SortedCell::Missing))
+            {
+                a.compare(b)
             } else {
-                compared
-            };
-            a.is_empty().cmp(&b.is_empty()).then(compared)
+                b.compare(a)
+            }
         });
         order
     }
 
+    /// Returns the direction in which a column is sorted; `None` if the table is not sorted by it.
+    pub fn direction(self, column: usize) -> Option<SortDirection> {
+        match self.key {
+            Some(key) if key.column == column && key.is_descending => {
+                Some(SortDirection::Descending)
+            }
+            Some(key) if key.column == column => Some(SortDirection::Ascending),
+            _ => None,
+        }
+    }
+
     /// Returns the sort mark in the heading of a column.
     pub fn mark(self, column: usize) -> &'static str {
-        match self.key {
-            Some(key) if key.column == column && key.is_descending => " ▼",
-            Some(key) if key.column == column => " ▲",
-            _ => "",
+        match self.direction(column) {
+            Some(SortDirection::Descending) => " ▼",
+            Some(SortDirection::Ascending) => " ▲",
+            None => "",
         }
     }
 }
 
-/// Parses the number at the beginning of a cell, with either minus sign.
+/// Direction in which a column is sorted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SortDirection {
+    Ascending,
+    Descending,
+}
+
+/// Content of a cell, by which its row is sorted.
+enum SortedCell {
+    Number(f64),
+    Text(String),
+    Missing,
+}
+
+impl SortedCell {
+    fn new(cell: String) -> Self {
+        if is_missing(&cell) {
+            return Self::Missing;
+        }
+        match number_in(&cell) {
+            Some(number) => Self::Number(number),
+            None => Self::Text(cell),
+        }
+    }
+
+    fn compare(&self, other: &Self) -> Ordering {
+        match (self, other) {
+            (Self::Number(own), Self::Number(others)) => own.total_cmp(others),
+            (Self::Text(own), Self::Text(others)) => own.cmp(others),
+            _ => self.rank().cmp(&other.rank()),
+        }
+    }
+
+    fn rank(&self) -> u8 {
+        match self {
+            Self::Number(_) => 0,
+            Self::Text(_) => 1,
+            Self::Missing => 2,
+        }
+    }
+}
+
+/// Returns whether a cell holds no value.
+pub(super) fn is_missing(cell: &str) -> bool {
+    matches!(cell.trim(), "" | "-" | NO_VALUE | "—")
+}
+
+/// Parses the number at the beginning of a cell, with either minus sign and possibly in brackets.
 pub(super) fn number_in(cell: &str) -> Option<f64> {
     cell.split_whitespace()
         .next()?
+        .trim_start_matches('(')
+        .trim_end_matches(')')
         .replacen('\u{2212}', "-", 1)
         .parse()
         .ok()
@@ -103,6 +166,17 @@ mod tests {
         let falling = by_value.clicked(1);
         assert_eq!(falling.order(&table()), [0, 3, 1, 2], "downwards too");
         assert_eq!(by_name.order(&table()), [1, 0, 2, 3]);
+    }
+
+    #[test]
+    fn numbers_come_before_words_and_missing_values_last_in_both_directions() {
+        let mut table = Table::new("t", ["value"]);
+        for value in ["–", "9.5 s", "word", "-", "\u{2212}3", "10", "—"] {
+            table.row([value]);
+        }
+        let rising = Sorting::default().clicked(0);
+        assert_eq!(rising.order(&table), [4, 1, 5, 2, 0, 3, 6]);
+        assert_eq!(rising.clicked(0).order(&table), [2, 5, 1, 4, 0, 3, 6]);
     }
 
     #[test]

@@ -225,3 +225,15 @@ fn a_unit_that_a_table_does_not_say_is_asked_for_with_a_button() {
         "{sizes:?}"
     );
 }
+
+#[test]
+fn an_import_opens_in_its_path_field_and_lists_nothing() {
+    let mut window = few_window();
+    give(&mut window, AssemblingCommand::Open);
+    window.run_steps(2);
+    let field = window.get_by_label("Folder or file of models");
+    assert!(field.is_focused());
+    assert!(window.query_by_label_contains("to complete").is_none());
+    assert!(window.query_by_label_contains("included").is_none());
+    assert!(bench(&window).had_focus);
+}

@@ -301,7 +301,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         window
             .state_mut()
             .dispatch(OutputCommand::CopyFigure(View::NetGain));
-        state(window).notice.as_ref().unwrap().code
+        state(window).notices.newest().unwrap().code
     }
 
     let trap = Trap::default();

@@ -23,7 +23,11 @@ fn save_figure(window: &mut Window, view: View, format: &str, path: &Path) {
 fn assert_saved(window: &mut Window, view: View, format: FigureFormat, folder: &Path) {
     let path = folder.join(format!("{}.{}", view.name(), format.extension()));
     save_figure(window, view, &format.extension().to_uppercase(), &path);
-    let notice = state(window).notice.clone().expect("it is reported");
+    let notice = state(window)
+        .notices
+        .newest()
+        .cloned()
+        .expect("it is reported");
     assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
     let mut expected = Vec::new();
     let figure = figure_of(state(window), view).expect("the view has a figure");

@@ -1,10 +1,5 @@
 //! Opening and saving files.
 
-use gdcm::gui::commands::form::FormCommand;
-use gdcm::gui::state::forms::FormKind;
-
-use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
-
 use super::*;
 
 #[test]
@@ -165,7 +160,7 @@ fn a_dataset_dropped_on_the_window_is_opened() {
     settle(&mut window);
     assert_eq!(state(&window).dataset().conditions().len(), 2);
     assert_eq!(
-        state(&window).notice.as_ref().map(|notice| notice.kind),
+        state(&window).notices.newest().map(|notice| notice.kind),
         Some(NoticeKind::Done)
     );
 }
@@ -244,74 +239,4 @@ fn a_window_without_a_directory_of_its_own_lists_nothing() {
     let mut window = window();
     click(&mut window, "File");
     assert!(window.query_by_label("Open recent").is_none() && state(&window).recent.is_empty());
-}
-
-#[test]
-fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("correction.py");
-    let mut window = window();
-    window
-        .state_mut()
-        .dispatch(FormCommand::ShowForm(Some(FormKind::ExportAs)));
-    window.run_steps(2);
-    assert_eq!(
-        state(&window).forms.typed[&FormKind::ExportAs],
-        "example.mat"
-    );
-    click(&mut window, "Python module, a function of airspeed");
-    assert_eq!(
-        state(&window).forms.typed[&FormKind::ExportAs],
-        "example.py",
-        "the end of the name goes with the format"
-    );
-    wait_until(&mut window, "results", |window| {
-        state(window).analysis().is_some()
-    });
-    window.run_steps(2);
-    let analysis = state(&window).analysis().unwrap();
-    let request = ExportRequest {
-        format: EXPORTERS
-            .into_iter()
-            .find(|format| format.name == "py")
-            .unwrap(),
-        ..ExportRequest::default()
-    };
-    let contents = export_contents(analysis, &request);
-    let left_out = contents.left_out_words(state(&window).dataset());
-    assert!(
-        left_out.len() == 1 && left_out[0].contains("output NX"),
-        "{left_out:?}"
-    );
-    let contained = contents.words();
-    window.get_by_label_contains(&contained);
-    window.get_by_label_contains(&left_out[0]);
-    exported(&mut window, &path);
-    assert_notice(
-        &window,
-        NoticeKind::Done,
-        "exported",
-        &[&contained, &left_out[0]],
-    );
-    assert!(
-        std::fs::read_to_string(&path)
-            .unwrap()
-            .contains("def gdcm_correction(airspeed_kt):")
-    );
-
-    std::fs::write(&path, "mine").unwrap();
-    window
-        .state_mut()
-        .dispatch(FormCommand::ShowForm(Some(FormKind::ExportAs)));
-    window.run_steps(10);
-    click(&mut window, "Export file");
-    assert!(window.query_by_label("This file exists already").is_some());
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine");
-    click(&mut window, "Overwrite");
-    assert!(
-        std::fs::read_to_string(&path)
-            .unwrap()
-            .contains("def gdcm_correction")
-    );
-    assert_eq!(state(&window).forms.shown, None);
 }

@@ -3,11 +3,10 @@
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::file::FileCommand;
-use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::state::records::RecordsPage;
-use gdcm_sysid::records::LayoutProblem;
+use gdcm_sysid::records::layout_problem::LayoutCaution;
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -86,13 +85,10 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     );
 
     // Exports corrected models for the other program.
-    let path = folder.path().join("corrected.mat");
-    window.state_mut().dispatch(FormCommand::ShowForm(Some(
-        gdcm::gui::state::forms::FormKind::ExportAs,
-    )));
-    window.run_steps(2);
-    let notice = exported(&mut window, &path);
-    assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
+    let path = folder.path().join("corrected_models.mat");
+    open_export(&mut window, folder.path(), "corrected_", &["state-space"]);
+    press_export(&mut window);
+    assert_notice(&window, NoticeKind::Done, "exported", &["1 file"]);
     assert!(
         std::fs::metadata(&path).unwrap().len() > 10_000,
         "models of two conditions"
@@ -100,7 +96,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
 }
 
 #[test]
-fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_columns() {
+fn a_unit_that_neither_a_record_nor_its_samples_say_is_assumed_and_chosen_in_the_page_of_columns() {
     fn row(k: u32) -> String {
         let at = f64::from(k);
         // A rate of 40 cannot be in rad/s; 0.4 can be in rad/s or deg/s.
@@ -139,13 +135,13 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     let asked = row(&window).unwrap();
     assert!(
         matches!(
-            asked.problems.as_slice(),
-            [LayoutProblem::UnsaidUnit { channel, .. }] if channel == "Q"
+            asked.cautions.as_slice(),
+            [LayoutCaution::UnitAssumed { channel, .. }] if channel == "Q"
         ),
         "{:?}",
-        asked.problems
+        asked.cautions
     );
-    assert!(asked.flight.is_none(), "nothing is chosen");
+    assert!(asked.flight.is_some(), "the unit of the dataset is assumed");
     give(&mut window, RecordsCommand::Show(RecordsPage::Columns));
     window.run_steps(2);
     window.get_by_label("Unit of the column of Q").click();
@@ -153,7 +149,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     window.get_by_role_and_label(Role::Button, "rad/s").click();
     window.run_steps(3);
     let said = row(&window).unwrap();
-    assert!(said.problems.is_empty(), "{:?}", said.problems);
+    assert!(said.cautions.is_empty(), "{:?}", said.cautions);
     assert_eq!(
         said.layout
             .outputs

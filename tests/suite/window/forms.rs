@@ -37,36 +37,28 @@ fn a_path_is_typed_at_once_and_enter_opens_it_and_a_tilde_means_home() {
 }
 
 #[test]
-fn enter_exports_and_what_exists_already_is_asked_about() {
+fn enter_exports_once_the_dry_run_has_ended_and_replaces_nothing() {
     let home = tempfile::tempdir().unwrap();
     let mut window = window_at(home.path());
-    let written = home.path().join("results/corrections.json");
+    let first = home.path().join("results/example_corrections.json");
     press(&mut window, Modifiers::COMMAND, Key::E);
     type_text(&mut window, "~/results");
     press(&mut window, Modifiers::NONE, Key::Enter);
-    settle(&mut window);
-    assert!(written.exists());
-    let first = std::fs::read(&written).unwrap();
+    wait_until(&mut window, "the export", |window| {
+        state(window).forms.shown.is_none()
+    });
+    let written = std::fs::read(&first).unwrap();
 
     slide(&mut window, "α gains", 12.5);
     settle(&mut window);
     press(&mut window, Modifiers::COMMAND, Key::E);
-    type_text(&mut window, "~/results");
     press(&mut window, Modifiers::NONE, Key::Enter);
-    settle(&mut window);
-    window.get_by_label("These files exist already");
-    press(&mut window, Modifiers::NONE, Key::Enter);
-    settle(&mut window);
-    assert_eq!(
-        std::fs::read(&written).unwrap(),
-        first,
-        "Enter alone overwrites nothing"
-    );
-    window.get_by_label("Export folder");
-    press(&mut window, Modifiers::NONE, Key::Enter);
-    settle(&mut window);
-    click(&mut window, "Overwrite");
-    assert_eq!(crate::read_json(&written)["settings"]["alpha_gain"], 12.5);
+    wait_until(&mut window, "the export", |window| {
+        state(window).forms.shown.is_none()
+    });
+    assert_eq!(std::fs::read(&first).unwrap(), written);
+    let second = home.path().join("results/example_corrections_2.json");
+    assert_eq!(crate::read_json(&second)["settings"]["alpha_gain"], 12.5);
 }
 
 #[test]

@@ -224,7 +224,7 @@ fn a_number_out_of_order_or_out_of_range_is_refused_with_a_word_and_the_old_one_
             "Band from",
             "30",
             "out-of-range",
-            &["0.0001", "12 rad/s", "30", "0.500 rad/s"][..],
+            &["0.0001", "12 rad/s", "30", "0.50 rad/s"][..],
         ),
         ("Band from", "12", "wrong-band", &["12"]),
         (

@@ -21,6 +21,12 @@ fn choose(window: &mut Window, list: &str, choice: &str) {
     click(window, choice);
 }
 
+/// Opens the settings and chooses a phase correction.
+fn choose_phase(window: &mut Window, choice: &str) {
+    unfold_settings(window, true);
+    click(window, &format!("Phase correction: {choice}"));
+}
+
 #[test]
 fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_it_says_nothing() {
     fn last(window: &Window, role: CurveRole) -> f64 {
@@ -124,7 +130,7 @@ fn the_phase_is_chosen_beside_alpha_with_what_belongs_to_it() {
         window.query_by_label("n of the lead filters").is_none(),
         "there are no filters yet"
     );
-    choose(&mut window, "Phase correction", "delay or lead");
+    choose_phase(&mut window, "delay or lead");
     assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
     for label in [
         "n of the lead filters",
@@ -133,7 +139,7 @@ fn the_phase_is_chosen_beside_alpha_with_what_belongs_to_it() {
     ] {
         window.get_by_label(label);
     }
-    choose(&mut window, "Phase correction", "none");
+    choose_phase(&mut window, "none");
     assert!(window.query_by_label("n of the lead filters").is_none());
     let correction = &state(&window).shown().unwrap().correction;
     assert!(
@@ -150,7 +156,7 @@ fn the_settings_say_that_g_from_the_mean_has_no_effect_with_leads() {
     let mut window = window();
     choose(&mut window, "Source of G", "mean of pairs");
     assert!(window.query_by_label("No effect with leads").is_none());
-    choose(&mut window, "Phase correction", "delay or lead");
+    choose_phase(&mut window, "delay or lead");
     assert!(window.query_by_label("No effect with leads").is_some());
     choose(&mut window, "Source of G", "representatives");
     assert!(window.query_by_label("No effect with leads").is_none());
@@ -160,7 +166,7 @@ fn the_settings_say_that_g_from_the_mean_has_no_effect_with_leads() {
 fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_servos() {
     let mut window = window();
     let gains_alone = drawn(&window, CurveRole::Corrected);
-    choose(&mut window, "Phase correction", "delay or lead");
+    choose_phase(&mut window, "delay or lead");
     let with = drawn(&window, CurveRole::Corrected);
     let without = drawn(&window, CurveRole::WithoutLeads);
     let top = state(&window).study.settings.band.max();
@@ -197,7 +203,7 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
 #[test]
 fn channels_show_signed_delays_within_their_bounds() {
     let mut window = window();
-    choose(&mut window, "Phase correction", "delay or lead");
+    choose_phase(&mut window, "delay or lead");
     give(
         &mut window,
         DisplayCommand::ShowChannels(Measure::Delay, Across::Conditions),
@@ -230,7 +236,7 @@ fn the_assessment_is_had_without_the_leads_too() {
     }
 
     let mut window = window();
-    choose(&mut window, "Phase correction", "delay or lead");
+    choose_phase(&mut window, "delay or lead");
     show(&mut window, View::Assessment);
     let with = mean(&window);
     choose(&mut window, "Correction assessed", "scheduled, no leads");

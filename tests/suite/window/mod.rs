@@ -8,6 +8,7 @@ mod couplings;
 mod curves;
 mod decisions;
 mod edges;
+mod exporting;
 mod figures;
 mod files;
 mod foreign;
@@ -18,6 +19,7 @@ mod layout;
 mod lead;
 mod lists;
 mod logs;
+mod memory;
 mod pictures;
 mod plots;
 mod pointing;
@@ -26,7 +28,9 @@ pub(crate) mod records;
 mod recovery;
 mod reload;
 mod requirements;
+mod settings;
 mod start;
+mod toasts;
 mod views;
 mod walk;
 
@@ -46,14 +50,16 @@ use gdcm::gui::panels::derivation_sheet::toggle_costs;
 use gdcm::gui::panels::matrix_panel::gain_conflict_marks;
 use gdcm::gui::panels::reasons::remarks_shown;
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
-use gdcm::gui::state::notices::{MessageBar, Notice, NoticeKind};
+use gdcm::gui::state::notices::{MessageBar, NoticeKind};
 use gdcm::gui::state::record_change::RecordChange;
 use gdcm::gui::state::view::View;
 use gdcm::gui::state::window_state::State;
 use gdcm::gui::views::channels::channel_plots;
+use gdcm_io::export::EXPORTERS;
 use gdcm_io::files::study_file::{OpenedStudy, open_study};
 use gdcm_io::{Opened, load_any};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_model::number_format::counted;
 use gdcm_model::progress::Unobserved;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::marks::MarkId;
@@ -171,7 +177,11 @@ pub(crate) fn click(window: &mut Window, label: &str) {
 /// Asserts that the notice has this kind and code, and that it contains these names and numbers.
 #[track_caller]
 pub(crate) fn assert_notice(window: &Window, kind: NoticeKind, code: &str, names: &[&str]) {
-    let notice = state(window).notice.clone().expect("there is a notice");
+    let notice = state(window)
+        .notices
+        .newest()
+        .cloned()
+        .expect("there is a notice");
     assert_eq!((notice.kind, notice.code), (kind, code), "{}", notice.text);
     for name in names {
         assert!(notice.text.contains(name), "{name} in {}", notice.text);
@@ -256,17 +266,54 @@ pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.run_steps(2);
 }
 
-/// Exports from the open form to a file, and returns the notice.
-fn exported(window: &mut Window, path: &Path) -> Notice {
-    window.get_by_label("Path of the export").focus();
+/// Replaces the text of a field.
+pub(crate) fn refill(window: &mut Window, field: &str, text: &str) {
+    window.get_by_label(field).focus();
+    window.run_steps(2);
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.run_steps(2);
-    fill(window, "Path of the export", path);
-    click(window, "Export file");
-    state(window)
-        .notice
-        .clone()
-        .expect("the export is reported")
+    window.key_press(Key::Backspace);
+    window.run_steps(2);
+    window.get_by_label(field).type_text(text);
+    window.run_steps(2);
+}
+
+/// Opens the export dialog, types the folder and the prefix, and chooses exactly these formats, by
+/// their names on the command line.
+pub(crate) fn open_export(window: &mut Window, folder: &Path, prefix: &str, formats: &[&str]) {
+    if state(window).forms.shown.is_none() {
+        click(window, "Export corrections…");
+    }
+    refill(window, "Export folder", folder.to_str().unwrap());
+    refill(window, "File prefix", prefix);
+    for format in EXPORTERS {
+        let is_chosen = state(window)
+            .forms
+            .export
+            .choices
+            .formats
+            .contains(format.name);
+        if is_chosen != formats.contains(&format.name) {
+            let name = format!("Export {} .{}", format.title, format.extension);
+            window.get_by_label(&name).click();
+            window.run_steps(2);
+        }
+    }
+    wait_for_export_plan(window);
+}
+
+/// Draws frames until the dry run of the export dialog has ended.
+pub(crate) fn wait_for_export_plan(window: &mut Window) {
+    wait_until(window, "the dry run of the export", |window| {
+        state(window).current_export_plan().is_some()
+    });
+}
+
+/// Presses the button of the export dialog that writes the files.
+pub(crate) fn press_export(window: &mut Window) {
+    let plan = state(window).current_export_plan().expect("a dry run");
+    let count = plan.files.len() + usize::from(plan.report.is_some());
+    click(window, &format!("Export {}", counted(count, "file")));
 }
 
 fn open_by_path(window: &mut Window, path: &Path) {
@@ -276,15 +323,11 @@ fn open_by_path(window: &mut Window, path: &Path) {
     click(window, "Open file");
 }
 
+/// Exports the values, channels and responses of all conditions into a folder.
 pub(crate) fn export_to(window: &mut Window, folder: &Path) {
-    click(window, "Export corrections…");
-    fill(window, "Export folder", folder);
-    click(window, "Export");
-    let notice = state(window)
-        .notice
-        .clone()
-        .expect("the export is reported");
-    assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
+    open_export(window, folder, "", &["json", "csv", "assessment"]);
+    press_export(window);
+    assert_notice(window, NoticeKind::Done, "exported", &["3 files"]);
 }
 
 fn wait_for_toggles(window: &mut Window) {

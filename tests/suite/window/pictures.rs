@@ -317,13 +317,13 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
             .get(&ConditionId(10))
             .is_some_and(|of| of.rows.len() == 9)
     });
-    click(&mut window, "Identify");
+    click(&mut window, "More ways to identify");
+    click(&mut window, "Identify condition 10 only");
     wait_until(&mut window, "the models", |window| {
         state(window).records.conditions[&ConditionId(10)]
             .identification()
             .is_some()
     });
-    click(&mut window, "Page Response");
     look(&mut window, "records");
     let folder = tempfile::tempdir().unwrap();
     crate::assembling::example_folder(folder.path());

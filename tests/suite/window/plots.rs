@@ -3,7 +3,9 @@
 use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::state::view::View;
 use gdcm_plot::figure::Range;
-use gdcm_plot::figure::responses::{AirspeedCache, AirspeedResponse, fitted_values};
+use gdcm_plot::figure::responses::{
+    AirspeedCache, AirspeedCurves, AirspeedResponse, fitted_values,
+};
 use gdcm_study::AcrossRole;
 
 use super::lists::texts_in;
@@ -386,19 +388,27 @@ fn pointing_at_plots_starts_no_analysis() {
     assert_eq!(same, Some(true));
 }
 
-/// Returns the value ranges to which the Airspeeds view should be fitted, from the curves within
-/// the band: magnitude and phase.
-fn across_values(window: &Window) -> [Range; 2] {
+/// Returns the curves of the Airspeeds view.
+pub(super) fn across_curves(window: &Window) -> AirspeedCurves {
     let state = state(window);
+    let display = &state.display.frequency.across_display;
     let response = AirspeedResponse {
         dataset: state.dataset(),
         analysis: state.analysis(),
-        role: state.display.frequency.across_role,
+        roles: &display.roles,
+        conditions: &display.conditions.of_study(&state.study),
         pair: state.display.selection.pair,
+        band: state.study.settings.band,
         responses: state.across().expect("the responses are there"),
     };
-    let drawn = response.curves(&mut AirspeedCache::default());
-    let band = state.study.settings.band;
+    response.curves(&mut AirspeedCache::default())
+}
+
+/// Returns the value ranges to which the Airspeeds view should be fitted, from the curves within
+/// the band: magnitude and phase.
+fn across_values(window: &Window) -> [Range; 2] {
+    let drawn = across_curves(window).responses;
+    let band = state(window).study.settings.band;
     let band = Range::new(band.min(), band.max());
     [Pane::Magnitude, Pane::Phase].map(|pane| fitted_values(&drawn, pane, band).expect("curves"))
 }
@@ -469,14 +479,14 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
     );
     give(
         &mut window,
-        DisplayCommand::ShowAcross(AcrossRole::Identified),
+        DisplayCommand::ShowAcrossAlone(AcrossRole::Nominal),
     );
     settle(&mut window);
     wait_for_background(&mut window);
     window.run_steps(2);
     assert!(
         across_is_fitted(&window),
-        "the identified models, as soon as they are there"
+        "the nominal models, as soon as they are there"
     );
     zoom_across(&mut window);
     window.key_press(Key::F);
@@ -488,7 +498,7 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
 }
 
 #[test]
-fn the_label_of_airspeeds_lies_inside_its_plot() {
+fn the_names_of_airspeeds_stand_in_the_margin_inside_the_window() {
     let mut window = window();
     show(&mut window, View::Across);
     wait_until(&mut window, "the responses", |window| {
@@ -503,14 +513,55 @@ fn the_label_of_airspeeds_lies_inside_its_plot() {
         .transform(Pane::Magnitude)
         .unwrap()
         .frame();
-    // Ignore the same text in the heading above the plot.
-    let labels = texts_in(&window, frame.expand(30.0))
-        .into_iter()
-        .filter(|(text, _)| text == "LON → Q");
-    let places: Vec<egui::Rect> = labels
-        .map(|(_, place)| place)
-        .filter(|place| place.bottom() > frame.top())
-        .collect();
-    assert_eq!(places.len(), 1, "{places:?}");
-    assert!(frame.contains_rect(places[0]), "{} in {frame}", places[0]);
+    let margin = frame
+        .with_min_x(frame.right())
+        .with_max_x(frame.right() + 76.0);
+    let names = texts_in(&window, margin);
+    let texts: Vec<&str> = names.iter().map(|(text, _)| text.as_str()).collect();
+    // The example has conditions at five airspeeds.
+    for name in [
+        "45 kt × 2",
+        "60 kt × 2",
+        "90 kt × 2",
+        "120 kt × 3",
+        "140 kt × 2",
+    ] {
+        assert!(texts.contains(&name), "{name} in {texts:?}");
+    }
+    for (text, place) in &names {
+        assert!(
+            margin.expand(1.0).contains_rect(*place),
+            "{text} at {place} in {margin}"
+        );
+    }
+}
+
+#[test]
+fn the_error_of_the_schedule_lies_beside_the_responses_and_is_fitted() {
+    let mut window = window();
+    show(&mut window, View::Across);
+    wait_until(&mut window, "the responses", |window| {
+        state(window).across().is_some()
+    });
+    click(&mut window, "Response LON → Q");
+    window.run_steps(2);
+    let curves = across_curves(&window);
+    assert_eq!(curves.errors.len(), 11);
+    let optima = curves.optima.expect("every condition has an optimum");
+    assert_eq!(optima.omega.len(), curves.errors[0].omega.len());
+    let frequency = &state(&window).display.frequency;
+    let responses = *frequency.across.transform(Pane::Magnitude).unwrap().frame();
+    let errors = *frequency
+        .across_error
+        .transform(Pane::Magnitude)
+        .unwrap()
+        .frame();
+    assert!(responses.right() < errors.left());
+    assert!((responses.top() - errors.top()).abs() < 0.5, "one row");
+    let band = state(&window).study.settings.band;
+    let band = Range::new(band.min(), band.max());
+    let values = fitted_values(&curves.errors, Pane::Magnitude, band).unwrap();
+    let shown = frequency.across_error.value_range(Pane::Magnitude);
+    assert!(shown.min <= values.min && shown.max >= values.max);
+    assert!(shown.width() <= 1.2 * values.width().max(1.0));
 }

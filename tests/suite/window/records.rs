@@ -7,12 +7,14 @@ use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::commands::computing::ComputingCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::condition_fit::FitStatus;
 use gdcm::gui::state::record_change::ConditionRecordChange;
-use gdcm::gui::state::records::RecordsPage;
+use gdcm::gui::state::records::{RecordsFold, RecordsPage, TimeRole};
 use gdcm::gui::state::view::View;
 use gdcm::gui::views::records::condition_table;
 use gdcm_io::{Example, Existing};
@@ -24,6 +26,7 @@ use gdcm_model::simulation::Signal;
 use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::decisions::setting;
 use gdcm_sysid::identification::SearchSpace;
+use gdcm_sysid::records::LaidOutRecord;
 
 use super::assembling::{fill_in, type_into};
 use super::views::{give, show};
@@ -37,8 +40,39 @@ fn records_window() -> Window {
     let mut window = window();
     click(&mut window, CONDITION_10);
     show(&mut window, View::Records);
-    wait_until(&mut window, "the records", |window| rows(window) == 9);
+    wait_until(&mut window, "the records of all conditions", |window| {
+        state(window).records.conditions.len() == 11 && state(window).records.reading.is_none()
+    });
+    assert_eq!(rows(&window), 9);
+    give(&mut window, RecordsCommand::Choose(0));
     window
+}
+
+/// Identifies the displayed condition, not the others.
+fn identify_one(window: &mut Window) {
+    click(window, "More ways to identify");
+    click(window, "Identify condition 10 only");
+}
+
+/// Adds the records at a path that is typed.
+fn add_by_path(window: &mut Window, path: &str) {
+    click(window, "Add records…");
+    click(window, "Path…");
+    type_into(window, "Path of records", path);
+}
+
+/// Types the ends of a part into the menu of the lane, and closes the menu.
+fn type_part(window: &mut Window, ends: &str) {
+    click(window, "Parts of the record");
+    type_into(window, "Part of the record", ends);
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+}
+
+/// Removes the displayed part through the menu of the lane.
+fn remove_part(window: &mut Window) {
+    click(window, "Parts of the record");
+    click(window, "Remove this part");
 }
 
 fn rows(window: &Window) -> usize {
@@ -73,7 +107,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         .collect();
     assert_eq!(held_out, ["cond10_validation"], "its name says so");
     let before = identified_models(&window);
-    window.get_by_label("Identify").click();
+    identify_one(&mut window);
     wait_until(&mut window, "the first model or the models", |window| {
         let running = state(window).records.job_of(CONDITION_10_ID);
         running.is_none_or(|job| job.news().first_model.is_some())
@@ -93,6 +127,22 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     let held_out = found
         .held_out_cost
         .expect("the validation record is held out");
+    // The summary and the table give the same figure.
+    window.get_by_label(&format!("held out {held_out:.2}"));
+    window.get_by_label(&format!("χ²/dof {:.2}", found.cost));
+    let chosen = found
+        .order_fits
+        .iter()
+        .find(|fit| Some(fit.order) == found.refined.order())
+        .expect("the chosen order was compared with others");
+    assert!(
+        (chosen.cost / found.cost - 1.0).abs() < 0.05,
+        "{chosen:?} of {}",
+        found.cost
+    );
+    assert!(
+        found.order_fits.len() > 2 && found.order_fits.iter().all(|fit| fit.held_out.is_some())
+    );
     assert!(
         held_out <= 1.15 * found.cost,
         "held out {held_out} of {}",
@@ -102,11 +152,32 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         click(&mut window, &format!("Page {}", page.words().name));
         assert_eq!(state(&window).records.page, page);
     }
+    click(&mut window, "Page Fit");
+    let pair = Pair {
+        output: 5,
+        input: 3,
+    };
+    let name = state(&window).dataset().pair_name(pair);
+    click(&mut window, &format!("Response {name}"));
+    assert_eq!(state(&window).display.selection.pair, pair);
     let table = condition_table(state(&window));
-    let [id, _, order, cost, held_out_cost, .., time_s] = &table.rows[0][..] else {
+    let [
+        id,
+        _,
+        fitted,
+        _,
+        status,
+        order,
+        cost,
+        held_out_cost,
+        ..,
+        time_s,
+    ] = &table.rows[1][..]
+    else {
         panic!("{table:?}")
     };
-    assert_eq!((table.rows.len(), id.as_str()), (1, "10"));
+    assert_eq!((table.rows.len(), id.as_str()), (2, "10"));
+    assert_eq!((fitted.as_str(), status.as_str()), ("8", "finished"));
     assert_eq!(order.parse::<usize>().ok(), found.refined.order());
     assert_eq!(
         [cost, held_out_cost].map(|cell| cell.parse::<f64>().unwrap()),
@@ -116,8 +187,20 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         time_s.parse::<f64>().is_ok_and(|time_s| time_s > 0.0),
         "{time_s}"
     );
-    click(&mut window, "Use these models");
-    click(&mut window, "The refined models");
+    // The list of conditions and the list of records show the same numbers.
+    let records = &state(&window).records.conditions[&CONDITION_10_ID];
+    let fit = state(&window).condition_fit(CONDITION_10_ID);
+    assert_eq!(fit.costs.unwrap().held_out, Some(held_out));
+    assert_eq!(records.fit_cost("cond10_validation"), Some(held_out));
+    let cautions = found.cautions.len();
+    assert_eq!(fit.status, FitStatus::Finished { cautions });
+    assert_eq!(
+        identified_models(&window),
+        before,
+        "unchanged until the fit is used"
+    );
+    click(&mut window, "Use 1 fit");
+    assert!(window.query_by_label("Use 1 fit").is_none(), "it is used");
     let taken = identified_models(&window);
     assert!(taken[0].starts_with("CT-PBSID, refined"), "{taken:?}");
     assert_eq!(taken.len(), 1 + found.bundle.len());
@@ -146,82 +229,178 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     );
     click(&mut window, "Restore the file's models");
     assert_eq!(identified_models(&window), before);
+    window.get_by_label("Use 1 fit");
     give(&mut window, StudyCommand::Undo);
     assert_eq!(identified_models(&window), taken);
 }
 
-#[test]
-fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
-    let mut window = records_window();
-    let ids = [ConditionId(3), CONDITION_10_ID];
+/// Limits the search of these conditions, because only the end of the identification matters.
+fn search_little(window: &mut Window, ids: &[ConditionId]) {
+    let search = SearchSpace {
+        orders: vec![8],
+        pasts: vec![10],
+        poles: vec![6.0],
+    };
     for id in ids {
-        give(&mut window, SelectionCommand::SelectCondition(id));
-        wait_until(&mut window, "the records", |window| {
-            state(window)
-                .records
-                .conditions
-                .get(&id)
-                .is_some_and(|of| !of.rows.is_empty())
-        });
-        // A small search space is enough, because only the end of the identification matters here.
-        if window.query_by_label("Identification: orders").is_none() {
-            click(&mut window, "Advanced");
-        }
-        type_into(&mut window, "Identification: orders", "8");
-        type_into(&mut window, "Identification: past windows", "10");
-        type_into(&mut window, "Identification: Laguerre poles", "6");
+        give(window, SelectionCommand::SelectCondition(*id));
+        give(window, RecordsCommand::SetSearch(search.clone()));
     }
-    window.get_by_label("Identify all 2 conditions").click();
+}
+
+fn status(window: &Window, id: i64) -> FitStatus {
+    state(window).condition_fit(ConditionId(id)).status
+}
+
+fn is_finished(window: &Window, id: i64) -> bool {
+    matches!(status(window, id), FitStatus::Finished { .. })
+}
+
+#[test]
+fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step() {
+    let mut window = records_window();
+    click(&mut window, "Identification settings");
+    type_into(&mut window, "Identification: orders", "8");
+    let search = &state(&window).records.conditions[&CONDITION_10_ID].search;
+    assert_eq!(search.orders, [8]);
+    search_little(&mut window, &[ConditionId(3), CONDITION_10_ID]);
+    assert_eq!(status(&window, 3), FitStatus::None);
+    let before = state(&window).study.clone();
+    window.get_by_label("Identify all 2").click();
     wait_until(&mut window, "the first of them", |window| {
         !state(window).records.running.is_empty()
     });
     wait_until(&mut window, "the end", |window| {
         state(window).records.running.is_empty()
     });
-    for id in ids {
-        assert!(
-            state(&window).records.conditions[&id].found.is_some(),
-            "{id}"
-        );
-    }
     window.run_steps(2);
-    window.get_by_label("finished: models of 2 conditions identified");
-    assert_eq!(state(&window).records.page, RecordsPage::Conditions);
-
-    let heading = "Sort Identified conditions by airspeed [kt]";
-    let row_of = |window: &Window, airspeed: &str| {
-        let heading = window.get_by_label(heading).rect();
-        let is_below = |place: &egui::Rect| {
-            place.top() > heading.bottom() && heading.x_range().contains(place.center().x)
-        };
-        window
-            .query_all_by_label(airspeed)
-            .map(|node| node.rect())
-            .find(is_below)
-            .expect("a row of the table")
-    };
-    window.get_by_label(heading).click();
-    window.run_steps(3);
-    assert!(
-        row_of(&window, "45").top() < row_of(&window, "60").top(),
-        "rising"
-    );
-    window.get_by_label(heading).click();
-    window.run_steps(3);
-    assert!(
-        row_of(&window, "60").top() < row_of(&window, "45").top(),
-        "falling"
-    );
-    let at = row_of(&window, "45").center();
-    window.drag_at(at);
-    window.run_steps(1);
-    window.drop_at(at);
-    settle(&mut window);
+    assert!(is_finished(&window, 3) && is_finished(&window, 10));
+    assert_notice(&window, NoticeKind::Done, "identification-finished", &["2"]);
     assert_eq!(
-        state(&window).condition().id(),
-        ConditionId(3),
-        "a click goes there"
+        state(&window).study,
+        before,
+        "unchanged until they are used"
     );
+    click(&mut window, "Use 2 fits");
+    assert_eq!(state(&window).study.taken_models().count(), 2);
+    assert!(state(&window).unused_fits().is_empty());
+    step(&mut window, UNDO);
+    assert_eq!(
+        state(&window).study.taken_models().count(),
+        0,
+        "a single step"
+    );
+    assert_eq!(
+        state(&window).unused_fits(),
+        [ConditionId(3), CONDITION_10_ID]
+    );
+    // Only the displayed condition.
+    click(&mut window, "Use for 10");
+    click(&mut window, "The refined models");
+    let taken: Vec<ConditionId> = state(&window)
+        .study
+        .taken_models()
+        .map(|(id, _)| id)
+        .collect();
+    assert_eq!(taken, [CONDITION_10_ID]);
+    window.get_by_label("Use 1 fit");
+    // Changed records and settings outdate a fit; it is then neither used nor counted as done.
+    give(&mut window, RecordsCommand::SetUsed(0, false));
+    assert_eq!(status(&window, 10), FitStatus::Outdated);
+    assert!(is_finished(&window, 3));
+    window.get_by_label("Identify 1 of 2");
+    step(&mut window, UNDO);
+    assert!(is_finished(&window, 10));
+    give(&mut window, setting::BAND.to(Band::new(0.6, 9.0).unwrap()));
+    assert_eq!(
+        [status(&window, 3), status(&window, 10)],
+        [FitStatus::Outdated; 2]
+    );
+    assert!(state(&window).unused_fits().is_empty());
+    window.get_by_label("Identify all 2");
+    give(&mut window, StudyCommand::Undo);
+    assert!(is_finished(&window, 3) && is_finished(&window, 10));
+}
+
+/// Drags from one place to another.
+fn drag(window: &mut Window, [from, to]: [egui::Pos2; 2]) {
+    window.drag_at(from);
+    window.run_steps(2);
+    window.hover_at(to);
+    window.run_steps(2);
+    window.drop_at(to);
+    window.run_steps(3);
+}
+
+/// Drags over the lane of the parts between two shares of its width.
+fn drag_in_lane(window: &mut Window, shares: [f32; 2]) {
+    let lane = window.get_by_label("Lane of the parts").rect();
+    let places =
+        shares.map(|share| egui::pos2(lane.left() + share * lane.width(), lane.center().y));
+    drag(window, places);
+}
+
+#[test]
+fn the_view_opens_on_a_sweep_of_the_input_in_focus_until_a_record_is_chosen() {
+    fn displayed(window: &Window) -> String {
+        let records = &state(window).records.conditions[&CONDITION_10_ID];
+        records.rows[records.chosen].table.name.clone()
+    }
+
+    let mut window = window();
+    click(&mut window, CONDITION_10);
+    show(&mut window, View::Records);
+    wait_until(&mut window, "the records", |window| rows(window) == 9);
+    for input in [0, 2] {
+        let pair = Pair { output: 1, input };
+        give(&mut window, SelectionCommand::FocusPair(pair));
+        window.run_steps(2);
+        let name = state(&window).dataset().inputs()[input].name.clone();
+        assert_eq!(displayed(&window), format!("cond10_sweep_{name}_1"));
+        window.get_by_label_contains(&format!("{name} at the cursor"));
+    }
+    give(&mut window, RecordsCommand::Choose(0));
+    give(
+        &mut window,
+        SelectionCommand::FocusPair(Pair {
+            output: 1,
+            input: 1,
+        }),
+    );
+    window.run_steps(2);
+    assert_eq!(displayed(&window), "cond10_sweep_COL_1");
+}
+
+#[test]
+fn a_condition_without_records_says_so_in_place_of_the_charts() {
+    let mut window = records_window();
+    give(
+        &mut window,
+        SelectionCommand::SelectCondition(ConditionId(5)),
+    );
+    wait_until(&mut window, "the absence of records", |window| {
+        state(window)
+            .records
+            .conditions
+            .contains_key(&ConditionId(5))
+    });
+    window.run_steps(2);
+    window.get_by_label_contains("No flight records of this condition: add");
+    assert!(window.query_by_label_contains("at the cursor").is_none());
+    assert!(window.query_by_label_contains("fit in %").is_none());
+}
+
+#[test]
+fn chips_hide_curves_and_further_outputs_are_chosen() {
+    let mut window = records_window();
+    click(&mut window, "Show measured over time");
+    let hidden = &state(&window).records.hidden_roles;
+    assert!(hidden.contains(&TimeRole::Measured), "{hidden:?}");
+    click(&mut window, "Show measured over time");
+    assert!(state(&window).records.hidden_roles.is_empty());
+    give(&mut window, RecordsCommand::ShowOutputs(vec![5]));
+    window.run_steps(2);
+    window.get_by_label_contains("NZ at the cursor");
+    assert!(window.query_by_label_contains("NX at the cursor").is_none());
 }
 
 #[test]
@@ -237,7 +416,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
 
     let mut window = records_window();
     assert_eq!(part(&window, 0), (None, true, 3001));
-    type_into(&mut window, "Part of the record", "5 25");
+    type_part(&mut window, "5 25");
     assert_eq!(
         part(&window, 0),
         (None, false, 3001),
@@ -248,15 +427,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         (Some([5.0, 25.0]), true, 1001),
         "20 s at 50 Hz"
     );
-    click(&mut window, "drag parts");
-    let chart = window.get_by_label_contains("LON [%]").rect();
-    let [from, to] =
-        [0.6, 0.8].map(|share| egui::pos2(chart.left() + share * chart.width(), chart.center().y));
-    window.drag_at(from);
-    window.run_steps(2);
-    window.hover_at(to);
-    window.run_steps(2);
-    window.drop_at(to);
+    drag_in_lane(&mut window, [0.6, 0.8]);
     window.run_steps(3);
     assert_eq!(rows(&window), 11);
     let (Some([first, last]), true, samples) = part(&window, 2) else {
@@ -266,14 +437,30 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         first > 25.0 && last > first && samples > 200,
         "{first} to {last} s, {samples} samples"
     );
-    click(&mut window, "Record cond10_sweep_COL_1, 5 to 25 s");
-    click(&mut window, "Remove part");
+    assert_eq!(
+        state(&window).records.conditions[&CONDITION_10_ID].chosen,
+        2,
+        "the new part is displayed"
+    );
+    let moved = window
+        .get_by_label_contains("Move the end of cond10_sweep_COL_1, 2")
+        .rect()
+        .center();
+    drag(&mut window, [moved, moved + egui::vec2(30.0, 0.0)]);
+    let (Some([still_first, later]), true, _) = part(&window, 2) else {
+        panic!("{:?}", part(&window, 2))
+    };
+    assert!(
+        still_first == first && later > last,
+        "{still_first} to {later} s"
+    );
+    click(&mut window, "Remove cond10_sweep_COL_1, 5 to 25 s");
     assert_eq!(
         (rows(&window), part(&window, 1).0),
-        (10, Some([first, last]))
+        (10, Some([first, later]))
     );
     // The search space can be typed as well; impossible values are refused.
-    click(&mut window, "Advanced");
+    click(&mut window, "Identification settings");
     type_into(&mut window, "Identification: orders", "8 10");
     assert_eq!(
         state(&window).records.conditions[&CONDITION_10_ID]
@@ -317,10 +504,9 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
         records.rows.iter().filter(|row| row.guess.held_out).count(),
         2
     );
-    window.get_by_label("Identify").click();
-    window.run_steps(2);
+    identify_one(&mut window);
     assert!(state(&window).records.job_of(CONDITION_10_ID).is_some());
-    window.get_by_label("Stop identifying").click();
+    window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(state(&window).records.running.is_empty());
     assert!(
@@ -343,7 +529,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
             .contains_key(&ConditionId(3))
     });
     click(&mut window, CONDITION_10);
-    window.get_by_label("Identify all 2 conditions").click();
+    window.get_by_label("Identify all 2").click();
     wait_until(&mut window, "a step of the first", |window| {
         state(window).records.under_way().is_some()
     });
@@ -354,11 +540,55 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     window.get_by_label(condition_3).click();
     window.run_steps(3);
     window.get_by_label("Waiting for condition 10");
-    window.get_by_label("Stop identifying").click();
+    assert_eq!(status(&window, 3), FitStatus::Queued);
+    assert!(matches!(status(&window, 10), FitStatus::Running { .. }));
+    window.get_by_label("Stop").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());
     assert_notice(&window, NoticeKind::Done, "identification-stopped", &["2"]);
-    window.get_by_label("Identify all 2 conditions");
+    window.get_by_label("Identify all 2");
+}
+
+#[test]
+fn the_work_of_the_view_is_stopped_beside_its_progress_and_elsewhere_in_the_status_bar() {
+    fn stops(window: &Window) -> usize {
+        window.query_all_by_label("Stop").count()
+    }
+
+    fn is_running(window: &Window) -> bool {
+        !state(window).records.running.is_empty()
+    }
+
+    let mut window = records_window();
+    wait_for_bars(&mut window);
+    wait_for_background(&mut window);
+    window.get_by_label("Identify all 2").click();
+    wait_until(&mut window, "a step of the first", |window| {
+        state(window).records.under_way().is_some()
+    });
+    assert_eq!(stops(&window), 1, "in the page bar");
+    give(&mut window, ComputingCommand::StopComputing);
+    assert!(is_running(&window), "its own Stop stops it");
+    give(&mut window, ComputingCommand::Compute);
+    show(&mut window, View::Bode);
+    wait_until(&mut window, "the Stop of the status bar", |window| {
+        stops(window) == 1
+    });
+    window.get_by_label("Stop").click();
+    wait_until(&mut window, "its end", |window| !is_running(window));
+}
+
+#[test]
+fn beside_the_rail_the_records_open_as_a_sheet() {
+    let mut window = records_window();
+    give(&mut window, LayoutCommand::ShowLeft(false));
+    assert!(window.query_by_label("Record cond10_validation").is_none());
+    click(&mut window, "Open the list: Records");
+    let sheet = window.get_by_label("Record cond10_validation").rect();
+    assert!(sheet.width() <= 272.0, "{sheet:?}");
+    click(&mut window, "Hold out cond10_sweep_LON_1");
+    let counts = state(&window).condition_fit(CONDITION_10_ID).counts;
+    assert_eq!((counts.fitted, counts.held_out), (7, 2));
 }
 
 #[test]
@@ -399,6 +629,9 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     let folder = tempfile::tempdir().unwrap();
     let columns = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ";
     std::fs::write(folder.path().join("cond03_sweep_LON_9.csv"), text(columns)).unwrap();
+    std::fs::create_dir(folder.path().join("cond05")).unwrap();
+    let in_folder = folder.path().join("cond05/sweep_LON_9.csv");
+    std::fs::write(in_folder, text(&columns.replace("NZ", "NZ [m/s2]"))).unwrap();
     std::fs::write(
         folder.path().join("flight.csv"),
         text("time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,speed"),
@@ -409,7 +642,9 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
         &mut window,
         RecordsCommand::Add(vec![folder.path().to_owned()]),
     );
-    wait_until(&mut window, "the files", |window| rows(window) == 10);
+    wait_until(&mut window, "the files", |window| {
+        state(window).records.unassigned.len() == 1
+    });
     let records = &state(&window).records;
     let of_condition_3 = &records.conditions[&ConditionId(3)].rows;
     assert_eq!(of_condition_3.len(), 10, "its own nine stay");
@@ -418,7 +653,21 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
             .iter()
             .any(|row| row.table.name == "cond03_sweep_LON_9")
     );
-    let wrong = records.conditions[&CONDITION_10_ID]
+    let of_condition_5 = &records.conditions[&ConditionId(5)].rows;
+    assert_eq!(of_condition_5.len(), 1, "by the name of its folder");
+    assert_eq!(records.open_fold, Some(RecordsFold::Columns), "it is asked");
+    // The record without a condition blocks nothing; its condition can be chosen.
+    window.get_by_label("Identify all 3");
+    let name = state(&window).condition().flight_state().name.clone();
+    click(&mut window, "Condition of flight");
+    click(&mut window, &format!("10: {name}"));
+    let assigned = Change::Beside(RecordChange::Assign {
+        records: 1,
+        condition: CONDITION_10_ID,
+    });
+    assert_eq!(last_change(&window), Some(&assigned));
+    assert!(state(&window).records.unassigned.is_empty());
+    let wrong = state(&window).records.conditions[&CONDITION_10_ID]
         .rows
         .iter()
         .find(|row| row.table.name == "flight")
@@ -432,6 +681,17 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
         "{:?}",
         wrong.problems
     );
+    step(&mut window, UNDO);
+    assert_eq!(
+        (rows(&window), state(&window).records.unassigned.len()),
+        (9, 1)
+    );
+    click(&mut window, "Remove flight");
+    assert!(state(&window).records.unassigned.is_empty());
+    step(&mut window, UNDO);
+    step(&mut window, UNDO);
+    let records = &state(&window).records;
+    assert!(records.unassigned.is_empty() && records.conditions[&ConditionId(3)].rows.len() == 9);
 }
 
 /// Undoes or redoes a step by its key.
@@ -536,14 +796,13 @@ fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless
     }
 
     let mut window = records_window();
-    type_into(&mut window, "Part of the record", "5 25");
-    type_into(&mut window, "Part of the record", "30 50");
+    type_part(&mut window, "5 25");
+    type_part(&mut window, "30 50");
     assert!(!used(&window));
-    click(&mut window, "Record cond10_sweep_COL_1, 5 to 25 s");
-    click(&mut window, "Remove part");
+    click(&mut window, "Remove cond10_sweep_COL_1, 5 to 25 s");
     assert!(!used(&window), "another part stays");
     click(&mut window, "Record cond10_sweep_COL_1, 30 to 50 s");
-    click(&mut window, "Remove part");
+    remove_part(&mut window);
     assert!(used(&window) && rows(&window) == 9, "its tick is back");
     for command in [
         RecordsCommand::SetUsed(0, false),
@@ -570,11 +829,11 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
     let text = "time_s,LON [%],LAT [%],PED [%],COL [%],P [deg/s],Q [deg/s],R [deg/s],NX [m/s2],NY [m/s2],NZ [m/s2]\n"
         .to_owned()
         + &(0..=1950).map(row).collect::<String>();
-    std::fs::write(folder.path().join("prbs.csv"), text).unwrap();
+    std::fs::write(folder.path().join("cond10_prbs.csv"), text).unwrap();
     let mut window = records_window();
     give(
         &mut window,
-        RecordsCommand::Add(vec![folder.path().join("prbs.csv")]),
+        RecordsCommand::Add(vec![folder.path().join("cond10_prbs.csv")]),
     );
     wait_until(&mut window, "the record", |window| rows(window) == 10);
     give(&mut window, RecordsCommand::Choose(9));
@@ -585,10 +844,13 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         (span_s[0] - 42.3).abs() < 1e-9 && (span_s[1] - 81.3).abs() < 1e-9,
         "{span_s:?}"
     );
+    click(&mut window, "Parts of the record");
     window.get_by_label(
         "42.30 s to 81.30 s on the record's time axis, +0.00 s to +39.00 s from its start",
     );
-    type_into(&mut window, "Part of the record", "5 34");
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    type_part(&mut window, "5 34");
     assert_notice(
         &window,
         NoticeKind::Trouble,
@@ -596,7 +858,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         &["42.30 s", "81.30 s"],
     );
     assert_eq!(rows(&window), 10);
-    type_into(&mut window, "Part of the record", "+5 +34");
+    type_part(&mut window, "+5 +34");
     let part = &state(&window).records.conditions[&CONDITION_10_ID].rows[10];
     assert_eq!(part.table.part_s, Some([47.3, 76.3]));
     let [first_s, last_s] = part.span_s().unwrap();
@@ -628,7 +890,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
         .iter()
         .map(|row| row.flight.clone())
         .collect();
-    type_into(&mut window, "Path of records", "assets/example-records.zip");
+    add_by_path(&mut window, "assets/example-records.zip");
     wait_until(&mut window, "the archive", |window| {
         used_rows(window) == (99, 11)
     });
@@ -642,15 +904,15 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
             .all(|row| row.problems.is_empty()),
         "no unit is asked for"
     );
-    assert!(records.open_units().is_none() && records.faults.is_empty());
+    assert!(records.assumed_units().is_none() && records.faults.is_empty());
+    assert_eq!(records.column_groups().len(), 1, "the same columns in all");
     for (row, flight) in records.conditions[&CONDITION_10_ID].rows.iter().zip(own) {
         assert!(
             std::sync::Arc::ptr_eq(row.flight.as_ref().unwrap(), &flight.unwrap()),
             "its own records are kept"
         );
     }
-    // The Conditions page lists all conditions; none is identified yet.
-    click(&mut window, "Page Conditions");
+    // The table lists all conditions; none is identified yet.
     assert_eq!(condition_table(state(&window)).rows.len(), 11);
     // Adding records is an undoable step.
     step(&mut window, UNDO);
@@ -660,21 +922,11 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     // By default, a small search space limits the duration to seconds; the thorough run uses the
     // whole space.
     let is_quick = tries(1, 2) == 1;
-    let search = SearchSpace {
-        orders: vec![8],
-        pasts: vec![10],
-        poles: vec![6.0],
-    };
-    for id in state(&window)
-        .dataset()
-        .ids()
-        .filter(|_| is_quick)
-        .collect::<Vec<_>>()
-    {
-        give(&mut window, SelectionCommand::SelectCondition(id));
-        give(&mut window, RecordsCommand::SetSearch(search.clone()));
+    if is_quick {
+        let ids: Vec<ConditionId> = state(&window).dataset().ids().collect();
+        search_little(&mut window, &ids);
     }
-    window.get_by_label("Identify all 11 conditions").click();
+    window.get_by_label("Identify all 11").click();
     wait_until(&mut window, "the first of them", |window| {
         !state(window).records.running.is_empty()
     });
@@ -682,11 +934,10 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
         state(window).records.running.is_empty()
     });
     window.run_steps(2);
-    assert_eq!(state(&window).records.page, RecordsPage::Conditions);
     let table = condition_table(state(&window));
     let is_identified = |row: &Vec<String>| {
-        row.len() > 2
-            && row[2]
+        row.len() > 5
+            && row[5]
                 .parse::<usize>()
                 .is_ok_and(|order| !is_quick || order == 8)
     };
@@ -694,12 +945,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
         table.rows.len() == 11 && table.rows.iter().all(is_identified),
         "{table:?}"
     );
-    window
-        .get_by_label("Use the models of 11 conditions")
-        .click();
-    window.run_steps(3);
-    window.get_by_label("The refined models").click();
-    settle(&mut window);
+    click(&mut window, "Use 11 fits");
     assert_eq!(state(&window).study.taken_models().count(), 11);
 }
 
@@ -721,23 +967,21 @@ fn without_units(phase: f64) -> String {
 }
 
 #[test]
-fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
-    fn open(window: &Window) -> Option<(usize, usize)> {
-        state(window)
-            .records
-            .open_units()
-            .map(|open| (open.records, open.conditions))
+fn units_that_no_file_says_are_the_dataset_s_with_a_caution_and_are_set_once_for_all_conditions() {
+    fn assumed(window: &Window) -> Option<(usize, usize, usize)> {
+        let units = state(window).records.assumed_units()?;
+        Some((units.records, units.conditions, units.channels.len()))
     }
 
-    fn factor(window: &Window, id: i64, output: usize) -> f64 {
+    fn flight(window: &Window, id: i64) -> &LaidOutRecord {
         let rows = &state(window).records.conditions[&ConditionId(id)].rows;
         rows.iter()
             .find(|row| row.table.name.ends_with("_flight"))
             .unwrap()
-            .layout
-            .outputs[output]
-            .unwrap()
-            .factor
+    }
+
+    fn factor(window: &Window, id: i64, output: usize) -> f64 {
+        flight(window, id).layout.outputs[output].unwrap().factor
     }
 
     let folder = tempfile::tempdir().unwrap();
@@ -754,24 +998,29 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
         RecordsCommand::Add(vec![folder.path().to_owned()]),
     );
     wait_until(&mut window, "the files", |window| rows(window) == 10);
-    assert_eq!(open(&window), Some((3, 3)));
-    let channels: Vec<String> = state(&window)
-        .records
-        .open_units()
-        .unwrap()
-        .channels
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
-    assert_eq!(channels, ["P", "Q", "R", "NX", "NY", "NZ"]);
-    click(&mut window, "Take the dataset's units");
-    assert_eq!(open(&window), None);
+    assert_eq!(assumed(&window), Some((3, 3, 6)));
+    for id in [5, 8, 10] {
+        let record = flight(&window, id);
+        assert!(record.used_flight().is_some(), "the records are used");
+        assert!(
+            record
+                .cautions
+                .iter()
+                .any(|caution| caution.code() == "unit-assumed")
+        );
+    }
+    click(&mut window, "Confirm");
+    assert_eq!(assumed(&window), None);
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
-    assert_eq!(open(&window), Some((3, 3)));
-    // A unit set for the columns of a record also applies to all added records with the same
-    // columns.
-    click(&mut window, "Choose others…");
+    assert_eq!(assumed(&window), Some((3, 3, 6)));
+    // Columns are set once for the records of all conditions with the same columns; the example's
+    // own records are another group.
+    click(&mut window, "Columns and units");
+    let groups = state(&window).records.column_groups();
+    let sizes: Vec<usize> = groups.iter().map(|group| group.records).collect();
+    assert_eq!((sizes, groups[1].conditions.len()), (vec![18, 3], 3));
+    click(&mut window, "Check");
     assert_eq!(
         (state(&window).condition().id(), state(&window).records.page),
         (ConditionId(5), RecordsPage::Columns)
@@ -782,11 +1031,9 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
             .clone()
     };
     let before = own(&window);
-    let of_5 = &state(&window).records.conditions[&ConditionId(5)];
-    let mut layout = of_5.rows[of_5.chosen].layout.clone();
-    layout.outputs[0] = layout.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
-    let index = of_5.chosen;
-    give(&mut window, RecordsCommand::SetLayout(index, layout));
+    click(&mut window, "Unit of the column of P");
+    window.get_by_role_and_label(Role::Button, "rad/s").click();
+    settle(&mut window);
     for id in [5, 8, 10] {
         assert!(
             (factor(&window, id, 0) - 180.0 / std::f64::consts::PI).abs() < 1e-9,
@@ -799,12 +1046,23 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
         "a record that the dataset names is in the dataset's units"
     );
     assert_eq!(
-        state(&window).records.open_units().unwrap().channels.len(),
-        5,
-        "the others are still asked for"
+        assumed(&window),
+        Some((3, 3, 5)),
+        "the others are still an assumption"
     );
     step(&mut window, UNDO);
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
+    // A record whose columns are set alone is a further row.
+    let of_5 = &state(&window).records.conditions[&ConditionId(5)];
+    let index = of_5.chosen;
+    let mut remedied = of_5.rows[index].layout.clone();
+    remedied.outputs[0].as_mut().unwrap().remedy.factor = -1.0;
+    give(&mut window, RecordsCommand::SetLayout(index, remedied));
+    assert_eq!(
+        state(&window).records.column_groups().len(),
+        2,
+        "remedies of a record make no group"
+    );
 }
 
 #[test]
@@ -915,8 +1173,7 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
     wait_until(&mut window, "its records", |window| rows_shown(window) == 4);
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the models", found);
-    click(&mut window, "Use these models");
-    click(&mut window, "The refined models");
+    click(&mut window, "Use 1 fit");
     wait_until(&mut window, "a result", |window| {
         state(window).shown().is_some()
     });
@@ -1016,9 +1273,9 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
 #[test]
 fn a_simulation_is_computed_beside_the_window() {
     let mut window = records_window();
-    click(&mut window, "physics model");
-    wait_until(&mut window, "the simulation", |window| {
-        state(window).results.simulations.len() == 1
+    // Nothing is identified, so only the physics model and its correction are compared.
+    wait_until(&mut window, "the simulations", |window| {
+        state(window).results.simulations.len() == 2
     });
     let (job, outcome) = &state(&window).results.simulations[0];
     let validation = outcome.as_ref().unwrap();
@@ -1032,7 +1289,13 @@ fn a_simulation_is_computed_beside_the_window() {
         job.record.time_s.len(),
         "all samples are in some window"
     );
-    click(&mut window, "physics model");
+    click(&mut window, "Show physics over time");
+    assert_eq!(
+        state(&window).results.simulations.len(),
+        2,
+        "a chip hides the curve, and the range of the axis stays"
+    );
+    show(&mut window, View::Bode);
     assert!(
         state(&window).results.simulations.is_empty(),
         "what is not asked for is not kept"
@@ -1105,8 +1368,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
             );
         }
     }
-    click(&mut window, "Use these models");
-    click(&mut window, "The refined models");
+    click(&mut window, "Use 1 fit");
     assert!(state(&window).study.taken_models().any(|(id, _)| id == of));
 
     // The sweep is distorted by feedback of gusts. With the position reference that drove the loop,
@@ -1134,6 +1396,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "Use x0 as reference");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
     // The list of columns can deselect the reference, and select it again.
+    click(&mut window, "Instead of: Use x0 as reference");
     click(&mut window, "Choose a reference…");
     window.run_steps(10);
     for expected in [&[][..], &["x0".to_owned()][..]] {
@@ -1168,14 +1431,11 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     assert!((at_8_db - 30.8).abs() < 1.0, "{at_8_db} dB");
 }
 
-/// Returns the number of records in the displayed condition.
+/// Returns the number of records in the displayed condition and without a condition.
 pub(super) fn rows_shown(window: &Window) -> usize {
     let state = state(window);
-    state
-        .records
-        .conditions
-        .get(&state.condition().id())
-        .map_or(0, |records| records.rows.len())
+    let records = state.records.conditions.get(&state.condition().id());
+    records.map_or(0, |records| records.rows.len()) + state.records.unassigned.len()
 }
 
 /// Opens a window that makes a dataset with these channels from two records in a folder.
@@ -1318,7 +1578,7 @@ fn the_physics_model_of_the_real_aircraft_is_corrected_from_its_flights() {
     wait_until(&mut window, "the records", |window| {
         state(window).records.conditions.len() == 2 && state(window).records.reading.is_none()
     });
-    click(&mut window, "Identify all 2 conditions");
+    click(&mut window, "Identify all 2");
     wait_until(&mut window, "the end", |window| {
         let records = &state(window).records;
         records.running.is_empty()

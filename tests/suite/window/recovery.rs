@@ -212,7 +212,7 @@ fn decisions_stay_safe_where_what_was_to_be_opened_in_their_place_cannot_be_read
     open_by_path(&mut window, &broken);
     assert!(window.query_by_label("Don't save").is_none());
     assert_eq!(
-        state(&window).notice.as_ref().map(|notice| notice.kind),
+        state(&window).notices.newest().map(|notice| notice.kind),
         Some(NoticeKind::Trouble)
     );
     assert!(state(&window).unsaved && !kept(directory.path()).is_empty());

@@ -22,6 +22,7 @@ use gdcm_words::ExplainTarget;
 use gdcm_words::derivation::derivation;
 use gdcm_words::uncertainty::difference_verdict;
 
+use super::plots::across_curves;
 use super::*;
 
 pub(super) fn give(window: &mut Window, command: impl Into<Action>) {
@@ -195,16 +196,14 @@ fn zeros_of_the_response_in_focus_are_shown_on_wish() {
 fn one_response_of_every_condition_is_laid_over_the_others_whichever_model_it_is_of() {
     let mut window = window();
     show(&mut window, View::Across);
+    wait_until(&mut window, "the responses", |window| {
+        state(window).across().is_some()
+    });
     for role in AcrossRole::ALL {
-        give(&mut window, DisplayCommand::ShowAcross(role));
-        wait_until(&mut window, "the responses", |window| {
-            let state = state(window);
-            state
-                .across()
-                .is_some_and(|curves| curves.responses.len() == 11)
-        });
+        give(&mut window, DisplayCommand::ShowAcrossAlone(role));
+        let curves = across_curves(&window);
+        assert_eq!(curves.responses.len(), 11, "{}", role.name());
     }
-    assert_eq!(state(&window).across().unwrap().responses.len(), 11);
 }
 
 #[test]

@@ -1,33 +1,44 @@
-//! Exports of all analysis results: `corrections.json`, `corrections.csv`, and a MATLAB struct with
-//! the content of `corrections.json`.
+//! Exports of all analysis results: `corrections.json`, `corrections.csv`, `assessment.csv`, and a
+//! MATLAB struct with the content of `corrections.json`.
 
-use std::collections::BTreeSet;
-
-use gdcm_model::dataset::ConditionId;
-use gdcm_study::Analysis;
+use gdcm_study::results::export_note::FileSummary;
 
 use super::corrections_struct::corrections_struct;
-use super::{ExportFormat, Exported};
-use crate::files::corrections_file::{corrections, write_corrections, write_corrections_csv};
+use super::file_head::variables_head;
+use super::{Export, ExportFormat, Exported, FormatGroup};
+use crate::export_fault::ExportFault;
+use crate::files::corrections_file::{
+    corrections, write_assessment_csv, write_corrections, write_corrections_csv,
+};
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::Variable;
+
+/// Options of the files with results of conditions.
+const OPTIONS: &[&str] = &["--condition"];
 
 /// Export as `corrections.json`.
 pub(super) const JSON: ExportFormat = ExportFormat {
     name: "json",
     extension: "json",
+    stem: "corrections",
+    group: FormatGroup::PerCondition,
+    title: "All values",
     words: "corrections.json alone",
-    options: &[],
+    options: OPTIONS,
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),
     export: |export| {
-        let analysis = export.analysis;
-        let sha256 = &export.source.sha256;
-        let exported = Exported::new(move |file| {
-            write_corrections(analysis, sha256, &all_conditions(analysis), file)
+        let Export {
+            analysis, source, ..
+        } = *export;
+        let chosen = export.request.chosen(analysis);
+        let exported = Exported::new(export.results_summary(), move |file| {
+            write_corrections(analysis, &source.sha256, &chosen, file)
         });
-        Ok(exported.with(export.price_remarks()))
+        Ok(exported
+            .with(export.price_remarks())
+            .with_notes(export.result_notes()))
     },
 };
 
@@ -35,38 +46,72 @@ pub(super) const JSON: ExportFormat = ExportFormat {
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "csv",
     extension: "csv",
+    title: "One row per channel",
     words: "corrections.csv alone",
-    options: &[],
-    check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_results(analysis),
     export: |export| {
-        let analysis = export.analysis;
-        let exported = Exported::new(move |file| {
-            write_corrections_csv(analysis, &all_conditions(analysis), file)
-        });
-        Ok(exported.with(export.price_remarks()))
+        let mut text = Vec::new();
+        let chosen = export.request.chosen(export.analysis);
+        write_corrections_csv(export.analysis, &chosen, &mut text)
+            .map_err(|error| ExportFault::contents(&error))?;
+        Ok(Exported::bytes(rows_summary(&text), text)
+            .with(export.price_remarks())
+            .with_notes(export.result_notes()))
     },
+    ..JSON
+};
+
+/// Export as `assessment.csv`.
+pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
+    name: "assessment",
+    extension: "csv",
+    stem: "assessment",
+    title: "One row per response",
+    words: "assessment.csv alone",
+    export: |export| {
+        let mut text = Vec::new();
+        let chosen = export.request.chosen(export.analysis);
+        write_assessment_csv(export.analysis, &chosen, &mut text)
+            .map_err(|error| ExportFault::contents(&error))?;
+        Ok(Exported::bytes(rows_summary(&text), text).with_notes(export.result_notes()))
+    },
+    ..JSON
 };
 
 /// Export as the MATLAB struct `corrections`.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "mat",
     extension: "mat",
+    title: "One struct",
     words: "MATLAB data: all corrections as one struct",
-    options: &[],
-    check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_results(analysis),
     export: |export| {
         let analysis = export.analysis;
-        let corrections = corrections(analysis, &export.source.sha256, &all_conditions(analysis));
-        let variable = Variable {
+        let chosen = export.request.chosen(analysis);
+        let corrections = corrections(analysis, &export.source.sha256, &chosen);
+        let variables = [Variable {
             name: "corrections".to_owned(),
             value: corrections_struct(corrections, &analysis.study.dataset),
-        };
-        Ok(Exported::bytes(mat::write(&[variable])?).with(export.price_remarks()))
+        }];
+        let bytes = mat::write(&variables)?;
+        Ok(Exported::bytes(export.results_summary(), bytes)
+            .with(export.price_remarks())
+            .with_notes(export.result_notes())
+            .with_head(variables_head(&variables)))
     },
+    ..JSON
 };
 
-fn all_conditions(analysis: &Analysis) -> BTreeSet<ConditionId> {
-    analysis.conditions.keys().copied().collect()
+impl Export<'_> {
+    fn results_summary(&self) -> FileSummary {
+        FileSummary::Results {
+            has_error_bars: self.analysis.uncertainty.is_some(),
+        }
+    }
+}
+
+/// Counts the lines after the heading of a table.
+fn rows_summary(text: &[u8]) -> FileSummary {
+    let lines = text.iter().filter(|byte| **byte == b'\n').count();
+    FileSummary::Rows {
+        rows: lines.saturating_sub(1),
+    }
 }

@@ -11,13 +11,16 @@ use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Origin;
+use gdcm_study::results::export_note::FileSummary;
 
 use self::matlab::models_variable;
 use self::metrics::matrices;
 use self::numpy::model_arrays;
+use super::export_notes::model_notes;
 use super::exported_model::ExportedModel;
+use super::file_head::variables_head;
 use super::requested_models::{contents_of_models, exported_models};
-use super::{ExportFormat, Exported};
+use super::{Export, ExportFormat, Exported, FormatGroup};
 use crate::export_fault::ExportFault;
 use crate::files::model_collection::{
     ModelWithContents, bare_draft, labels, write_models_with_contents,
@@ -25,32 +28,80 @@ use crate::files::model_collection::{
 use crate::formats::mat;
 use crate::formats::npy::write_npz;
 
+const OPTIONS: &[&str] = &["--condition", "--model", "--correction", "--pade"];
+
 /// Export of corrected models; the file extension selects the format.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
+    stem: "models",
+    group: FormatGroup::Models,
+    title: "Corrected, state space",
     words: "Corrected models in state-space form",
-    options: &["--condition", "--model", "--correction", "--pade"],
+    options: OPTIONS,
     check_path: |path| ModelsFormat::from_path(path).map(drop),
     contents: |analysis, request| contents_of_models(analysis, request),
-    export: |export| {
-        let models = exported_models(export.analysis, export.request)?;
-        let dataset = &export.analysis.study.dataset;
-        let remarks = models.iter().map(ExportedModel::words).collect();
-        let exported = match ModelsFormat::from_path(export.path)? {
-            // Packed, because matrices with delays are mostly zeros.
-            ModelsFormat::Mat => {
-                Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?)
-            }
-            ModelsFormat::Npz => Exported::bytes(write_npz(&model_arrays(&models, dataset))?),
-            ModelsFormat::Json => {
-                let models = models_with_contents(&models, dataset);
-                Exported::new(move |file| write_models_with_contents(&models, file))
-            }
-        };
-        Ok(exported.with(remarks))
-    },
+    export: export_models,
 };
+
+/// Export of corrected models for NumPy.
+pub(super) const NUMPY: ExportFormat = ExportFormat {
+    name: "state-space-npz",
+    extension: "npz",
+    words: "Corrected models in state-space form, for NumPy",
+    check_path: |path| check_models_format(path, ModelsFormat::Npz),
+    ..STATE_SPACE
+};
+
+/// Export of corrected models in the format `gdcm-models`.
+pub(super) const JSON: ExportFormat = ExportFormat {
+    name: "state-space-json",
+    extension: "json",
+    words: "Corrected models in state-space form, JSON",
+    check_path: |path| check_models_format(path, ModelsFormat::Json),
+    ..STATE_SPACE
+};
+
+fn check_models_format(path: &Path, expected: ModelsFormat) -> Result<(), ExportFault> {
+    if ModelsFormat::from_path(path)? == expected {
+        Ok(())
+    } else {
+        Err(ExportFault::ModelsFormat)
+    }
+}
+
+fn export_models<'e>(export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+    let models = exported_models(export.analysis, export.request)?;
+    let dataset = &export.analysis.study.dataset;
+    let remarks = models.iter().map(ExportedModel::words).collect();
+    let notes = model_notes(export, &models);
+    let added_states = models
+        .iter()
+        .map(|model| model.delay_states + model.lead_states);
+    let summary = FileSummary::Models {
+        models: models.len(),
+        added_states: added_states.max().unwrap_or_default(),
+    };
+    let exported = match ModelsFormat::from_path(export.path)? {
+        ModelsFormat::Mat => {
+            let variables = [models_variable(&models, dataset)];
+            // Packed, because matrices with delays are mostly zeros.
+            Exported::bytes(summary, mat::write_packed(&variables)?)
+                .with_head(variables_head(&variables))
+        }
+        ModelsFormat::Npz => {
+            let variables = model_arrays(&models, dataset);
+            Exported::bytes(summary, write_npz(&variables)?).with_head(variables_head(&variables))
+        }
+        ModelsFormat::Json => {
+            let models = models_with_contents(&models, dataset);
+            Exported::new(summary, move |file| {
+                write_models_with_contents(&models, file)
+            })
+        }
+    };
+    Ok(exported.with(remarks).with_notes(notes))
+}
 
 /// File format for corrected models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,10 +7,12 @@ mod matlab;
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_plot::figure::all_channels;
+use gdcm_study::results::export_note::{ExportNote, FileSummary};
 
 use super::exported_schedule::ExportedSchedule;
+use super::file_head::variables_head;
 use super::table_deviation::TableDeviation;
-use super::{Export, ExportFormat, Exported};
+use super::{Export, ExportFormat, Exported, FormatGroup};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
@@ -19,13 +21,18 @@ use crate::formats::mat;
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "table-csv",
     extension: "csv",
+    stem: "table",
+    group: FormatGroup::Table,
+    title: "Lookup table",
     words: "Lookup table over airspeed, CSV",
     options: OPTIONS,
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| {
         let table = BreakpointTable::from_export(export)?;
-        Ok(Exported::bytes(table.csv()).with(table.remarks()))
+        Ok(Exported::bytes(table.summary(), table.csv())
+            .with(table.remarks())
+            .with_notes(table.export_notes(export)))
     },
 };
 
@@ -33,17 +40,27 @@ pub(super) const CSV: ExportFormat = ExportFormat {
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "table-mat",
     extension: "mat",
+    stem: "table",
+    group: FormatGroup::Table,
+    title: "Lookup table",
     words: "Lookup table over airspeed, MATLAB data",
     options: OPTIONS,
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| {
         let table = BreakpointTable::from_export(export)?;
-        Ok(Exported::bytes(mat::write(&[table.variable()])?).with(table.remarks()))
+        let variables = [table.variable()];
+        Ok(Exported::bytes(table.summary(), mat::write(&variables)?)
+            .with(table.remarks())
+            .with_notes(table.export_notes(export))
+            .with_head(variables_head(&variables)))
     },
 };
 
 const OPTIONS: &[&str] = &["--breakpoints"];
+
+/// Deviation of a table, in percent or ms, below which it is not worth a note.
+const NOTABLE_DEVIATION: f64 = 0.05;
 
 /// Quantity of a column: a gain, or a time \[s\].
 #[derive(Debug, PartialEq)]
@@ -249,6 +266,59 @@ impl<'e> BreakpointTable<'e> {
                 airspeed_kt: range_kt[0],
             }),
         }
+    }
+
+    fn summary(&self) -> FileSummary {
+        FileSummary::Table {
+            airspeeds: self.airspeeds_kt.len(),
+        }
+    }
+
+    /// Returns the notes on the schedule, followed by the greatest error of a gain and of a time.
+    fn export_notes(&self, export: &Export<'_>) -> Vec<ExportNote> {
+        let mut notes = export.schedule_notes();
+        if let Some(column) = self.worst_column(|quantity| quantity == &GAIN) {
+            notes.push(ExportNote::GainTableError {
+                channel: column.channel,
+                error_percent: column.deviation.value,
+                airspeed_kt: column.deviation.airspeed_kt,
+                remedy_kt: self.next_airspeed_kt(column.deviation.airspeed_kt),
+            });
+        }
+        if let Some(column) = self.worst_column(|quantity| quantity.is_time) {
+            notes.push(ExportNote::TimeTableError {
+                channel: column.channel,
+                error_ms: column.deviation.value,
+                airspeed_kt: column.deviation.airspeed_kt,
+                remedy_kt: self.next_airspeed_kt(column.deviation.airspeed_kt),
+            });
+        }
+        notes
+    }
+
+    /// Returns the column of such a quantity with the greatest deviation, if that deviation is
+    /// notable.
+    fn worst_column(&self, is_meant: impl Fn(&Quantity) -> bool) -> Option<&Column> {
+        let mut worst: Option<&Column> = None;
+        for column in &self.columns {
+            let is_worse = worst.is_none_or(|found| column.deviation.value > found.deviation.value);
+            if is_meant(column.quantity) && is_worse {
+                worst = Some(column);
+            }
+        }
+        worst.filter(|column| column.deviation.value >= NOTABLE_DEVIATION)
+    }
+
+    /// Returns an airspeed \[kt\] near `airspeed_kt` that the table lacks: a multiple of 5 kt, else
+    /// a whole number, else the tenth of a knot; `None` if the table has all of them.
+    fn next_airspeed_kt(&self, airspeed_kt: f64) -> Option<f64> {
+        for per_knot in [0.2, 1.0, 10.0] {
+            let rounded_kt = (airspeed_kt * per_knot).round() / per_knot;
+            if !self.airspeeds_kt.contains(&rounded_kt) {
+                return Some(rounded_kt);
+            }
+        }
+        None
     }
 
     /// Returns the remarks on the schedule, followed by the deviations of the table from it.

@@ -5,9 +5,12 @@
 mod all_results;
 mod corrected_models;
 mod corrections_struct;
+mod export_notes;
+pub mod export_set;
 mod exported_model;
 mod exported_schedule;
 pub mod figure_file;
+mod file_head;
 mod json_to_matlab;
 mod lookup_table;
 mod matlab_names;
@@ -20,11 +23,14 @@ mod schedule_heading;
 mod state_names;
 mod table_deviation;
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::Path;
 
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::ConditionId;
+use gdcm_study::decisions::export_choices::ExportChoices;
+use gdcm_study::results::export_note::{ExportNote, FileSummary};
 use gdcm_study::{Analysis, AssessedCorrection};
 use gdcm_words::lead_price::price_text;
 
@@ -34,6 +40,38 @@ use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
 use crate::output_set::OutputSet;
 
+/// Purpose of a format, in display order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FormatGroup {
+    /// Results of each condition.
+    PerCondition,
+    /// The schedule as a function in a programming language.
+    Function,
+    /// The schedule at some airspeeds.
+    Table,
+    /// Corrected models.
+    Models,
+}
+
+impl FormatGroup {
+    pub const ALL: [Self; 4] = [
+        Self::PerCondition,
+        Self::Function,
+        Self::Table,
+        Self::Models,
+    ];
+
+    /// Returns the heading of the group.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PerCondition => "Per condition",
+            Self::Function => "Functions of airspeed",
+            Self::Table => "Tables over airspeed",
+            Self::Models => "Models",
+        }
+    }
+}
+
 /// A format in which a study's corrections can be exported.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportFormat {
@@ -41,6 +79,11 @@ pub struct ExportFormat {
     pub name: &'static str,
     /// File extension, without the dot.
     pub extension: &'static str,
+    /// File name without prefix and extension, for files that are named by the program.
+    pub stem: &'static str,
+    pub group: FormatGroup,
+    /// Name within its group.
+    pub title: &'static str,
     /// Short description, for lists of formats.
     pub words: &'static str,
     /// Accepted command-line options.
@@ -54,7 +97,10 @@ pub struct ExportFormat {
 }
 
 /// All export formats, in display order; the first is the default.
-pub static EXPORTERS: [ExportFormat; 9] = [
+pub static EXPORTERS: [ExportFormat; 12] = [
+    all_results::JSON,
+    all_results::CSV,
+    all_results::ASSESSMENT,
     all_results::MAT,
     programs::MATLAB,
     programs::PYTHON,
@@ -62,8 +108,8 @@ pub static EXPORTERS: [ExportFormat; 9] = [
     lookup_table::CSV,
     lookup_table::MAT,
     corrected_models::STATE_SPACE,
-    all_results::CSV,
-    all_results::JSON,
+    corrected_models::NUMPY,
+    corrected_models::JSON,
 ];
 
 impl ExportFormat {
@@ -97,6 +143,18 @@ pub enum ExportedRole {
     Named(String),
 }
 
+impl ExportedRole {
+    /// Returns the role with a name of the command line: "nominal", "representative", or the name
+    /// of a model.
+    pub fn from_name(name: &str) -> Self {
+        match name {
+            ExportChoices::NOMINAL => Self::Nominal,
+            ExportChoices::REPRESENTATIVE => Self::Representative,
+            name => Self::Named(name.to_owned()),
+        }
+    }
+}
+
 /// Contents and options of an export; by default nominal models with the scheduled correction and
 /// second-order Padé approximants.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,8 +163,8 @@ pub struct ExportRequest {
     /// Airspeeds \[kt\] of a lookup table; by default the distinct airspeeds of the scheduled
     /// conditions.
     pub breakpoints_kt: Option<Vec<f64>>,
-    /// Condition whose models are exported; all conditions if `None`.
-    pub condition: Option<ConditionId>,
+    /// Conditions whose results and models are exported; all conditions if `None`.
+    pub conditions: Option<BTreeSet<ConditionId>>,
     /// Which physics model of a condition is exported.
     pub role: ExportedRole,
     /// Correction that is applied to exported models.
@@ -124,6 +182,21 @@ pub struct ExportSource {
     pub sha256: String,
 }
 
+impl ExportSource {
+    /// Returns the origin of corrections from a file: the study, or the dataset of an unsaved
+    /// study; `None` for the embedded example.
+    pub fn new(file: Option<&Path>, sha256: &str) -> Self {
+        let name = match file.and_then(Path::file_name) {
+            Some(name) => name.to_string_lossy().into_owned(),
+            None => "the embedded example".to_owned(),
+        };
+        Self {
+            name,
+            sha256: sha256.to_owned(),
+        }
+    }
+}
+
 /// Analysis, origin, request and path of an export.
 #[derive(Clone, Copy)]
 pub struct Export<'e> {
@@ -132,6 +205,16 @@ pub struct Export<'e> {
     pub request: &'e ExportRequest,
     /// Path of the output file.
     pub path: &'e Path,
+}
+
+impl ExportRequest {
+    /// Returns the exported conditions.
+    fn chosen(&self, analysis: &Analysis) -> BTreeSet<ConditionId> {
+        match &self.conditions {
+            Some(conditions) => conditions.clone(),
+            None => analysis.study.dataset.ids().collect(),
+        }
+    }
 }
 
 impl<'e> Export<'e> {
@@ -183,27 +266,48 @@ impl<'e> Export<'e> {
 /// Function that writes a file.
 type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
-/// File contents, with remarks on them line by line.
+/// File contents, with remarks on them line by line, and with facts for the list of files.
 pub struct Exported<'e> {
     write: Writing<'e>,
     remarks: Vec<String>,
+    summary: FileSummary,
+    notes: Vec<ExportNote>,
+    /// Description of a binary file, line by line; `None` for text.
+    head: Option<Vec<String>>,
 }
 
 impl<'e> Exported<'e> {
-    fn new(write: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'e) -> Self {
+    fn new(
+        summary: FileSummary,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'e,
+    ) -> Self {
         Self {
             write: Box::new(write),
             remarks: Vec::new(),
+            summary,
+            notes: Vec::new(),
+            head: None,
         }
     }
 
-    fn bytes(bytes: impl Into<Vec<u8>>) -> Self {
+    fn bytes(summary: FileSummary, bytes: impl Into<Vec<u8>>) -> Self {
         let bytes = bytes.into();
-        Self::new(move |file| file.write_all(&bytes))
+        Self::new(summary, move |file| file.write_all(&bytes))
     }
 
     fn with(self, remarks: Vec<String>) -> Self {
         Self { remarks, ..self }
+    }
+
+    fn with_notes(self, notes: Vec<ExportNote>) -> Self {
+        Self { notes, ..self }
+    }
+
+    fn with_head(self, head: Vec<String>) -> Self {
+        Self {
+            head: Some(head),
+            ..self
+        }
     }
 }
 

@@ -10,11 +10,13 @@ use minijinja::{Environment, Value, context};
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
+use gdcm_plot::figure::all_channels;
+use gdcm_study::results::export_note::{ExportNote, FileSummary};
 
-use super::exported_schedule::{Curve, ExportedSchedule};
+use super::exported_schedule::{Curve, ExportedSchedule, LEAD_INTERVALS};
 use super::matlab_names::check_function_name;
 use super::program_text::{c_text, comment, number, number_list, python_text};
-use super::{Export, ExportFormat, Exported};
+use super::{Export, ExportFormat, Exported, FormatGroup};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 
@@ -73,6 +75,9 @@ const C_LANGUAGE: Language = Language {
 pub(super) const MATLAB: ExportFormat = ExportFormat {
     name: "m",
     extension: "m",
+    stem: "correction",
+    group: FormatGroup::Function,
+    title: "MATLAB function",
     words: "MATLAB function of airspeed",
     options: &[],
     check_path: |path| check_function_name(&stem(path)),
@@ -84,6 +89,9 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
 pub(super) const PYTHON: ExportFormat = ExportFormat {
     name: "py",
     extension: "py",
+    stem: "correction",
+    group: FormatGroup::Function,
+    title: "Python module",
     words: "Python module, a function of airspeed",
     options: &[],
     check_path: |_| Ok(()),
@@ -95,6 +103,9 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
 pub(super) const C: ExportFormat = ExportFormat {
     name: "h",
     extension: "h",
+    stem: "correction",
+    group: FormatGroup::Function,
+    title: "C header",
     words: "C header, a function of airspeed",
     options: &[],
     check_path: |_| Ok(()),
@@ -108,10 +119,23 @@ impl Language {
         scheduled.check()?;
         let name = stem(export.path);
         let remarks = scheduled.notes_of_curves();
+        let summary = FileSummary::Function {
+            channels: all_channels(scheduled.dataset).len(),
+            has_delays: scheduled.schedule.has_delays(),
+            has_leads: scheduled.schedule.leads.is_some(),
+        };
+        let mut notes = export.schedule_notes();
+        if scheduled.has_lead_table() {
+            notes.push(ExportNote::LeadsTabulated {
+                points: LEAD_INTERVALS + 1,
+            });
+        }
         let write = move |file: &mut dyn io::Write| {
             file.write_all(self.text(&scheduled, &name)?.as_bytes())
         };
-        Ok(Exported::new(write).with(remarks))
+        Ok(Exported::new(summary, write)
+            .with(remarks)
+            .with_notes(notes))
     }
 
     /// Returns the text of the file; `name` is the file name without its extension.

@@ -32,26 +32,25 @@ pub(super) fn exported_models(
         })?;
     // The models as compared and corrected: moved by the physics parameters, where there are any.
     let dataset = analysis.moved_dataset();
-    let Some(id) = request.condition else {
-        return dataset
-            .conditions()
-            .iter()
-            .map(|condition| exported_model(analysis, request, condition))
-            .collect();
-    };
-    match dataset.condition(id) {
-        Some(condition) => Ok(vec![exported_model(analysis, request, condition)?]),
-        None => Err(ExportFault::NoCondition { condition: id }),
+    let chosen = request.chosen(analysis);
+    for &id in &chosen {
+        if dataset.condition(id).is_none() {
+            return Err(ExportFault::NoCondition { condition: id });
+        }
     }
+    let mut models = Vec::with_capacity(chosen.len());
+    for condition in dataset.conditions() {
+        if chosen.contains(&condition.id()) {
+            models.push(exported_model(analysis, request, condition)?);
+        }
+    }
+    Ok(models)
 }
 
 /// Returns the correction parts in the requested models; none if the study lacks the requested
 /// schedule.
 pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
-    let conditions: Vec<ConditionId> = match request.condition {
-        Some(condition) => vec![condition],
-        None => analysis.study.dataset.ids().collect(),
-    };
+    let conditions: Vec<ConditionId> = request.chosen(analysis).into_iter().collect();
     match ExportContents::of_models(analysis, request.correction, &conditions) {
         Ok(contents) => contents,
         Err(_) => ExportContents::of_scheduled(analysis),

@@ -97,14 +97,18 @@ impl ExportedSchedule<'_> {
         notes
     }
 
+    /// Returns whether a lead filter is given as a table over airspeed.
+    pub(super) fn has_lead_table(&self) -> bool {
+        all_channels(self.dataset).into_iter().any(|channel| {
+            self.zero_s(channel)
+                .is_some_and(|zero_s| zero_s.figures.parameters().len() > 1)
+        })
+    }
+
     /// Returns the remarks on the schedule, and a remark if lead filters are given as tables.
     pub(super) fn notes_of_curves(&self) -> Vec<String> {
         let mut notes = self.notes();
-        let has_lead_table = all_channels(self.dataset).into_iter().any(|channel| {
-            self.zero_s(channel)
-                .is_some_and(|zero_s| zero_s.figures.parameters().len() > 1)
-        });
-        if has_lead_table {
+        if self.has_lead_table() {
             notes.push(format!(
                 "the lead filters are tables over airspeed, linear between {} points",
                 LEAD_INTERVALS + 1

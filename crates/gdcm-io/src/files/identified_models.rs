@@ -299,6 +299,7 @@ mod tests {
             laguerre_pole: 1.0,
             past: 8,
             criteria: Vec::new(),
+            order_fits: Vec::new(),
             cost: 1.02,
             held_out_cost: None,
             held_out_normalised: None,

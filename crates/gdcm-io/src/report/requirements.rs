@@ -7,13 +7,15 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::requirements::requirements_figure;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::requirement_grid::{GridSource, RequirementGrid};
+use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Engine, Study};
 use gdcm_words::Table;
 use gdcm_words::missing_results::{missing_reason_text, no_bandwidth_text, reversed_phase_text};
+use gdcm_words::requirement_grid::{GRID_HEADS, RequirementNames, grid_table};
 use gdcm_words::requirements::{bandwidth_table, mode_table, summary_table};
-use gdcm_words::requirements_overview::RequirementsOverview;
 use gdcm_words::time_histories::{record_table, share_table};
 
 use super::page::Page;
@@ -54,10 +56,7 @@ pub(super) fn add_requirements(
         the identified representative.",
     );
     page.wide_table_behind(&summary_table(&requirements, histories), 3, COLUMNS - 2);
-    let limits = &analysis.study.requirements.overview;
-    let overview =
-        RequirementsOverview::new(&requirements, &analysis.study.dataset, histories, limits);
-    page.wide_table_behind(&overview.table, RequirementsOverview::HEADS, COLUMNS);
+    add_grids(page, &requirements, histories, &analysis.study);
     if let Some(histories) = histories {
         add_histories(page, histories);
     }
@@ -73,6 +72,37 @@ pub(super) fn add_requirements(
     }
     page.list(remarks.lines());
     Ok(())
+}
+
+/// Adds the grid of all requirements for the own corrections and, if there is one, for the schedule.
+fn add_grids(
+    page: &mut Page,
+    requirements: &Requirements,
+    histories: Option<&TimeHistories>,
+    study: &Study,
+) {
+    page.subsection("All requirements");
+    let names = RequirementNames {
+        dataset: &study.dataset,
+        tolerances: &study.requirements.tolerances,
+    };
+    for role in [RequirementRole::Corrected, RequirementRole::Scheduled] {
+        let has_model = requirements
+            .summary
+            .iter()
+            .any(|finding| finding.role == role);
+        if !has_model {
+            continue;
+        }
+        let grid = RequirementGrid::new(&GridSource {
+            requirements,
+            histories,
+            dataset: &study.dataset,
+            settings: &study.requirements,
+            role,
+        });
+        page.wide_table_behind(&grid_table(&grid, names), GRID_HEADS, COLUMNS);
+    }
 }
 
 /// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why

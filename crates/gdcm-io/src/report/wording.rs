@@ -1,12 +1,12 @@
 //! Parts of sentences and table cells in the report.
 
-use gdcm_model::number_format::counted;
+use gdcm_model::number_format::{NO_VALUE, counted};
 
 /// Maximum number of names in a list within a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
 /// Placeholder for a missing value in tables.
-pub(super) const MISSING: &str = "–";
+pub(super) const MISSING: &str = NO_VALUE;
 
 /// Joins names with commas; of more than [`NAMES_SHOWN`] names, the first ones and the number of
 /// the others.

@@ -4,7 +4,7 @@
 //! 1  attitudes: theta_n = theta_(n-1) + dt (q_(n-1) + q_n) / 2 from the start of the manoeuvre, flown and simulated alike
 //! 2  corridor: w_n = max(absolute, relative |y_n - y_0|), the wider of the two
 //! 3  excess: e_n = |y^_n - y_n| - w_n; a sample is inside where e_n <= 0
-//! 4  share inside, maximum e_n and its time;
+//! 4  share inside, maximum e_n and its time; peak error: maximum |y^_n - y_n| / w_n and its time;
 //!    trend: sign of the correlation between y^ and y about their means
 //! ```
 //!
@@ -70,6 +70,11 @@ pub struct ToleranceCheck {
     pub largest_excess: f64,
     /// Time of `largest_excess` \[s\].
     pub largest_excess_at_s: f64,
+    /// Maximum error as a multiple of the corridor's half-width at the same sample; above 1 if a
+    /// sample is outside.
+    pub peak_error: f64,
+    /// Time of `peak_error` \[s\].
+    pub peak_error_at_s: f64,
     trend: TrendSums,
 }
 
@@ -89,12 +94,16 @@ impl ToleranceCheck {
         let width = corridor_width(&flown, tolerance);
         let excess: Vec<f64> = excesses(&flown, &simulated, &width).collect();
         let largest = first_maximum(&excess);
+        let multiples = error_multiples(&flown, &simulated, &width);
+        let peak = first_maximum(&multiples);
         Ok(Self {
             start_s: window.start_s,
             sample_time_s: window.sample_time_s,
             inside: excess.iter().filter(|excess| **excess <= 0.0).count(),
             largest_excess: excess[largest],
             largest_excess_at_s: window.start_s + window.sample_time_s * largest as f64,
+            peak_error: multiples[peak],
+            peak_error_at_s: window.start_s + window.sample_time_s * peak as f64,
             trend: TrendSums::new(&flown, &simulated),
             flown,
             simulated,
@@ -204,6 +213,16 @@ fn excesses<'a>(
         .zip(simulated)
         .zip(width)
         .map(|((flown, simulated), width)| (simulated - flown).abs() - width)
+}
+
+/// Returns `|simulated - flown| / width` at each sample (step 4); widths are above zero.
+fn error_multiples(flown: &[f64], simulated: &[f64], width: &[f64]) -> Vec<f64> {
+    flown
+        .iter()
+        .zip(simulated)
+        .zip(width)
+        .map(|((flown, simulated), width)| (simulated - flown).abs() / width)
+        .collect()
 }
 
 /// Returns the index of the maximum, the first among equals.
@@ -320,6 +339,13 @@ impl RecordCheck {
         self.windows
             .iter()
             .max_by(|a, b| a.largest_excess.total_cmp(&b.largest_excess))
+    }
+
+    /// Returns the window with the largest error relative to its tolerance.
+    pub fn peak(&self) -> Option<&ToleranceCheck> {
+        self.windows
+            .iter()
+            .max_by(|a, b| a.peak_error.total_cmp(&b.peak_error))
     }
 
     /// Returns the correlation between simulated and flown samples, each about its mean in its

@@ -112,6 +112,21 @@ fn the_parts_outside_hold_the_samples_that_are_outside() {
 }
 
 #[test]
+fn the_peak_error_is_relative_to_the_tolerance_of_its_own_sample() {
+    // Tolerances: 2, 2, and 10 % of the change of 100. The largest error in deg/s is 8, at the last
+    // sample; relative to the tolerance it is 3 of 2, at the second.
+    let flown = [0.0, 0.0, 100.0];
+    let simulated = [0.0, 3.0, 108.0];
+    let check = check_of(&flown, &simulated, &tolerance(2.0, 0.1)).unwrap();
+    assert!((check.peak_error - 1.5).abs() < 1e-12);
+    assert!((check.peak_error_at_s - SAMPLE_TIME_S).abs() < 1e-12);
+    assert!((check.largest_excess - 1.0).abs() < 1e-12);
+    // Above 1 if and only if a sample is outside.
+    let inside = check_of(&flown, &[0.0, 2.0, 109.0], &tolerance(2.0, 0.1)).unwrap();
+    assert_eq!((inside.inside, inside.peak_error), (3, 1.0));
+}
+
+#[test]
 fn an_attitude_is_the_integral_of_its_rate_from_the_start() {
     let rate: Vec<f64> = (0..101)
         .map(|n| 3.0 * SAMPLE_TIME_S * f64::from(n))

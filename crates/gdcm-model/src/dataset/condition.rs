@@ -263,6 +263,20 @@ impl Condition {
         Some(&self.bundle(kind)[self.position(kind, name)?])
     }
 
+    /// Returns the size of the numbers of all models in memory \[bytes\].
+    pub fn model_bytes(&self) -> usize {
+        let mut bytes = 0;
+        for kind in BundleKind::BOTH {
+            for model in self.bundle(kind) {
+                bytes += model.dynamics.bytes();
+            }
+        }
+        for moved in &self.moved {
+            bytes += moved.model.dynamics.bytes();
+        }
+        bytes
+    }
+
     /// Returns the index of the nominal model in the physics bundle.
     pub fn nominal(&self) -> usize {
         self.nominal

@@ -21,4 +21,24 @@ impl Dynamics {
             }
         }
     }
+
+    /// Returns the size of the numbers in memory \[bytes\].
+    pub fn bytes(&self) -> usize {
+        const REAL: usize = size_of::<f64>();
+        match self {
+            Dynamics::StateSpace(model) => {
+                let matrices = [model.a(), model.b(), model.c(), model.d()];
+                REAL * matrices.iter().map(|matrix| matrix.len()).sum::<usize>()
+            }
+            Dynamics::Measured(response) => {
+                let values = response.values();
+                let responses = values.outputs() * values.inputs();
+                let parts = match response.coherence() {
+                    Some(_) => 3,
+                    None => 2,
+                };
+                REAL * response.omega().len() * (1 + parts * responses)
+            }
+        }
+    }
 }

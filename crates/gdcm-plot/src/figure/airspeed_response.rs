@@ -1,111 +1,296 @@
-//! Curves of a response of one model in every condition, coloured by airspeed.
+//! Curves of a response in every condition, coloured by airspeed, and the error that the schedule
+//! leaves in each.
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::{Dataset, ModelId, Pair};
+use gdcm_model::dataset::{Band, Condition, ConditionId, Dataset, Pair};
 use gdcm_model::response::GainDelay;
 use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_study::jobs::curve_jobs::AcrossCurves;
 use gdcm_study::{AcrossRole, Analysis};
 
 use super::bode_curve::{BodeCurve, CurveId};
-use super::role::Role;
+use super::role::{AirspeedLine, Role};
+use super::uncertainty_band::BodeBand;
 
-/// A response of one model in each condition. Conditions without the model or its correction are
-/// not drawn.
+/// A response in several conditions. Conditions without the model or its correction are not drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct AirspeedResponse<'a> {
     pub dataset: &'a Dataset,
-    /// Source of corrections; `None` before the conditions are compared.
+    /// Source of corrections and of the schedule; `None` before the conditions are compared.
     pub analysis: Option<&'a Analysis>,
-    /// Selects the model and its correction.
-    pub role: AcrossRole,
+    /// Models drawn in each condition.
+    pub roles: &'a [AcrossRole],
+    /// Conditions in the figure.
+    pub conditions: &'a [ConditionId],
     pub pair: Pair,
-    /// Responses of the model in each condition.
+    /// Band of comparison; phases are aligned up to its upper end.
+    pub band: Band,
+    /// Responses of the models in each condition.
     pub responses: &'a Arc<AcrossCurves>,
 }
 
+/// Curves of a response over the conditions.
+#[derive(Clone, Debug, Default)]
+pub struct AirspeedCurves {
+    /// Models of all roles, condition by condition.
+    pub responses: Vec<BodeCurve>,
+    /// Scheduled minus identified model in each condition.
+    pub errors: Vec<BodeCurve>,
+    /// Range of the same error over the conditions' own optima; `None` without optima.
+    pub optima: Option<BodeBand>,
+}
+
 impl AirspeedResponse<'_> {
-    /// Returns a curve for each condition, coloured by airspeed. `cache` keeps the computed shapes
-    /// until the responses change.
-    pub fn curves(&self, cache: &mut AirspeedCache) -> Vec<BodeCurve> {
-        cache.refresh(self.responses, self.pair);
-        let mut drawn = Vec::new();
-        for ModelShape { id, shape } in &cache.shapes {
-            drawn.extend(self.curve(id, shape, &cache.omega));
+    /// Returns the curves, coloured by airspeed. `cache` keeps the uncorrected shapes until the
+    /// responses change.
+    pub fn curves(&self, cache: &mut AirspeedCache) -> AirspeedCurves {
+        cache.refresh(self);
+        let mut curves = AirspeedCurves::default();
+        let mut optima = Vec::new();
+        for shapes in &cache.shapes {
+            let Some(condition) = self.dataset.condition(shapes.condition) else {
+                continue;
+            };
+            if !self.conditions.contains(&shapes.condition) {
+                continue;
+            }
+            for role in self.roles {
+                if let Some(shape) = self.shape(shapes, condition, *role, &cache.omega) {
+                    let curve = self.curve(condition, *role);
+                    let curve = curve.with(&cache.omega, &shape.magnitude_db, &shape.phase_deg);
+                    curves.responses.push(curve);
+                }
+            }
+            if let Some(error) = self.error(shapes, condition, AcrossRole::Scheduled, &cache.omega)
+            {
+                let curve = self.curve(condition, AcrossRole::Scheduled);
+                let curve = curve.with(&cache.omega, &error.magnitude_db, &error.phase_deg);
+                curves.errors.push(curve);
+            }
+            optima.extend(self.error(shapes, condition, AcrossRole::Corrected, &cache.omega));
         }
-        drawn
+        curves.optima = range_over(&optima, &cache.omega);
+        curves
     }
 
-    /// Returns the curve of a condition; `None` without the condition or the correction.
-    fn curve(&self, id: &ModelId, shape: &ResponseShape, omega: &Arc<[f64]>) -> Option<BodeCurve> {
-        let condition = self.dataset.condition(id.condition)?;
-        let correction = self
-            .role
-            .correction(id.condition, self.pair, self.analysis)?;
-        let shape = if correction == GainDelay::NONE {
-            shape.clone()
-        } else {
-            shape.corrected(omega, correction)
+    /// Returns the response of a role in a condition; `None` without the model or its correction.
+    fn shape(
+        &self,
+        shapes: &ConditionShapes,
+        condition: &Condition,
+        role: AcrossRole,
+        omega: &[f64],
+    ) -> Option<ResponseShape> {
+        let shape = match role {
+            AcrossRole::Identified => shapes.identified.as_ref()?,
+            AcrossRole::Representative => shapes.physics.as_ref()?,
+            AcrossRole::Nominal => shapes.nominal.as_ref()?,
+            AcrossRole::Scheduled | AcrossRole::Corrected => shapes.coupled.as_ref()?,
         };
+        let correction = role.correction(condition, self.pair, self.analysis)?;
+        if correction == GainDelay::NONE {
+            return Some(shape.clone());
+        }
+        Some(shape.corrected(omega, correction))
+    }
+
+    /// Returns the difference between the model of a role and the identified model of a condition;
+    /// `None` where one of them is missing.
+    fn error(
+        &self,
+        shapes: &ConditionShapes,
+        condition: &Condition,
+        role: AcrossRole,
+        omega: &[f64],
+    ) -> Option<ResponseShape> {
+        let identified = shapes.identified.as_ref()?;
+        let points = points_up_to(omega, self.band.max());
+        let model = self
+            .shape(shapes, condition, role, omega)?
+            .phase_aligned(identified, points);
+        Some(ResponseShape {
+            magnitude_db: difference(&model.magnitude_db, &identified.magnitude_db),
+            phase_deg: difference(&model.phase_deg, &identified.phase_deg),
+        })
+    }
+
+    /// Returns the empty curve of a role in a condition.
+    fn curve(&self, condition: &Condition, role: AcrossRole) -> BodeCurve {
         let state = condition.flight_state();
-        let (slowest_kt, fastest_kt) = self.dataset.airspeed_range_kt();
-        let color_role = Role::of_airspeed(state.airspeed_kt, slowest_kt, fastest_kt);
-        let curve = BodeCurve {
-            label: format!("condition {} · {:.0} kt", id.condition, state.airspeed_kt),
-            detail: format!("{} · {}", state.name, id.name),
-            ..BodeCurve::new(CurveId::Model(id.clone()), color_role)
-        };
-        Some(curve.with(omega, &shape.magnitude_db, &shape.phase_deg))
+        let step = Role::airspeed_step(state.airspeed_kt, self.dataset.airspeed_range_kt());
+        let mut detail = state.name.clone();
+        if let Some(model) = role.model(condition, self.analysis) {
+            detail = format!("{detail} · {}", model.name);
+        }
+        let id = condition.id();
+        BodeCurve {
+            label: format!(
+                "condition {id} · {:.0} kt, {}",
+                state.airspeed_kt,
+                role.name()
+            ),
+            detail,
+            ..BodeCurve::new(
+                CurveId::OfCondition(id, role),
+                Role::OfAirspeed(step, line_of(role)),
+            )
+        }
     }
 }
 
-/// Shape of a response of a model, in one of the conditions.
-#[derive(Debug)]
-struct ModelShape {
-    id: ModelId,
-    shape: ResponseShape,
+/// Returns the line of a role.
+pub fn line_of(role: AcrossRole) -> AirspeedLine {
+    match role {
+        AcrossRole::Identified => AirspeedLine::Identified,
+        AcrossRole::Scheduled => AirspeedLine::Scheduled,
+        AcrossRole::Corrected => AirspeedLine::Corrected,
+        AcrossRole::Representative => AirspeedLine::Representative,
+        AcrossRole::Nominal => AirspeedLine::Nominal,
+    }
 }
 
-/// Data from which the shapes of a response in several conditions are computed.
-#[derive(Debug)]
-struct AirspeedSource {
-    curves: Arc<AcrossCurves>,
-    pair: Pair,
+/// Returns the number of leading frequencies up to `limit` \[rad/s\].
+fn points_up_to(omega: &[f64], limit: f64) -> usize {
+    // The last frequency of a grid may exceed its limit by a rounding error.
+    omega.partition_point(|omega| *omega <= limit * (1.0 + 1e-9))
 }
 
-/// Shapes of a response of one model in each condition, kept until their source changes.
+fn difference(values: &[f64], others: &[f64]) -> Arc<[f64]> {
+    values
+        .iter()
+        .zip(others)
+        .map(|(value, other)| value - other)
+        .collect()
+}
+
+/// Returns the smallest and the largest error at each frequency; `None` without errors.
+fn range_over(errors: &[ResponseShape], omega: &[f64]) -> Option<BodeBand> {
+    if errors.is_empty() {
+        return None;
+    }
+    let mut band = BodeBand {
+        omega: omega.to_vec(),
+        ..BodeBand::default()
+    };
+    for index in 0..omega.len() {
+        band.magnitude_db
+            .push(ends(errors.iter().map(|error| error.magnitude_db[index])));
+        band.phase_deg
+            .push(ends(errors.iter().map(|error| error.phase_deg[index])));
+    }
+    Some(band)
+}
+
+/// Returns the smallest and the largest finite value; NaN without one.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let mut ends = [f64::NAN; 2];
+    for value in values {
+        if value.is_finite() {
+            ends = [ends[0].min(value), ends[1].max(value)];
+        }
+    }
+    ends
+}
+
+/// Uncorrected shapes of a response in a condition.
+#[derive(Debug)]
+struct ConditionShapes {
+    condition: ConditionId,
+    identified: Option<ResponseShape>,
+    /// Physics representative.
+    physics: Option<ResponseShape>,
+    /// Physics representative with the couplings, to which corrections are applied; the same shape
+    /// without couplings.
+    coupled: Option<ResponseShape>,
+    nominal: Option<ResponseShape>,
+}
+
+/// Shapes of a response in each condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
-    source: Option<AirspeedSource>,
+    curves: Option<Arc<AcrossCurves>>,
+    pair: Option<Pair>,
     omega: Arc<[f64]>,
-    shapes: Vec<ModelShape>,
+    shapes: Vec<ConditionShapes>,
 }
 
 impl AirspeedCache {
-    /// Computes the shapes of a response; phases are aligned with the first model.
-    fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
-        if let Some(known) = &self.source
-            && Arc::ptr_eq(&known.curves, curves)
-            && known.pair == pair
+    /// Computes the shapes of a response. Phases of the identified models are aligned with the
+    /// first condition, those of the physics models with the identified model of their condition.
+    fn refresh(&mut self, response: &AirspeedResponse<'_>) {
+        if let Some(known) = &self.curves
+            && Arc::ptr_eq(known, response.responses)
+            && self.pair == Some(response.pair)
         {
             return;
         }
+        self.omega = response.responses.grid.omega().into();
         self.shapes.clear();
-        for (id, response) in &curves.responses {
-            let mut shape = ResponseShape::new(response.curve(pair));
-            if let Some(first) = self.shapes.first() {
-                shape = shape.phase_aligned(&first.shape, usize::MAX);
+        let mut first = None;
+        for condition in response.dataset.conditions() {
+            let source = ShapeSource {
+                response,
+                condition,
+                points: points_up_to(&self.omega, response.band.max()),
+            };
+            let shapes = source.shapes(first.as_ref());
+            if first.is_none() {
+                first.clone_from(shapes.any());
             }
-            self.shapes.push(ModelShape {
-                id: id.clone(),
-                shape,
-            });
+            self.shapes.push(shapes);
         }
-        self.omega = curves.grid.omega().into();
-        self.source = Some(AirspeedSource {
-            curves: Arc::clone(curves),
-            pair,
-        });
+        self.curves = Some(Arc::clone(response.responses));
+        self.pair = Some(response.pair);
+    }
+}
+
+/// Responses of the models of a condition.
+struct ShapeSource<'a> {
+    response: &'a AirspeedResponse<'a>,
+    condition: &'a Condition,
+    /// Number of leading frequencies over which phases are aligned.
+    points: usize,
+}
+
+impl ShapeSource<'_> {
+    /// Returns the shapes; `first` is the shape of another condition with which phases are aligned.
+    fn shapes(&self, first: Option<&ResponseShape>) -> ConditionShapes {
+        let identified = self.shape(AcrossRole::Identified, first);
+        let reference = identified.as_ref().or(first).cloned();
+        let reference = reference.as_ref();
+        ConditionShapes {
+            condition: self.condition.id(),
+            physics: self.shape(AcrossRole::Representative, reference),
+            coupled: self.shape(AcrossRole::Corrected, reference),
+            nominal: self.shape(AcrossRole::Nominal, reference),
+            identified,
+        }
+    }
+
+    /// Returns the shape of the model of a role before its correction; `None` without its response.
+    fn shape(&self, role: AcrossRole, reference: Option<&ResponseShape>) -> Option<ResponseShape> {
+        let model = role.model(self.condition, self.response.analysis)?;
+        let found = self.response.responses.model(&model)?;
+        let response = match &found.coupled {
+            Some(coupled) if role.is_corrected() => coupled,
+            _ => &found.response,
+        };
+        let shape = ResponseShape::new(response.curve(self.response.pair));
+        Some(match reference {
+            Some(reference) => shape.phase_aligned(reference, self.points),
+            None => shape,
+        })
+    }
+}
+
+impl ConditionShapes {
+    /// Returns the shape with which the phases of other conditions are aligned.
+    fn any(&self) -> &Option<ResponseShape> {
+        if self.identified.is_some() {
+            &self.identified
+        } else {
+            &self.nominal
+        }
     }
 }

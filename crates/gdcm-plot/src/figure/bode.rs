@@ -1,15 +1,8 @@
-//! Responses in one or several conditions: magnitude above phase over frequency (Figures 2 and 5),
-//! with the measured coherence below; and an overview of all magnitudes in a condition.
-
-use std::sync::Arc;
+//! Responses in a condition: magnitude above phase over frequency (Figures 2 and 5), with the
+//! measured coherence below; and an overview of all magnitudes in a condition.
 
 use gdcm_model::dataset::{Band as BandOfComparison, Pair};
-use gdcm_model::progress::Unobserved;
 use gdcm_model::units::db_to_ratio;
-use gdcm_study::jobs::curve_jobs::{AcrossJob, AcrossRole};
-use gdcm_study::jobs::job::Job;
-use gdcm_study::results::analysis::Analysis;
-use gdcm_study::stages::condition_curves::{CURVE_POINTS, display_band};
 
 pub use super::bode_options::BodeOptions;
 pub use super::coherence::CoherenceCurve;
@@ -17,16 +10,14 @@ pub use super::coherence::CoherenceCurve;
 use super::axis::{Axis, MagnitudeUnit, Range};
 use super::bode_curve::{BodeCurve, Pane};
 use super::coherence::coherence_panel;
-use super::condition_source::{ConditionSource, settings_words};
+use super::condition_source::ConditionSource;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::frequency_panels::{FrequencyPanels, figure_of_pairs, side_by_side};
+use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 use super::marks::{Band, Note, Place, Rule};
 use super::muad::muad_about;
 use super::reference_line::ReferenceLine;
-use super::responses::{
-    AirspeedCache, AirspeedResponse, BodeBand, ResponseCache, fitted_values, uncertainty_bands,
-};
+use super::responses::{BodeBand, ResponseCache, fitted_values, uncertainty_bands};
 use super::role::Role;
 
 /// Background of the band of comparison.
@@ -71,18 +62,19 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
 }
 
 /// Contents of the plot of a response, magnitude above phase.
-struct ResponsePlot<'a> {
-    curves: &'a [BodeCurve],
-    bands: &'a [BodeBand],
-    references: &'a [ReferenceLine],
+pub(super) struct ResponsePlot<'a> {
+    pub(super) curves: &'a [BodeCurve],
+    pub(super) bands: &'a [BodeBand],
+    pub(super) references: &'a [ReferenceLine],
     /// Unit of magnitudes drawn as ratios.
-    ratio_unit: &'a str,
-    band: BandOfComparison,
-    options: &'a BodeOptions,
+    pub(super) ratio_unit: &'a str,
+    pub(super) band: BandOfComparison,
+    pub(super) options: &'a BodeOptions,
 }
 
 impl ResponsePlot<'_> {
-    fn plot(&self) -> Plot {
+    /// Builds the plot, magnitude above phase.
+    pub(super) fn plot(&self) -> Plot {
         let magnitude = self.magnitude_panel();
         let phase = self.phase_panel();
         Plot::default()
@@ -189,64 +181,12 @@ impl ResponsePlot<'_> {
 }
 
 /// Returns the shading of the band of comparison.
-fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
+pub(super) fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
     Band {
         range: options.in_unit(band.min(), band.max()),
         color: BAND,
         key: "band of comparison".to_owned(),
     }
-}
-
-/// Plots the responses `pairs` of a model in every condition, magnitude above phase, from blue for
-/// the slowest condition to amber for the fastest. `None` if no condition has such a model.
-pub fn airspeeds_figure(
-    analysis: &Analysis,
-    pairs: &[Pair],
-    role: AcrossRole,
-    options: &BodeOptions,
-) -> Option<Figure> {
-    let dataset = &analysis.study.dataset;
-    let settings = &analysis.study.settings;
-    let grid = (display_band(settings.band), CURVE_POINTS);
-    let job = AcrossJob::for_role(dataset, Some(analysis), role, grid);
-    let across = job.run(&mut (), &Unobserved).ok()?;
-    if across.responses.is_empty() {
-        return None;
-    }
-    let across = Arc::new(across);
-    let options = BodeOptions {
-        unit: options.unit,
-        omega: options.omega,
-        values: options.values,
-        ..BodeOptions::default()
-    };
-    let title = match pairs {
-        [pair] => format!(
-            "{} · every condition, {}",
-            dataset.pair_name(*pair),
-            role.name()
-        ),
-        _ => format!("Every condition, {}", role.name()),
-    };
-    let figure = side_by_side(dataset, pairs, title, |pair| {
-        let response = AirspeedResponse {
-            dataset,
-            analysis: Some(analysis),
-            role,
-            pair,
-            responses: &across,
-        };
-        let contents = ResponsePlot {
-            curves: &response.curves(&mut AirspeedCache::default()),
-            bands: &[],
-            references: &[],
-            ratio_unit: "",
-            band: settings.band,
-            options: &options,
-        };
-        contents.plot()
-    });
-    Some(figure.caption(settings_words(dataset, settings)))
 }
 
 /// Plots the magnitude of every response in a condition: outputs in rows, inputs in columns, with J

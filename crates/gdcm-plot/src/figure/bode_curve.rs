@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::ModelId;
+use gdcm_model::dataset::{ConditionId, ModelId};
+use gdcm_study::AcrossRole;
 
 use super::range::Range;
 use super::role::Role;
@@ -21,6 +22,8 @@ pub enum CurveId {
     Coupled,
     /// Representative physics model in a study variant, with the correction from that variant.
     Variant,
+    /// Model of one of several conditions.
+    OfCondition(ConditionId, AcrossRole),
 }
 
 /// Upper or lower panel of a Bode plot.

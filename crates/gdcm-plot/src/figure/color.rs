@@ -26,8 +26,8 @@ pub enum Hue {
     Warning,
     /// Proofs of optimality, and improvements.
     Good,
-    /// Airspeed, from 0 in the colour of perturbed models to 255 in the colour of identified
-    /// models; distinguishable by colour-blind readers.
+    /// Airspeed, from 0 at the lowest to 255 at the highest; the colours of [`AIRSPEED_STOPS`]
+    /// differ in lightness, and no role has them.
     OfAirspeed(u8),
 }
 
@@ -48,15 +48,46 @@ impl Hue {
             Self::Warning => 0xa9410a,
             Self::Good => 0x187049,
             Self::OfAirspeed(step) => {
+                let place = AirspeedPlace::new(step);
                 return mixed(
-                    Self::Perturbed.on_paper(),
-                    Self::Identified.on_paper(),
-                    f64::from(step) / 255.0,
+                    channels(AIRSPEED_STOPS[place.stop]),
+                    channels(AIRSPEED_STOPS[place.stop + 1]),
+                    place.part,
                 );
             }
         };
-        [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
+        channels(rgb)
     }
+}
+
+/// Colours of airspeeds on paper and in the light theme, at equal distances from the lowest to the
+/// highest airspeed.
+const AIRSPEED_STOPS: [u32; 5] = [0x3a1f7a, 0x7a2f95, 0xb04487, 0xcf6f8f, 0xdd9aa4];
+
+/// Place of an airspeed between two of the five colours of a ramp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirspeedPlace {
+    /// Index of the colour below, from 0 to 3.
+    pub stop: usize,
+    /// Share of the colour above, from 0 to 1.
+    pub part: f64,
+}
+
+impl AirspeedPlace {
+    /// Returns the place of an airspeed from 0 at the lowest to 255 at the highest.
+    pub fn new(step: u8) -> Self {
+        let intervals = (AIRSPEED_STOPS.len() - 1) as f64;
+        let place = f64::from(step) / 255.0 * intervals;
+        let stop = place.floor().min(intervals - 1.0);
+        Self {
+            stop: stop as usize,
+            part: place - stop,
+        }
+    }
+}
+
+fn channels(rgb: u32) -> [u8; 3] {
+    [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
 }
 
 /// Interpolates linearly between two colours: `part` = 0 gives `from`, `part` = 1 gives `to`.
@@ -111,6 +142,19 @@ impl Color {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_ramp_of_airspeeds_runs_through_its_colours() {
+        let ramp = [0, 64, 128, 191, 255].map(|step| Hue::OfAirspeed(step).on_paper());
+        for (found, stop) in ramp.into_iter().zip(AIRSPEED_STOPS) {
+            for (found, stop) in found.into_iter().zip(channels(stop)) {
+                // A step of the ramp changes a channel by less than 2.
+                assert!(found.abs_diff(stop) <= 2, "{found} instead of {stop}");
+            }
+        }
+        assert_eq!(ramp[0], channels(AIRSPEED_STOPS[0]));
+        assert_eq!(ramp[4], channels(AIRSPEED_STOPS[4]));
+    }
 
     #[test]
     fn a_tint_lies_between_the_colour_and_white() {

@@ -1,7 +1,7 @@
 //! A figure laid out on paper: shapes and texts at their positions, identical in every file format.
 
 pub use super::area::Area;
-pub use super::color::{Color, Hue};
+pub use super::color::{AirspeedPlace, Color, Hue};
 pub use super::stroke::{Dash, Stroke};
 
 use super::thinning::{Pixel, thinned};

@@ -72,7 +72,7 @@ impl FrequencyPanels<'_> {
                 .map(|value| convert(*value))
                 .collect();
             let key = match curve.role {
-                Role::OfAirspeed(_) => curve.label.as_str(),
+                Role::OfAirspeed(..) => airspeed_key(&curve.label),
                 role => role.key(curve.rejected),
             };
             let stroke = curve.role.stroke(curve.rejected);
@@ -111,6 +111,15 @@ impl FrequencyPanels<'_> {
             edge: None,
             points,
         }
+    }
+}
+
+/// Returns the legend of a curve labelled "condition 3 · 45 kt, scheduled": without the condition,
+/// so that conditions at the same airspeed share an entry.
+fn airspeed_key(label: &str) -> &str {
+    match label.split_once(" · ") {
+        Some((_, key)) => key,
+        None => label,
     }
 }
 

@@ -9,6 +9,7 @@ pub use super::condition_classes::{Classes, class_names};
 pub use super::gain_quantity::{Across, GainAxes, GainQuantity, Measure};
 
 use super::condition_source::{schedule_words, settings_words};
+use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::gain_panel::{GainPanel, SIGNIFICANT};
 use super::gain_quantity::placed_results;
@@ -20,6 +21,9 @@ const ASPECT: f64 = 0.95;
 const ASPECT_WITH_BARS: f64 = 1.3;
 /// Size of the dots of an overlaid variant, relative to the usual dot.
 const VARIANT_DOT: f64 = 0.7;
+/// Optima and schedule before a change of settings.
+const PREVIOUS: Color = Color::new(Hue::Rejected);
+const PREVIOUS_DOT: f64 = 0.5;
 
 /// Plots the net gain of each pair at the optimum of each condition, and the schedule (Figures 6
 /// and 7); with error bars and bands if `uncertainty` contains them.
@@ -125,14 +129,48 @@ pub fn add_variant(
         .iter_mut()
         .flat_map(|plot| plot.panels.first_mut());
     for (panel, quantity) in panels.zip(quantities) {
-        let marks = variant_marks(*quantity, analysis, name);
-        let first_dots = panel
-            .marks
-            .iter()
-            .position(|mark| matches!(mark, Mark::Dots(_)))
-            .unwrap_or(panel.marks.len());
-        panel.marks.splice(first_dots..first_dots, marks);
+        put_behind_dots(panel, variant_marks(*quantity, analysis, name));
     }
+}
+
+/// Adds the optima and the schedule before a change of settings to plots against airspeed, in grey
+/// behind the existing dots. `quantities` lists the quantity of each plot, in order.
+pub fn add_previous(figure: &mut Figure, quantities: &[GainQuantity], analysis: &Analysis) {
+    let panels = figure
+        .plots
+        .iter_mut()
+        .flat_map(|plot| plot.panels.first_mut());
+    for (panel, quantity) in panels.zip(quantities) {
+        put_behind_dots(panel, previous_marks(*quantity, analysis));
+    }
+}
+
+/// Inserts marks before the first dots of a panel, so that the dots cover them.
+fn put_behind_dots(panel: &mut Panel, marks: Vec<Mark>) {
+    let first_dots = panel
+        .marks
+        .iter()
+        .position(|mark| matches!(mark, Mark::Dots(_)))
+        .unwrap_or(panel.marks.len());
+    panel.marks.splice(first_dots..first_dots, marks);
+}
+
+/// Returns the schedule before a change of settings, if any, and the optima, as marks.
+fn previous_marks(quantity: GainQuantity, analysis: &Analysis) -> Vec<Mark> {
+    let across = Across::Airspeed;
+    let mut marks = Vec::new();
+    if let Some(schedule) = quantity.measure().schedule_of(analysis, across) {
+        let samples = quantity.samples(schedule);
+        let stroke = Stroke::dashed(PREVIOUS, 0.9, Dash::Long);
+        marks.push(Curve::through("previous schedule", stroke, samples).into());
+    }
+    let mut dots = Dots::new("previous", DotShape::Circle, PREVIOUS);
+    dots.size = PREVIOUS_DOT;
+    for placed in placed_results(analysis, across) {
+        dots = dots.dot(placed.x, quantity.value_in(&placed.result.correction), "");
+    }
+    marks.push(Mark::Dots(dots));
+    marks
 }
 
 /// Returns the schedule of a variant, if any, and its optima, as marks.
@@ -159,8 +197,9 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
 }
 
 /// Removes labels and brackets from net-gain plots for the screen, where labels appear under the
-/// pointer. Kept are the label of the condition `selected` and, if `shows_differences` is set, the
-/// brackets of significant differences with the labels of the dots at their ends.
+/// pointer. Kept are the label of the condition `selected`, whose dot has a ring, and, if
+/// `shows_differences` is set, the brackets of significant differences with the labels of the dots
+/// at their ends.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
         panel.marks.retain(|mark| match mark {
@@ -172,6 +211,7 @@ pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) 
             let Mark::Dots(group) = mark else {
                 continue;
             };
+            group.ringed = Some(selected.clone());
             for dot in &mut group.dots {
                 if dot.id.as_ref() != Some(selected) && !ends.contains(&[dot.x, dot.y]) {
                     dot.label.clear();

@@ -67,6 +67,9 @@ pub struct Dots {
     /// Diameter relative to a dot of usual size.
     pub size: f64,
     pub dots: Vec<Dot>,
+    /// Object around whose dots the screen draws rings of radius [`RING_PT`]. Labels lie outside
+    /// the rings.
+    pub ringed: Option<MarkId>,
 }
 
 /// Identity of the object that a dot represents, for the pointer in the window.
@@ -86,6 +89,9 @@ pub struct Dot {
     /// Object that the dot represents; `None` if the dot does not react to the pointer.
     pub id: Option<MarkId>,
 }
+
+/// Radius of the ring around a dot in focus \[pt\].
+pub const RING_PT: f64 = 4.5;
 
 /// Symbol with which a dot is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -299,6 +305,7 @@ impl Dots {
             filled: true,
             size: 1.0,
             dots: Vec::new(),
+            ringed: None,
         }
     }
 

@@ -12,7 +12,7 @@
 //! | [`role`], `color`, `stroke` | line styles and colours by meaning |
 //! | [`request`] | kinds of figures; the figure for a request |
 //! | [`drawing`], `area` | shapes and texts on paper |
-//! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`physics`], [`leads`], [`requirements`] | a figure for each view |
+//! | [`bode`], [`airspeeds`], [`error`], [`gains`], [`schedule_cost`], [`assessment`], [`poles`], [`physics`], [`leads`], [`requirements`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
@@ -39,6 +39,7 @@
 //! ```
 
 mod airspeed_response;
+pub mod airspeeds;
 mod area;
 mod arrow;
 pub mod assessment;
@@ -91,6 +92,7 @@ pub mod request;
 pub mod requirements;
 pub mod responses;
 pub mod role;
+pub mod schedule_cost;
 mod stroke;
 pub mod tables;
 pub mod thinning;

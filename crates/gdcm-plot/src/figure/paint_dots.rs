@@ -4,11 +4,13 @@ use super::dot_style::{DOT, DotStyle};
 use super::drawing::{Area, Color, Dash, Shape, Stroke, Text};
 use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::letters::width;
-use super::marks::{Brackets, Curve, Dots, Mark};
+use super::marks::{Brackets, Curve, Dots, Mark, RING_PT};
 use super::placed::{HOOK, Placed};
 
 /// Line between a dot and a label that is not next to it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
+/// Half of the line width of a ring, which a label must not touch \[pt\].
+const RING_MARGIN: f64 = 0.5;
 /// Height of digits, which have no descenders, relative to the font size.
 const DIGIT_HEIGHT: f64 = 0.74;
 
@@ -74,8 +76,13 @@ fn add_dots<'m>(
             && placed.shows(center)
         {
             shapes.extend(style.shapes(center));
+            let radius = if dot.id.is_some() && dot.id == group.ringed {
+                RING_PT + RING_MARGIN
+            } else {
+                DOT
+            };
             labels.push(Label {
-                dot: labelled_dot(placed, center, DOT, &dot.label),
+                dot: labelled_dot(placed, center, radius, &dot.label),
                 words: &dot.label,
                 color: Color::DIM,
             });
@@ -156,4 +163,43 @@ fn upright_bar([from, to]: [[f64; 2]; 2], width: f64) -> Area {
     let top = from[1].min(to[1]);
     let bottom = from[1].max(to[1]);
     Area::new(from[0] - 0.5 * width, top, width, bottom - top)
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::dataset::ConditionId;
+
+    use super::super::axis::Axis;
+    use super::super::figure::Panel;
+    use super::super::marks::{DotShape, MarkId};
+    use super::super::range::Range;
+    use super::*;
+
+    #[test]
+    fn the_label_of_a_ringed_dot_is_outside_its_ring() {
+        const LETTERS_PT: f64 = 6.0;
+        let mut panel = Panel::new(Axis::linear("x"), Axis::linear("y"));
+        let mut dots = Dots::new("dots", DotShape::Circle, Color::DIM).dot(0.5, 0.5, "10");
+        let id = MarkId::Condition(ConditionId(10));
+        dots.dots[0].id = Some(id.clone());
+        dots.ringed = Some(id);
+        panel.marks.push(Mark::Dots(dots));
+        let unit = Range { min: 0.0, max: 1.0 };
+        let painted = panel.shapes(Area::new(0.0, 0.0, 100.0, 60.0), [unit, unit], LETTERS_PT);
+        let center: [f64; 2] = [50.0, 30.0];
+        let mut labels = 0;
+        for shape in painted.shapes {
+            let Shape::Text(text) = shape else {
+                continue;
+            };
+            labels += 1;
+            let [left, bottom] = text.at;
+            let top = bottom - DIGIT_HEIGHT * LETTERS_PT;
+            let right = left + LETTERS_PT * width("10");
+            let dx = center[0] - center[0].clamp(left, right);
+            let dy = center[1] - center[1].clamp(top, bottom);
+            assert!(dx.hypot(dy) > RING_PT, "{left} {bottom}");
+        }
+        assert_eq!(labels, 1);
+    }
 }

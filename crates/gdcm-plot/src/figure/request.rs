@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channel;
-use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::curve_jobs::{AcrossRole, ConditionModes};
 use gdcm_study::results::analysis::Analysis;
@@ -14,8 +14,9 @@ use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::test_input_responses::TestAnswers;
 
+use super::airspeeds::airspeeds_figure;
 use super::assessment::{assessment_figure, evidence_figure, usual_choice};
-use super::bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
+use super::bode::{BodeOptions, bode_figure, overview_figure};
 use super::condition_source::ConditionSource;
 use super::error::error_figure;
 use super::figure::Figure;
@@ -24,6 +25,7 @@ use super::leads::leads_figure;
 use super::physics::physics_figure;
 use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
 use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
+use super::schedule_cost::schedule_cost_figure;
 
 /// Kinds of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -53,12 +55,15 @@ pub enum FigureKind {
     Physics,
     /// Phase delay over bandwidth of attitude responses, or model responses over time.
     Requirements,
-    /// A response in every condition, coloured by airspeed.
+    /// A response in every condition, coloured by airspeed, with the error of the schedule.
     Airspeeds,
+    /// Net gain of a response over airspeed, and its J before and after the correction and under
+    /// the schedule.
+    ScheduleCost,
 }
 
 impl FigureKind {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -72,6 +77,7 @@ impl FigureKind {
         Self::Physics,
         Self::Requirements,
         Self::Airspeeds,
+        Self::ScheduleCost,
     ];
 
     /// Returns the name used in commands and file names.
@@ -90,6 +96,7 @@ impl FigureKind {
             Self::Physics => "physics",
             Self::Requirements => "requirements",
             Self::Airspeeds => "airspeeds",
+            Self::ScheduleCost => "schedule-cost",
         }
     }
 
@@ -100,7 +107,7 @@ impl FigureKind {
 
     /// Returns whether the figure shows error bars if these are available.
     pub fn takes_bars(self) -> bool {
-        matches!(self, Self::NetGain | Self::Channels)
+        matches!(self, Self::NetGain | Self::Channels | Self::ScheduleCost)
     }
 
     /// Returns whether the figure shows a single condition.
@@ -134,8 +141,11 @@ pub struct FigureRequest {
     pub across: Across,
     /// Choice for [`FigureKind::Assessment`]; [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
-    /// Role of the model drawn for each condition in [`FigureKind::Airspeeds`].
-    pub across_role: AcrossRole,
+    /// Roles of the models drawn for each condition in [`FigureKind::Airspeeds`]; if empty,
+    /// [`AcrossRole::SHOWN_AT_FIRST`].
+    pub across_roles: Vec<AcrossRole>,
+    /// Conditions in [`FigureKind::Airspeeds`]; if empty, all.
+    pub across_conditions: Vec<ConditionId>,
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
     pub physics: Option<Arc<PhysicsAssessment>>,
@@ -188,10 +198,26 @@ impl FigureRequest {
                 couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit)
             }
             FigureKind::Physics => self.physics_figure(analysis?),
-            FigureKind::Airspeeds => {
-                airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode)
+            FigureKind::Airspeeds => self.airspeeds_figure(analysis?),
+            FigureKind::ScheduleCost => {
+                let analysis = analysis?;
+                let uncertainty = analysis.uncertainty.as_deref();
+                schedule_cost_figure(analysis, uncertainty, *self.pairs.first()?)
             }
         }
+    }
+
+    fn airspeeds_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        let roles = if self.across_roles.is_empty() {
+            &AcrossRole::SHOWN_AT_FIRST[..]
+        } else {
+            &self.across_roles
+        };
+        let mut conditions = self.across_conditions.clone();
+        if conditions.is_empty() {
+            conditions.extend(analysis.study.dataset.ids());
+        }
+        airspeeds_figure(analysis, &self.pairs, roles, &conditions, &self.bode)
     }
 
     fn channels_figure(&self, analysis: &Analysis) -> Option<Figure> {

@@ -3,13 +3,13 @@
 
 use gdcm_method::requirements::LevelBoundaries;
 use gdcm_method::requirements::level_boundary::LevelBoundary;
-use gdcm_model::dataset::{Dataset, Pair};
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 
-pub use super::time_histories::{record_history_figure, test_answers_figure};
+pub use super::time_histories::{quantity_figure, record_history_figure, test_answers_figure};
 
 use super::arrow::{arrow, spans};
 use super::axis::Axis;
@@ -29,6 +29,10 @@ const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] of a dot whose bandwidth or phase delay depends on the model above the band.
 const DEPENDENT_TINT: u8 = 45;
+/// Strength \[%\] of the dots of the conditions that are not selected.
+const OTHER_TINT: u8 = 60;
+/// Strength \[%\] of a shaded tolerance.
+const TOLERANCE_TINT: u8 = 9;
 
 /// Names of bandwidth and phase delay in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
@@ -85,6 +89,142 @@ pub fn requirements_figure(
         .columns(2)
         .aspect(0.66)
         .plots(plots)
+}
+
+/// A response in the plot of a single requirement.
+#[derive(Clone, Copy)]
+pub struct BandwidthDetail<'a> {
+    pub requirements: &'a Requirements,
+    pub levels: &'a LevelBoundaries,
+    pub pair: Pair,
+    /// The condition with full colours, intervals and tolerances.
+    pub condition: ConditionId,
+    /// Role of the corrected model.
+    pub role: RequirementRole,
+    /// Maximum relative difference of the bandwidth from that of the identified model.
+    pub bandwidth: f64,
+    /// Maximum difference of the phase delay from that of the identified model \[s\].
+    pub phase_delay_s: f64,
+}
+
+/// Plots phase delay over bandwidth of a response in all conditions: physics, corrected and
+/// identified model of each; the tolerances about the identified model of one condition are shaded.
+pub fn bandwidth_detail_figure(detail: &BandwidthDetail<'_>, dataset: &Dataset) -> Figure {
+    let axis = &dataset.outputs()[detail.pair.output].name;
+    let x = Axis::linear("bandwidth [rad/s]");
+    let y = Axis::linear("phase delay [ms]").including(0.0);
+    let panel = Panel::new(x, y)
+        .with_all(detail.tolerances())
+        .with_all(areas_beyond(detail.levels, axis))
+        .with_all(boundaries(detail.levels, axis))
+        .with_all(detail.marks());
+    let plot = Plot::new("").panel(panel);
+    let title = format!("{}: attitude", dataset.pair_name(detail.pair));
+    Figure::new(title).aspect(0.66).plots([plot])
+}
+
+impl BandwidthDetail<'_> {
+    /// Shades the range of bandwidths within the tolerance, and more strongly the part of it in which
+    /// the phase delay is within its tolerance too.
+    fn tolerances(&self) -> Vec<Envelope> {
+        let flown =
+            self.requirements
+                .bandwidth_of(self.condition, self.pair, RequirementRole::Identified);
+        let Some([omega, delay_ms]) = flown.and_then(bandwidth_place) else {
+            return Vec::new();
+        };
+        let tolerance_ms = s_to_ms(self.phase_delay_s);
+        let from = omega * (1.0 - self.bandwidth);
+        let to = omega * (1.0 + self.bandwidth);
+        vec![
+            tolerance_area(
+                "tolerance of the bandwidth",
+                [from, to],
+                [-BEYOND_MS, BEYOND_MS],
+            ),
+            tolerance_area(
+                "tolerance of the phase delay",
+                [from, to],
+                [delay_ms - tolerance_ms, delay_ms + tolerance_ms],
+            ),
+        ]
+    }
+
+    fn marks(&self) -> Vec<Mark> {
+        let mut marks: Vec<Mark> = Vec::new();
+        marks.extend(self.arrows().into_iter().map(Mark::from));
+        let of_pair = PairFindings {
+            requirements: self.requirements,
+            pair: self.pair,
+        };
+        let roles = [
+            RequirementRole::Identified,
+            RequirementRole::Physics,
+            self.role,
+        ];
+        for is_selected in [false, true] {
+            for role in roles {
+                let (shape, color) = dot_style(role);
+                let mut dots = if is_selected {
+                    Dots::new(role.name(), shape, color).key(role.name())
+                } else {
+                    Dots::new(role.name(), shape, color.tint(OTHER_TINT))
+                };
+                dots.size = if is_selected { 1.2 } else { 0.8 };
+                for finding in of_pair.with_role(role) {
+                    if (finding.condition == self.condition) == is_selected
+                        && let Some([x, y]) = bandwidth_place(finding)
+                    {
+                        dots.dots.push(Dot {
+                            x,
+                            y,
+                            label: String::new(),
+                            id: Some(MarkId::Condition(finding.condition)),
+                        });
+                    }
+                }
+                if !dots.dots.is_empty() {
+                    marks.push(dots.into());
+                }
+            }
+        }
+        marks
+    }
+
+    /// Draws a line from the physics model to the corrected model of each condition.
+    fn arrows(&self) -> Vec<Curve> {
+        let mut lines = Vec::new();
+        for physics in &self.requirements.bandwidth {
+            if physics.pair != self.pair || physics.role != RequirementRole::Physics {
+                continue;
+            }
+            let corrected = self
+                .requirements
+                .bandwidth_of(physics.condition, self.pair, self.role);
+            if let Some(from) = bandwidth_place(physics)
+                && let Some(to) = corrected.and_then(bandwidth_place)
+            {
+                let stroke = if physics.condition == self.condition {
+                    Stroke::solid(Color::new(Hue::Text), 1.2)
+                } else {
+                    ARROW
+                };
+                lines.push(Curve::through("corrected", stroke, [from, to]));
+            }
+        }
+        lines
+    }
+}
+
+/// Shades a rectangle of bandwidths \[rad/s\] and phase delays \[ms\].
+fn tolerance_area(name: &str, omega: [f64; 2], delay_ms: [f64; 2]) -> Envelope {
+    let [low, high] = delay_ms;
+    Envelope {
+        name: name.to_owned(),
+        color: Color::new(Hue::Text).tint(TOLERANCE_TINT),
+        edge: None,
+        points: omega.map(|omega| [omega, low, high]).to_vec(),
+    }
 }
 
 /// Shades the areas beyond the boundaries (lower bandwidth, higher phase delay), wide areas first

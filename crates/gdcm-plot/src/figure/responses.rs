@@ -9,7 +9,7 @@ use gdcm_model::response::response_shape::{ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
 use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
 
-pub use super::airspeed_response::{AirspeedCache, AirspeedResponse};
+pub use super::airspeed_response::{AirspeedCache, AirspeedCurves, AirspeedResponse, line_of};
 pub use super::bode_curve::{BodeCurve, LogFrequencies, Pane};
 pub use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 pub use super::uncertainty_band::{BodeBand, uncertainty_bands};
@@ -149,6 +149,15 @@ pub struct ResponseCache {
 }
 
 impl ResponseCache {
+    /// Returns whether the shapes were computed from these curves. A cache keeps its curves in
+    /// memory.
+    pub fn is_from(&self, curves: &Arc<ConditionCurves>) -> bool {
+        match &self.source {
+            Some(source) => Arc::ptr_eq(&source.curves, curves),
+            None => false,
+        }
+    }
+
     /// Computes the shapes of a response. Phases are aligned with the reference up to the limit of
     /// the displayed band. The curves of identified models end there, because they carry no
     /// information beyond.

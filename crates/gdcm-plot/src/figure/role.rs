@@ -32,7 +32,30 @@ pub enum Role {
     /// Excluded model.
     Rejected,
     /// Model in one of several conditions; 0 at the lowest airspeed, 255 at the highest.
-    OfAirspeed(u8),
+    OfAirspeed(u8, AirspeedLine),
+}
+
+/// Model that is drawn in the colour of its airspeed; it determines width and pattern.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum AirspeedLine {
+    Identified,
+    Scheduled,
+    Corrected,
+    Representative,
+    Nominal,
+}
+
+impl AirspeedLine {
+    /// Returns the line in a colour.
+    fn stroke(self, color: Color) -> Stroke {
+        match self {
+            Self::Identified => Stroke::solid(color, 1.5),
+            Self::Scheduled => Stroke::dashed(color, 1.6, Dash::Long),
+            Self::Corrected => Stroke::solid(color, 0.8),
+            Self::Representative => Stroke::dashed(color, 1.2, Dash::Dotted),
+            Self::Nominal => Stroke::dashed(color, 1.0, Dash::ShortDashDot),
+        }
+    }
 }
 
 impl Role {
@@ -51,14 +74,15 @@ impl Role {
         Self::Rejected,
     ];
 
-    /// Returns the role of a model at an airspeed \[kt\] between `slowest_kt` and `fastest_kt`.
-    pub fn of_airspeed(airspeed_kt: f64, slowest_kt: f64, fastest_kt: f64) -> Self {
+    /// Returns the place of an airspeed \[kt\] in the range of airspeeds, from 0 to 255.
+    pub fn airspeed_step(airspeed_kt: f64, range_kt: (f64, f64)) -> u8 {
+        let (slowest_kt, fastest_kt) = range_kt;
         let part = if fastest_kt > slowest_kt {
             (airspeed_kt - slowest_kt) / (fastest_kt - slowest_kt)
         } else {
             0.0
         };
-        Self::OfAirspeed((255.0 * part.clamp(0.0, 1.0)).round() as u8)
+        (255.0 * part.clamp(0.0, 1.0)).round() as u8
     }
 
     /// Returns the role of an uncorrected model; `represents` states whether it represents its
@@ -87,7 +111,7 @@ impl Role {
             Self::Coupled => "couplings alone",
             Self::Variant => "variant",
             Self::Rejected => "rejected",
-            Self::OfAirspeed(_) => "condition",
+            Self::OfAirspeed(..) => "condition",
         }
     }
 
@@ -133,7 +157,7 @@ impl Role {
             Self::Coupled => Stroke::dashed(perturbed, 2.0, Dash::ShortDashDot),
             Self::Variant => Stroke::dashed(corrected, 1.8, Dash::Dotted),
             Self::Rejected => Stroke::dashed(Color::new(Hue::Rejected), 1.0, Dash::Dotted),
-            Self::OfAirspeed(step) => Stroke::solid(Color::new(Hue::OfAirspeed(step)), 1.8),
+            Self::OfAirspeed(step, line) => line.stroke(Color::new(Hue::OfAirspeed(step))),
         }
     }
 
@@ -155,7 +179,7 @@ impl Role {
     pub fn layer(self, rejected: bool) -> usize {
         match self.shown(rejected) {
             Self::Rejected => 0,
-            Self::Perturbed | Self::OfAirspeed(_) => 1,
+            Self::Perturbed | Self::OfAirspeed(..) => 1,
             Self::Identified => 2,
             Self::Nominal => 3,
             Self::Representative => 4,

@@ -19,17 +19,20 @@ use super::role::Role;
 
 const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
 /// Styles of the flight data and of the corridor about them.
-const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.0);
-const CORRIDOR: Color = Color::new(Hue::Text).tint(14);
+const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
+const CORRIDOR: Color = Color::new(Hue::Text).tint(10);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
-/// Additional width of a curve where it is outside the corridor \[pt\].
+/// Height of the panel with the input in the plot of a single quantity.
+const INPUT_WEIGHT: f64 = 0.36;
+/// Width of a model's curve, and of its parts outside the corridor \[pt\]: thin, so that all models
+/// and the flight data can be told apart.
+const MODEL_PT: f64 = 1.2;
 const OUTSIDE_PT: f64 = 1.8;
 /// Ratio of plot height to width.
 const ASPECT: f64 = 0.4;
 
-/// Returns the line style of a model over time: as in a Bode plot, except that the identified line
-/// is as thin as the others.
+/// Returns the line style of a model over time: as in a Bode plot, but thin.
 fn model_line(role: RequirementRole) -> Stroke {
     let role = match role {
         RequirementRole::Physics => Role::Representative,
@@ -37,7 +40,10 @@ fn model_line(role: RequirementRole) -> Stroke {
         RequirementRole::Scheduled => Role::Scheduled,
         RequirementRole::Identified => Role::Identified,
     };
-    role.line(false)
+    Stroke {
+        width_pt: MODEL_PT,
+        ..role.line(false)
+    }
 }
 
 fn empty_panel(label: &str) -> Panel {
@@ -139,13 +145,38 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .plots(plots)
 }
 
-fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -> Plot {
+/// Plots a single quantity of a record: the input that was moved, the quantity with its corridor,
+/// and the difference from flight, above each other over the same time.
+pub fn quantity_figure(
+    history: &RecordHistory,
+    quantity: &QuantityHistory,
+    dataset: &Dataset,
+    input: usize,
+) -> Figure {
+    let output = &dataset.outputs()[quantity.output].name;
+    let label = format!("{output} [{}]", quantity.unit);
+    let record = empty_panel(&label).with_all(history_marks(quantity, Shown::Recorded));
+    let error = empty_panel("error").with_all(history_marks(quantity, Shown::LessFlight));
+    let plot = Plot::new("")
+        .panel(record_input_panel(history, dataset, input).weight(INPUT_WEIGHT))
+        .panel(record)
+        .panel(error.weight(DIFFERENCE_WEIGHT));
+    let title = format!("{}: {}", history.record, quantity.tolerance.quantity);
+    Figure::new(title).aspect(ASPECT).plots([plot])
+}
+
+fn record_input_panel(history: &RecordHistory, dataset: &Dataset, input: usize) -> Panel {
     let channel = &dataset.inputs()[input];
     let label = format!("{} [{}]", channel.name, channel.unit);
     let flight = &history.flight;
     let samples: Vec<f64> = flight.inputs.column(input).iter().copied().collect();
     let curve = Curve::new(&channel.name, INPUT, flight.time_s.clone(), samples);
-    Plot::new(&label).panel(empty_panel(&label).with(curve))
+    empty_panel(&label).with(curve)
+}
+
+fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -> Plot {
+    let panel = record_input_panel(history, dataset, input);
+    Plot::new(panel.y.label.clone()).panel(panel)
 }
 
 /// Plots a quantity as recorded, and below the difference from flight.
@@ -248,7 +279,7 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
     values
 }
 
-/// Draws the corridor, the flight data, and each model with its parts outside the corridor. The
+/// Draws the corridor, each model with its parts outside the corridor, and the flight data. The
 /// corridor is taken from the corrected model or, without it, from the first model.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
@@ -259,10 +290,6 @@ fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
         return Vec::new();
     };
     let mut marks = vec![Mark::from(corridor(about, shown))];
-    if shown == Shown::Recorded {
-        let flown = values(about, |sample| sample.flown(shown));
-        marks.push(Curve::through("flown", FLOWN, flown).key("flown").into());
-    }
     for (role, check) in history.models.iter().rev() {
         let line = model_line(*role);
         let simulated = values(check, |sample| sample.simulated(shown));
@@ -270,10 +297,15 @@ fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
         marks.push(curve.key(role.name()).into());
         let outside = values(check, |sample| sample.outside(shown));
         if outside.iter().any(|[_, value]| value.is_finite()) {
-            let wide = Stroke::solid(line.color, line.width_pt + OUTSIDE_PT);
+            let wide = Stroke::solid(line.color, OUTSIDE_PT);
             let name = format!("{}, outside", role.name());
             marks.push(Curve::through(name, wide, outside).into());
         }
+    }
+    // The flight data lie on top.
+    if shown == Shown::Recorded {
+        let flown = values(about, |sample| sample.flown(shown));
+        marks.push(Curve::through("flown", FLOWN, flown).key("flown").into());
     }
     marks
 }

@@ -1,16 +1,28 @@
 //! Undo and redo of decisions.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use gdcm_model::dataset::Condition;
+
 use super::edit::Edit;
 use super::study::Study;
 
 /// Maximum number of undo steps; a snapshot takes a few kilobytes, because models are shared.
 const MOST_STEPS: usize = 500;
+/// Maximum size of the models that only the undo steps keep in memory \[bytes\]. Reversed signs,
+/// adopted models and reloaded files leave the former models in the steps before.
+const MOST_BYTES: usize = 48 << 20;
+/// Number of datasets of any size that the undo steps may keep in memory.
+const LEAST_DATASETS: usize = 4;
 
 /// Change that a step of the history undoes or redoes. `C` describes a change of state outside the
 /// study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<C = ()> {
     Decision(Edit),
+    /// Changes of several settings in one session of [`History::begin_session`], in order.
+    Settings(Vec<Edit>),
     /// A change of state outside the study.
     Beside(C),
     /// The dataset was read again from the file of this name.
@@ -26,6 +38,8 @@ pub struct Step<B = (), C = ()> {
     /// The study on the other side of the step.
     pub study: Study,
     beside: B,
+    /// Session in which a setting was changed; see [`History::begin_session`].
+    session: Option<u64>,
 }
 
 /// Undo history: snapshots of the study, with the changes between them.
@@ -41,6 +55,10 @@ pub struct History<B = (), C = ()> {
     lost: Vec<Step<B, C>>,
     /// The last decision, as long as the next decision may continue it (a slider being dragged).
     open: Option<Edit>,
+    /// Number of the session in progress.
+    session: Option<u64>,
+    /// Number of sessions so far.
+    sessions: u64,
 }
 
 impl<B, C> Default for History<B, C> {
@@ -50,7 +68,44 @@ impl<B, C> Default for History<B, C> {
             future: Vec::new(),
             lost: Vec::new(),
             open: None,
+            session: None,
+            sessions: 0,
         }
+    }
+}
+
+impl<C> Change<C> {
+    /// Adds a later change of settings. Of several changes of one setting only the last is kept.
+    fn append(&mut self, later: Self) {
+        let mut edits = self.edits();
+        for edit in later.edits() {
+            edits.retain(|earlier| !edit.continues(earlier));
+            edits.push(edit);
+        }
+        *self = match edits.as_slice() {
+            [only] => Self::Decision(only.clone()),
+            _ => Self::Settings(edits),
+        };
+    }
+
+    /// Returns the decisions of the change, in order.
+    fn edits(&self) -> Vec<Edit> {
+        match self {
+            Self::Decision(edit) => vec![edit.clone()],
+            Self::Settings(edits) => edits.clone(),
+            Self::Beside(_) | Self::Reload { .. } => Vec::new(),
+        }
+    }
+}
+
+/// Removes the last step if it belongs to a session and the study `after` it equals the study
+/// before.
+fn drop_if_unchanged<B, C>(steps: &mut Vec<Step<B, C>>, session: u64, after: &Study) {
+    if let Some(last) = steps.last()
+        && last.session == Some(session)
+        && last.study == *after
+    {
+        steps.pop();
     }
 }
 
@@ -65,10 +120,12 @@ impl<B: Default, C> History<B, C> {
             return;
         }
         self.lost = lost;
+        let is_setting = matches!(edit, Edit::Set(..));
         self.push(Step {
             change: Change::Decision(edit.clone()),
             study: before,
             beside: B::default(),
+            session: if is_setting { self.session } else { None },
         });
         self.open = Some(edit.clone());
     }
@@ -81,6 +138,7 @@ impl<B: Default, C> History<B, C> {
             change: Change::Beside(change),
             study,
             beside: before,
+            session: None,
         });
         self.open = None;
     }
@@ -92,6 +150,7 @@ impl<B: Default, C> History<B, C> {
             change: Change::Reload { file },
             study: before,
             beside: B::default(),
+            session: None,
         });
         self.open = None;
     }
@@ -100,12 +159,89 @@ impl<B: Default, C> History<B, C> {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
+        let has_other_models = match self.past.last() {
+            Some(last) => !Arc::ptr_eq(&last.study.dataset, &step.study.dataset),
+            None => false,
+        };
         self.past.push(step);
+        if has_other_models {
+            self.limit_models();
+        }
+    }
+
+    /// Removes the oldest steps until the models of all steps take at most [`MOST_BYTES`], or the
+    /// size of [`LEAST_DATASETS`] datasets like the last one if these are larger.
+    fn limit_models(&mut self) {
+        let mut most_bytes = MOST_BYTES;
+        if let Some(last) = self.past.last() {
+            let mut bytes = 0;
+            for condition in last.study.dataset.conditions() {
+                bytes += condition.model_bytes();
+            }
+            most_bytes = most_bytes.max(LEAST_DATASETS * bytes);
+        }
+        while self.past.len() > 1 && self.model_bytes() > most_bytes {
+            let oldest = Arc::clone(&self.past[0].study.dataset);
+            let of_oldest = self
+                .past
+                .iter()
+                .take_while(|step| Arc::ptr_eq(&step.study.dataset, &oldest))
+                .count();
+            self.past.drain(..of_oldest.min(self.past.len() - 1));
+        }
+    }
+
+    /// Returns the size of the models of all steps, each condition counted once \[bytes\].
+    pub fn model_bytes(&self) -> usize {
+        let mut counted: BTreeSet<*const Condition> = BTreeSet::new();
+        let mut bytes = 0;
+        for step in self.past.iter().chain(&self.future).chain(&self.lost) {
+            for dataset in step.study.datasets() {
+                for condition in dataset.conditions() {
+                    if counted.insert(Arc::as_ptr(condition)) {
+                        bytes += condition.model_bytes();
+                    }
+                }
+            }
+        }
+        bytes
     }
 
     /// Closes the last decision: no later decision continues it.
     pub fn seal(&mut self) {
         self.open = None;
+    }
+
+    /// Begins a session: until [`History::end_session`], each change of a setting has a step of its
+    /// own, which can be undone alone.
+    pub fn begin_session(&mut self) {
+        self.seal();
+        self.sessions += 1;
+        self.session = Some(self.sessions);
+    }
+
+    /// Ends the session: its consecutive changes of settings become a single step, or none if they
+    /// cancel out. `now` is the present study. Other decisions keep their own steps.
+    pub fn end_session(&mut self, now: &Study) {
+        let Some(session) = self.session.take() else {
+            return;
+        };
+        self.seal();
+        let mut merged: Vec<Step<B, C>> = Vec::with_capacity(self.past.len());
+        for step in std::mem::take(&mut self.past) {
+            let is_of_session = step.session == Some(session);
+            if let Some(last) = merged.last_mut()
+                && is_of_session
+                && last.session == Some(session)
+            {
+                last.change.append(step.change);
+                continue;
+            }
+            drop_if_unchanged(&mut merged, session, &step.study);
+            merged.push(step);
+        }
+        drop_if_unchanged(&mut merged, session, now);
+        self.past = merged;
     }
 
     /// Returns the study before the last decision. `now` is the present study; `exchange` restores
@@ -117,6 +253,7 @@ impl<B: Default, C> History<B, C> {
             change: step.change,
             study: now.clone(),
             beside: exchange(step.beside),
+            session: step.session,
         });
         Some(step.study)
     }
@@ -142,6 +279,7 @@ impl<B: Default, C> History<B, C> {
             change: step.change,
             study: now.clone(),
             beside: exchange(step.beside),
+            session: step.session,
         });
         Some(step.study)
     }
@@ -154,5 +292,138 @@ impl<B: Default, C> History<B, C> {
     /// Returns the step that [`History::redo`] would redo.
     pub fn redo_step(&self) -> Option<&Step<B, C>> {
         self.future.last()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::setting::{ALPHA_DELAY, ALPHA_GAIN};
+    use super::*;
+    use crate::decisions::signs::{SignRole, turned};
+    use crate::reference_tests::reference_dataset;
+    use gdcm_method::correction::Channel;
+    use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    #[test]
+    fn the_models_of_undo_steps_take_a_limited_space() {
+        let dataset = Arc::new(reference_dataset());
+        let mut bytes = 0;
+        for condition in dataset.conditions() {
+            bytes += condition.model_bytes();
+        }
+        assert!(bytes > 1 << 20, "the models count: {bytes}");
+        let signs = BTreeMap::from([(Channel::Input(0), SignRole::All)]);
+        let mut history: History = History::default();
+        let steps = 2 * MOST_BYTES / bytes;
+        for _ in 0..steps {
+            let other = turned(&dataset, &signs).unwrap();
+            history.record(Study::new(other), &Edit::ConstrainOnAxis);
+            history.seal();
+        }
+        assert!(history.model_bytes() <= MOST_BYTES.max(LEAST_DATASETS * bytes));
+        assert!(history.past.len() >= LEAST_DATASETS);
+        assert!(
+            history.past.len() < steps,
+            "{} of {steps}",
+            history.past.len()
+        );
+        let now = Study::new(dataset);
+        assert!(history.undo(&now, |beside| beside).is_some());
+    }
+
+    #[test]
+    fn steps_with_the_same_models_are_limited_in_number_only() {
+        let study = Study::new(Arc::new(reference_dataset()));
+        let mut history: History = History::default();
+        for _ in 0..MOST_STEPS + 10 {
+            history.record(study.clone(), &Edit::ConstrainOnAxis);
+            history.seal();
+        }
+        assert_eq!(history.past.len(), MOST_STEPS);
+    }
+
+    struct Editor {
+        study: Study,
+        history: History,
+    }
+
+    impl Editor {
+        fn new() -> Self {
+            Self {
+                study: Study::new(Arc::new(reference_dataset())),
+                history: History::default(),
+            }
+        }
+
+        fn decide(&mut self, edit: Edit) {
+            let before = self.study.clone();
+            self.study.apply(&edit).unwrap();
+            self.history.record(before, &edit);
+        }
+
+        fn undo(&mut self) {
+            self.study = self.history.undo(&self.study, |()| ()).unwrap();
+        }
+
+        fn changes(&self) -> Vec<Change> {
+            let past = self.history.past.iter();
+            past.map(|step| step.change.clone()).collect()
+        }
+    }
+
+    fn nominal() -> ModelId {
+        ModelId::new(ConditionId(10), BundleKind::Physics, "nominal")
+    }
+
+    #[test]
+    fn the_changes_of_a_session_become_one_step() {
+        let mut editor = Editor::new();
+        let before = editor.study.clone();
+        editor.history.begin_session();
+        editor.decide(ALPHA_GAIN.to(2.0));
+        editor.decide(ALPHA_DELAY.to(3.0));
+        editor.decide(ALPHA_GAIN.to(4.0));
+        assert_eq!(editor.history.past.len(), 3, "each can be undone alone");
+        editor.history.end_session(&editor.study);
+        let merged = Change::Settings(vec![ALPHA_DELAY.to(3.0), ALPHA_GAIN.to(4.0)]);
+        assert_eq!(editor.changes(), [merged]);
+        let after = editor.study.clone();
+        editor.undo();
+        assert_eq!(editor.study, before);
+        editor.study = editor.history.redo(&editor.study, |()| ()).unwrap();
+        assert_eq!(editor.study, after);
+    }
+
+    #[test]
+    fn a_session_that_changes_nothing_leaves_no_step() {
+        let mut editor = Editor::new();
+        editor.history.begin_session();
+        editor.decide(ALPHA_GAIN.to(2.0));
+        editor.history.seal();
+        editor.decide(ALPHA_GAIN.to(1.0));
+        editor.history.end_session(&editor.study);
+        assert_eq!(editor.changes(), []);
+    }
+
+    #[test]
+    fn other_decisions_within_a_session_keep_their_steps() {
+        let mut editor = Editor::new();
+        editor.history.begin_session();
+        editor.decide(ALPHA_GAIN.to(2.0));
+        editor.decide(Edit::Reject(nominal()));
+        editor.decide(ALPHA_GAIN.to(3.0));
+        editor.history.end_session(&editor.study);
+        editor.decide(ALPHA_GAIN.to(5.0));
+        assert_eq!(
+            editor.changes(),
+            [
+                Change::Decision(ALPHA_GAIN.to(2.0)),
+                Change::Decision(Edit::Reject(nominal())),
+                Change::Decision(ALPHA_GAIN.to(3.0)),
+                Change::Decision(ALPHA_GAIN.to(5.0)),
+            ]
+        );
     }
 }

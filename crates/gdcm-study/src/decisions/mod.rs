@@ -7,6 +7,7 @@ pub mod choices;
 pub mod dataset_differences;
 pub mod edit;
 pub mod edit_refusal;
+pub mod export_choices;
 pub mod history;
 pub mod named_decisions;
 pub mod physics_settings;

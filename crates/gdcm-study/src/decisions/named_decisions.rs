@@ -10,6 +10,7 @@ use super::adopted_models::AdoptedModels;
 use super::choices::{BundleChoice, ConditionChoice};
 use super::dataset_differences::{CarriedDecision, Difference, Inventory, NotApplied};
 use super::edit::Edit;
+use super::export_choices::ExportChoices;
 use super::requirement_settings::RequirementSettings;
 use super::settings::{ResponseMark, ResponseNames, Settings};
 use super::signs::TurnedChannel;
@@ -26,6 +27,8 @@ pub struct Decisions {
     /// The channels with reversed sign.
     pub signs: Vec<TurnedChannel>,
     pub requirements: Arc<RequirementSettings>,
+    /// Choices of the last export.
+    pub exports: Arc<ExportChoices>,
     /// The variants; a variant contains no variants of its own.
     pub variants: Vec<(String, Decisions)>,
 }
@@ -45,6 +48,7 @@ impl Decisions {
             taken: study.taken.clone().into_iter().collect(),
             signs: study.turned_channels(),
             requirements: Arc::clone(&study.requirements),
+            exports: Arc::clone(&study.exports),
             variants,
         }
     }
@@ -56,6 +60,7 @@ impl Decisions {
             study: Study::new(dataset),
             not_applied: Vec::new(),
         };
+        carried.study.exports = Arc::clone(&self.exports);
         carried.take_requirements(&self.requirements);
         carried.take_settings(&self.settings);
         for taken in &self.taken {

@@ -26,7 +26,7 @@ pub struct RequirementSettings {
     /// Tolerances on the modes of the physics models, relative to the identified modes.
     #[serde(skip_serializing_if = "is_default")]
     pub mode_tolerances: ModeToleranceTable,
-    /// Limits beyond which the overview marks a corrected model as inadequate.
+    /// Limits of the grid that no tolerance table holds.
     #[serde(skip_serializing_if = "is_default")]
     pub overview: OverviewLimits,
     /// Test input for displayed responses where no flight record is displayed.
@@ -34,8 +34,8 @@ pub struct RequirementSettings {
     pub test: TestInput,
 }
 
-/// Limits of the difference between a corrected and the identified model, beyond which the overview
-/// marks the corrected model. They are not taken from a standard.
+/// Limits of the difference between a corrected and the identified model in the grid of the
+/// requirements. They are not taken from a standard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
@@ -43,8 +43,10 @@ pub struct OverviewLimits {
     /// model.
     pub bandwidth: f64,
     pub phase_delay_s: f64,
-    /// Minimum share of time inside a tolerance, 0 to 1.
-    pub share_inside: f64,
+    /// Maximum mean J over the on-axis responses.
+    pub mean_j: f64,
+    /// Minimum share of the band inside the MUAD envelopes over the on-axis responses, 0 to 1.
+    pub muad_share: f64,
 }
 
 impl Default for OverviewLimits {
@@ -52,14 +54,15 @@ impl Default for OverviewLimits {
         Self {
             bandwidth: 0.1,
             phase_delay_s: 0.02,
-            share_inside: 0.9,
+            mean_j: 10.0,
+            muad_share: 0.9,
         }
     }
 }
 
-/// Error: a limit of the overview is not positive.
+/// Error: a limit of the grid is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("limits of the overview: expected {name} above zero, found {}", number(*found))]
+#[error("limits of the requirements: expected {name} above zero, found {}", number(*found))]
 pub struct OverviewLimitsError {
     pub name: &'static str,
     pub found: f64,
@@ -74,12 +77,14 @@ impl OverviewLimits {
         let Self {
             bandwidth,
             phase_delay_s,
-            share_inside,
+            mean_j,
+            muad_share,
         } = self;
         let limits = [
             ("bandwidth", bandwidth),
             ("phase_delay_s", phase_delay_s),
-            ("share_inside", share_inside),
+            ("mean_j", mean_j),
+            ("muad_share", muad_share),
         ];
         match limits
             .into_iter()

@@ -114,7 +114,7 @@ pub static DELAY_FROM: Setting = Setting {
         set: |settings, index| settings.delay_from = DelayFrom::ALL[index],
     },
     control: Control {
-        place: Place::Beside,
+        place: Place::Line,
         applies: |study| study.settings.phase == PhaseCorrection::Delay,
         ..DEFAULT_CONTROL
     },

@@ -393,6 +393,30 @@ impl Setting {
         }
     }
 
+    /// Returns the option with its arguments for a value, such that [`Self::read`] returns the value;
+    /// `None` for a flag that is not set, which no option expresses.
+    pub fn option_words(&self, value: Value) -> Option<Vec<String>> {
+        let arguments = match (self.kind, value) {
+            (Kind::Flag { .. }, Value::Flag(true)) => Vec::new(),
+            (Kind::Flag { .. }, _) => return None,
+            (_, Value::Number(value)) => vec![value.to_string()],
+            (_, Value::Range(ends)) => ends.map(|end| end.to_string()).to_vec(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                vec![words.get(index)?[0].to_owned()]
+            }
+            (Kind::Optional { nothing, .. }, _) => vec![nothing[0].to_owned()],
+            (Kind::Range { nothing, .. }, _) => vec![nothing?[0].to_owned()],
+            _ => return None,
+        };
+        // The argument of an option that may stand alone is joined to it.
+        if let ([argument], true) = (&arguments[..], self.bare.is_some()) {
+            return Some(vec![format!("{}={argument}", self.option)]);
+        }
+        let mut words = vec![self.option.to_owned()];
+        words.extend(arguments);
+        Some(words)
+    }
+
     /// Parses the value from the command line; a flag without argument is set.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
 use super::adopted_models::AdoptedModels;
 use super::choices::ConditionChoice;
+use super::export_choices::ExportChoices;
 use super::requirement_settings::RequirementSettings;
 use super::settings::Settings;
 use super::signs::Signs;
@@ -25,6 +26,8 @@ pub struct Study {
     pub signs: Signs,
     /// Requirement settings. No correction depends on them.
     pub requirements: Arc<RequirementSettings>,
+    /// Choices of the last export. No result depends on them.
+    pub exports: Arc<ExportChoices>,
     /// Models adopted instead of those in the file; `dataset` contains them.
     pub(crate) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
     /// The dataset as in its file; `None` if no models are adopted and no signs reversed.
@@ -41,18 +44,25 @@ impl PartialEq for Study {
             &self.variants,
             &self.signs,
             &self.requirements,
+            &self.exports,
         ) == (
             &other.settings,
             &other.choices,
             &other.variants,
             &other.signs,
             &other.requirements,
+            &other.exports,
         );
         decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
     }
 }
 
 impl Study {
+    /// Returns the datasets that the study keeps in memory: the one in use, and the one of the file.
+    pub(crate) fn datasets(&self) -> impl Iterator<Item = &Arc<Dataset>> {
+        std::iter::once(&self.dataset).chain(&self.file)
+    }
+
     /// Creates a study of `dataset` without any decision: default settings, no rejections.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::for_dataset(&dataset);
@@ -67,6 +77,7 @@ impl Study {
             variants: Vec::new(),
             signs: Signs::new(),
             requirements: Arc::default(),
+            exports: Arc::default(),
             taken: BTreeMap::new(),
             file: None,
         }

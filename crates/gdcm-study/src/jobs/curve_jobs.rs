@@ -57,9 +57,11 @@ impl Job for ModesJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
+    /// The dataset with the physics models moved by the physics parameters; `dataset` without them.
+    pub moved_dataset: Shared<Dataset>,
     /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
-    /// The couplings applied to those models; `None` for models without couplings.
+    /// The couplings of the corrected physics models; `None` without couplings.
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Band, and number of frequencies in it.
     pub grid: (Band, usize),
@@ -69,37 +71,98 @@ pub struct AcrossJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossCurves {
     pub grid: FrequencyGrid,
-    pub responses: Vec<(ModelId, Arc<FrequencyResponse>)>,
+    pub responses: Vec<AcrossModel>,
+}
+
+/// Response of a model in one of several conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossModel {
+    pub model: ModelId,
+    pub response: Arc<FrequencyResponse>,
+    /// Response of a physics model with physics parameters and couplings applied; `None` without
+    /// both, and for an identified model.
+    pub coupled: Option<Arc<FrequencyResponse>>,
+}
+
+impl AcrossCurves {
+    /// Returns the response of a model; `None` if it was not computed.
+    pub fn model(&self, id: &ModelId) -> Option<&AcrossModel> {
+        self.responses.iter().find(|found| found.model == *id)
+    }
 }
 
 impl AcrossJob {
-    /// Returns the job for a role's model in every condition that has one.
-    pub fn for_role(
+    /// Returns the job for the models of all roles in every condition that has them.
+    pub fn for_conditions(
         dataset: &Arc<Dataset>,
         analysis: Option<&Analysis>,
-        role: AcrossRole,
         grid: (Band, usize),
     ) -> Self {
-        let models = dataset
-            .conditions()
-            .iter()
-            .filter_map(|condition| role.model(condition, analysis))
-            .collect();
-        let couplings = match (role, analysis) {
-            (AcrossRole::Corrected, Some(analysis)) => analysis.fitted_couplings().cloned(),
-            _ => None,
+        let mut models = Vec::new();
+        for condition in dataset.conditions() {
+            for role in AcrossRole::ALL {
+                if let Some(model) = role.model(condition, analysis)
+                    && !models.contains(&model)
+                {
+                    models.push(model);
+                }
+            }
+        }
+        let couplings = match analysis {
+            Some(analysis) => analysis.fitted_couplings().cloned(),
+            None => None,
         };
-        // Corrections apply to the moved physics models (M18.5).
-        let dataset = match (role, analysis) {
-            (AcrossRole::Corrected, Some(analysis)) => analysis.moved_dataset(),
-            _ => dataset,
+        let moved_dataset = match analysis {
+            Some(analysis) => analysis.moved_dataset(),
+            None => dataset,
         };
         Self {
             dataset: Arc::clone(dataset).into(),
+            moved_dataset: Arc::clone(moved_dataset).into(),
             models,
             couplings,
             grid,
         }
+    }
+
+    /// Computes the response of a model; `None` if the dataset does not have it.
+    fn response(&self, id: &ModelId, grid: &FrequencyGrid) -> Option<AcrossModel> {
+        let condition = self.dataset.condition(id.condition)?;
+        let model = condition.model(id.bundle, &id.name)?;
+        let response = PreparedModel::new(&model.dynamics).response(grid);
+        let response = Arc::new(response);
+        Some(AcrossModel {
+            coupled: self.response_before_gains(id, condition, &response, grid),
+            model: id.clone(),
+            response,
+        })
+    }
+
+    /// Returns the response of a physics model after the physics parameters and the couplings, to
+    /// which gains and delays apply (M18.5); `None` if neither changes it.
+    fn response_before_gains(
+        &self,
+        id: &ModelId,
+        condition: &Condition,
+        response: &Arc<FrequencyResponse>,
+        grid: &FrequencyGrid,
+    ) -> Option<Arc<FrequencyResponse>> {
+        if id.bundle != BundleKind::Physics {
+            return None;
+        }
+        let mut changed = None;
+        if self.moved_dataset != self.dataset {
+            let moved = self.moved_dataset.condition(id.condition)?;
+            let model = moved.model(id.bundle, &id.name)?;
+            let prepared = PreparedModel::new(&model.dynamics);
+            changed = Some(Arc::new(prepared.response(grid)));
+        }
+        if let Some(fitted) = &self.couplings {
+            let airspeed_kt = condition.flight_state().airspeed_kt;
+            let plain = changed.as_ref().unwrap_or(response);
+            changed = Some(Arc::new(fitted.matrices().response(plain, airspeed_kt)));
+        }
+        changed
     }
 }
 
@@ -110,52 +173,54 @@ impl Job for AcrossJob {
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let (band, points) = self.grid;
         let grid = FrequencyGrid::logarithmic(band, points);
-        let responses = in_turn(&self.models, progress, |id| {
-            let condition = self.dataset.condition(id.condition)?;
-            let model = condition.model(id.bundle, &id.name)?;
-            let mut response = PreparedModel::new(&model.dynamics).response(&grid);
-            if let Some(fitted) = &self.couplings {
-                let airspeed_kt = condition.flight_state().airspeed_kt;
-                response = fitted.matrices().response(&response, airspeed_kt);
-            }
-            Some((id.clone(), Arc::new(response)))
-        })?;
+        let responses = in_turn(&self.models, progress, |id| self.response(id, &grid))?;
         let responses = responses.into_iter().flatten().collect();
         Ok(Arc::new(AcrossCurves { grid, responses }))
     }
 }
 
-/// Role of the model that represents each condition in the overlay of conditions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Role of a model that is drawn for each condition in the overlay of conditions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum AcrossRole {
-    /// The physics model at the condition's own trim.
-    #[default]
-    Nominal,
-    /// The physics model that represents its bundle.
-    Representative,
-    /// The physics representative under the condition's own correction.
-    Corrected,
     /// The identified model that represents its bundle.
     Identified,
+    /// The physics representative under the schedule, at the airspeed of the condition.
+    Scheduled,
+    /// The physics representative under the condition's own correction.
+    Corrected,
+    /// The physics model that represents its bundle.
+    Representative,
+    /// The physics model at the condition's own trim.
+    Nominal,
 }
 
 impl AcrossRole {
     /// Every role, in list order.
-    pub const ALL: [Self; 4] = [
-        Self::Nominal,
-        Self::Representative,
-        Self::Corrected,
+    pub const ALL: [Self; 5] = [
         Self::Identified,
+        Self::Scheduled,
+        Self::Corrected,
+        Self::Representative,
+        Self::Nominal,
     ];
+
+    /// Roles that are drawn at first: the schedule is judged by their difference.
+    pub const SHOWN_AT_FIRST: [Self; 2] = [Self::Identified, Self::Scheduled];
 
     /// Returns the name of the role in lists and captions: "corrected".
     pub fn name(self) -> &'static str {
         match self {
-            Self::Nominal => "nominal",
-            Self::Representative => "representative",
-            Self::Corrected => "corrected",
             Self::Identified => "identified",
+            Self::Scheduled => "scheduled",
+            Self::Corrected => "corrected",
+            Self::Representative => "representative",
+            Self::Nominal => "nominal",
         }
+    }
+
+    /// Returns whether a correction, and before it the couplings, are applied to the model.
+    pub fn is_corrected(self) -> bool {
+        matches!(self, Self::Scheduled | Self::Corrected)
     }
 
     /// Returns the model with this role in a condition; `None` where the role needs a result that
@@ -164,7 +229,7 @@ impl AcrossRole {
         let id = condition.id();
         let kind = match self {
             Self::Identified => BundleKind::Identified,
-            Self::Representative | Self::Corrected => BundleKind::Physics,
+            Self::Representative | Self::Corrected | Self::Scheduled => BundleKind::Physics,
             Self::Nominal => {
                 let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
                 return Some(ModelId::new(id, BundleKind::Physics, &nominal.name));
@@ -175,15 +240,19 @@ impl AcrossRole {
     }
 
     /// Returns the correction applied to the response of the model before drawing; `None` where the
-    /// correction has no positive net gain, or there is no result.
+    /// correction has no positive net gain, or there is no result or no schedule.
     pub fn correction(
         self,
-        condition: ConditionId,
+        condition: &Condition,
         pair: Pair,
         analysis: Option<&Analysis>,
     ) -> Option<GainDelay> {
         match self {
-            Self::Corrected => analysis?.condition(condition)?.correction.on(pair),
+            Self::Corrected => analysis?.condition(condition.id())?.correction.on(pair),
+            Self::Scheduled => {
+                let schedule = analysis?.schedule.as_ref().ok()?;
+                schedule.at_state(condition.flight_state()).on(pair)
+            }
             _ => Some(GainDelay::NONE),
         }
     }

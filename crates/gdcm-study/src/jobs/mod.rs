@@ -13,3 +13,6 @@ pub mod requirement_jobs;
 mod test_input_responses_tests;
 #[cfg(test)]
 mod time_histories_tests;
+pub mod trade_off_job;
+#[cfg(test)]
+mod trade_off_job_tests;

@@ -41,6 +41,8 @@ pub struct RecordHistory {
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
     pub flight: Shared<FlightRecord>,
+    /// Index of the input with the largest variation; `None` where the inputs have different units.
+    pub moved_input: Option<usize>,
     /// Result for each applicable row of the tolerance table.
     pub quantities: Vec<QuantityHistory>,
     /// Why other models or quantities are not compared.
@@ -138,6 +140,7 @@ impl RecordHistory {
             record: record.flight.name.clone(),
             held_out: record.held_out,
             flight: record.flight.clone(),
+            moved_input: comparison.moved_input(&segments),
             quantities: quantities(&comparison, &segments, &validations),
             missing,
         })

@@ -7,7 +7,7 @@
 //!    estimated initial state and offsets (M14, section 6); all models of a condition have the same
 //!    windows, so that the compared manoeuvres begin at the same samples
 //! 3  each row of the tolerance table whose output and unit exist: share inside, largest excess,
-//!    correlation
+//!    peak error, correlation
 //! ```
 
 use std::collections::BTreeMap;
@@ -293,6 +293,7 @@ fn tolerance_finding(
     let checks = RecordCheck::of_windows(windows, channel).map_err(NotCompared::NotChecked)?;
     let check = checks.first().ok_or(NotCompared::NoSamples)?;
     let worst = check.worst().ok_or(NotCompared::NoSamples)?;
+    let peak = check.peak().ok_or(NotCompared::NoSamples)?;
     let correlation = check.correlation();
     let on_axis = comparison.is_on_axis(channel.output, moved);
     Ok(ToleranceFinding {
@@ -303,6 +304,8 @@ fn tolerance_finding(
         share_inside: check.share_inside(),
         largest_excess: worst.largest_excess,
         largest_excess_at_s: worst.largest_excess_at_s,
+        peak_error: peak.peak_error,
+        peak_error_at_s: peak.peak_error_at_s,
         correlation,
         on_axis,
         trend: Trend::from_correlation(correlation, on_axis),

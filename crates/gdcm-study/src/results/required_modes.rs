@@ -95,6 +95,11 @@ impl ModeNumbers {
         }
     }
 
+    /// Returns the natural frequency: the modulus of the pole \[rad/s\].
+    pub fn modulus_rad_s(&self) -> f64 {
+        self.pole_real_rad_s.hypot(self.pole_imaginary_rad_s)
+    }
+
     /// Returns the values with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 5] {
         [

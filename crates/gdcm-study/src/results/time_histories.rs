@@ -81,6 +81,11 @@ pub struct ToleranceFinding {
     pub largest_excess: f64,
     /// Time of the largest excess, on the time axis of the record \[s\].
     pub largest_excess_at_s: f64,
+    /// Maximum error as a multiple of the tolerance at the same sample; above 1 where a sample is
+    /// outside.
+    pub peak_error: f64,
+    /// Time of the peak error, on the time axis of the record \[s\].
+    pub peak_error_at_s: f64,
     /// Correlation of simulated and measured signal about their means; `None` where either is
     /// constant.
     pub correlation: Option<f64>,
@@ -94,11 +99,13 @@ pub struct ToleranceFinding {
 
 impl ToleranceFinding {
     /// Returns the values with their names.
-    pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
+    pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
         [
             ("share_inside", Some(self.share_inside)),
             ("largest_excess", Some(self.largest_excess)),
             ("largest_excess_at_s", Some(self.largest_excess_at_s)),
+            ("peak_error", Some(self.peak_error)),
+            ("peak_error_at_s", Some(self.peak_error_at_s)),
             ("correlation", self.correlation),
         ]
     }
@@ -133,6 +140,17 @@ pub struct HistoryFinding {
     pub theil: BTreeMap<String, f64>,
     /// Result for each applicable row of the tolerance table.
     pub tolerances: Vec<ToleranceFinding>,
+}
+
+impl HistoryFinding {
+    /// Returns the peak error of the quantity of a tolerance row, as a multiple of the tolerance;
+    /// `None` where the quantity was not compared.
+    pub fn peak_error(&self, tolerance: &Tolerance) -> Option<f64> {
+        let found = self.tolerances.iter().find(|found| {
+            found.quantity == tolerance.quantity && found.output == tolerance.channel
+        })?;
+        Some(found.peak_error)
+    }
 }
 
 /// Comparisons of simulations with all flight records, in the format of the export.

@@ -11,6 +11,7 @@ use gdcm_model::simulation::{FlightRecord, Validation};
 
 use super::assessment::{AssessedModel, Assessment, NOT_IDENTIFIED_DB};
 use super::model_selection::{Proposal, Refinement, propose, refine};
+use super::order::OrderFit;
 use super::prepared_data::PreparedData;
 use crate::diagnostics::bands::TWO_SIDED_95;
 use crate::diagnostics::cautions::IdentificationCaution;
@@ -55,6 +56,8 @@ pub struct Identification {
     pub past: usize,
     /// BIC of each refined order, ascending by order.
     pub criteria: Vec<(usize, f64)>,
+    /// Fit of each refined order, ascending by order.
+    pub order_fits: Vec<OrderFit>,
     /// `J / (N - k)` over the fitted records; 1 is adequate.
     pub cost: f64,
     /// `J` per degree of freedom over the held-out records, if there are any.
@@ -164,6 +167,7 @@ impl Models<'_> {
             measured: self.data.measured.in_units(&self.data.scales),
             poles,
             criteria: refinement.search.criteria.clone().into_iter().collect(),
+            order_fits: refinement.search.order_fits(self.data),
             stabilisation: proposal.stabilisation,
             laguerre_pole: proposal.laguerre_pole,
             past: proposal.past,

@@ -41,3 +41,4 @@ pub use crate::spectra::caution_note::CautionNote;
 pub use crate::spectra::preparation_settings::{ChannelPreparation, Hold, Preparation};
 pub use crate::spectra::response_estimate::{ResponseEstimate, TRUSTED_COHERENCE};
 pub use identify::Identification;
+pub use order::OrderFit;

@@ -61,7 +61,39 @@ pub(crate) struct OrderSearch<'a> {
     pub(crate) weights: NoiseWeights<'a>,
 }
 
+/// Fit of the refined model of an order, with the weights of the order search.
+///
+/// The values of different orders are comparable with one another. They differ slightly from the
+/// cost of the recommended model, whose weights are updated after the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrderFit {
+    pub order: usize,
+    /// `J / (N - k)` over the fitted records of the search.
+    pub cost: f64,
+    /// `J` per degree of freedom over the held-out records, if there are any.
+    pub held_out: Option<f64>,
+}
+
 impl OrderSearch<'_> {
+    /// Returns the fit of each refined order. Orders that were given up before their minimum are
+    /// left out.
+    pub(crate) fn order_fits(&self, data: &PreparedData) -> Vec<OrderFit> {
+        let mut order_fits = Vec::new();
+        for (&order, fit) in &self.fits {
+            if fit.decrement >= COMPARABLE {
+                continue;
+            }
+            if let Some(cost) = fit.dispersion(&self.weights.likelihood) {
+                order_fits.push(OrderFit {
+                    order,
+                    cost,
+                    held_out: data.held_out_cost(&fit.model),
+                });
+            }
+        }
+        order_fits
+    }
+
     /// Returns the order at which the search begins, that of the minimum criterion before any
     /// refinement; `None` without models.
     pub(crate) fn first(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<usize> {
@@ -272,7 +304,9 @@ impl<'a> PreparedData<'a> {
             if self.is_sound(descent, order) != self.is_sound(descent, best) {
                 continue;
             }
-            if let Some(cost) = self.held_out_cost(descent, order) {
+            if let Some(fit) = descent.fits.get(&order)
+                && let Some(cost) = self.held_out_cost(&fit.model)
+            {
                 held_out_costs.insert(order, cost);
             }
         }
@@ -287,11 +321,14 @@ impl<'a> PreparedData<'a> {
             .is_some_and(|fit| fast_unstable_pole(fit.model.poles(), self.highest).is_none())
     }
 
-    /// Computes the held-out cost per degree of freedom of an order.
-    fn held_out_cost(&self, descent: &Descent, order: usize) -> Option<f64> {
-        let model = &descent.fits.get(&order)?.model;
+    /// Computes the held-out cost per degree of freedom of a model; `None` without held-out
+    /// records.
+    fn held_out_cost(&self, model: &SchurModel) -> Option<f64> {
         let held_out = &self.held_out;
-        Some(held_out.cost(model)? / held_out.freedom(order).max(1) as f64)
+        if held_out.segments.is_empty() {
+            return None;
+        }
+        Some(held_out.cost(model)? / held_out.freedom(model.order()).max(1) as f64)
     }
 }
 

@@ -8,14 +8,25 @@ use gdcm_model::units::physical_unit::conversion_factor;
 use super::plausible_units::possible_units;
 use super::record_table::{RecordColumn, RecordTable};
 
+/// How the unit of a column was determined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnitBasis {
+    /// By the file, by the samples, or by the user.
+    Known,
+    /// Not at all: neither the file nor the samples determine the unit, so that the record cannot
+    /// be used.
+    Open,
+    /// By assumption: the unit of the channel, until the user checks it.
+    Assumed,
+}
+
 /// A record's column, used as a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnUse {
     pub column: usize,
     /// Channel units per column unit; negative for the opposite sign.
     pub factor: f64,
-    /// Whether the factor is still open: neither the file nor the samples determine the unit.
-    pub is_unit_open: bool,
+    pub unit: UnitBasis,
     /// Remedy applied in this record only.
     pub remedy: ChannelRemedy,
 }
@@ -31,7 +42,7 @@ impl ColumnUse {
         Self {
             column,
             factor,
-            is_unit_open: false,
+            unit: UnitBasis::Known,
             remedy: ChannelRemedy::NONE,
         }
     }
@@ -50,18 +61,18 @@ impl ColumnUse {
         match possible_units(samples, unit).as_slice() {
             [only] => Self::times(column, conversion_factor(only, unit).unwrap_or(1.0)),
             [_, _, ..] if unit_in_file.is_none() => Self {
-                is_unit_open: true,
+                unit: UnitBasis::Open,
                 ..Self::as_it_is(column)
             },
             _ => Self::as_it_is(column),
         }
     }
 
-    /// Returns the units in which the samples of an open column are plausible, for a channel with
-    /// this unit; empty if the unit is not open.
+    /// Returns the units in which the samples of a column are plausible, for a channel with this
+    /// unit; empty if the unit is known.
     pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
         match table.columns.get(self.column) {
-            Some(column) if self.is_unit_open => possible_units(column, unit),
+            Some(column) if self.unit != UnitBasis::Known => possible_units(column, unit),
             _ => Vec::new(),
         }
     }
@@ -71,7 +82,7 @@ impl ColumnUse {
     pub fn in_unit(self, said: &str, unit: &str) -> Self {
         Self {
             factor: self.factor * conversion_factor(said, unit).unwrap_or(1.0),
-            is_unit_open: false,
+            unit: UnitBasis::Known,
             ..self
         }
     }
@@ -87,8 +98,19 @@ impl ColumnUse {
     /// Returns the use, with the column taken to be in the unit of the channel.
     pub(super) fn in_unit_of_channel(self) -> Self {
         Self {
-            is_unit_open: false,
+            unit: UnitBasis::Known,
             ..self
+        }
+    }
+
+    /// Assumes the unit of the channel if the unit is open.
+    pub(super) fn assuming_unit_of_channel(self) -> Self {
+        match self.unit {
+            UnitBasis::Open => Self {
+                unit: UnitBasis::Assumed,
+                ..self
+            },
+            UnitBasis::Known | UnitBasis::Assumed => self,
         }
     }
 

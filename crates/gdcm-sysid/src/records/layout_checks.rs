@@ -3,7 +3,7 @@
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
-use super::column_use::ColumnUse;
+use super::column_use::{ColumnUse, UnitBasis};
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::plausible_units::largest_plausible;
 use super::record_channels::RecordChannels;
@@ -95,6 +95,7 @@ impl RecordLayout {
             let Some(column) = table.columns.get(channel.used.column) else {
                 continue;
             };
+            cautions.extend(assumed_unit(table, channel));
             let are_holes_filled = is_resampled && has_holes(&column.values);
             if !are_holes_filled {
                 cautions.extend(missing_samples(table, channel, &column.values));
@@ -202,14 +203,36 @@ fn channel_problem(
 
 /// Returns a problem if neither the file nor the samples determine the unit.
 fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
-    let units = used.open_units(table, &rule.unit);
-    let (last, rest) = units.split_last()?;
+    if used.unit != UnitBasis::Open {
+        return None;
+    }
     Some(LayoutProblem::UnsaidUnit {
         channel: rule.name.clone(),
         column: table.quoted(used.column),
         unit: rule.unit.clone(),
-        units: format!("{} or {last}", rest.join(", ")),
+        units: plausible_unit_list(table, rule, used)?,
     })
+}
+
+/// Returns a caution if the unit is an assumption.
+fn assumed_unit(table: &RecordTable, channel: &ChosenColumn<'_>) -> Option<LayoutCaution> {
+    let ChosenColumn { rule, used } = *channel;
+    if used.unit != UnitBasis::Assumed {
+        return None;
+    }
+    Some(LayoutCaution::UnitAssumed {
+        channel: rule.name.clone(),
+        column: table.quoted(used.column),
+        unit: rule.unit.clone(),
+        units: plausible_unit_list(table, rule, used)?,
+    })
+}
+
+/// Lists the units in which the samples are plausible: "rad/s or deg/s".
+fn plausible_unit_list(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<String> {
+    let units = used.open_units(table, &rule.unit);
+    let (last, rest) = units.split_last()?;
+    Some(format!("{} or {last}", rest.join(", ")))
 }
 
 /// Returns a problem if samples are implausible in the channel's unit. Columns identified by a

@@ -216,6 +216,20 @@ pub enum LayoutCaution {
         /// Name of the earlier record.
         first: String,
     },
+    /// Neither file nor samples determine the unit, so the unit of the channel was assumed.
+    #[error(
+        "the file does not give the unit of {channel} (column {column}); {unit} was assumed, and \
+        its samples can be in {units}"
+    )]
+    UnitAssumed {
+        channel: String,
+        /// Column name in quotation marks.
+        column: String,
+        /// The assumed unit, which is the channel's.
+        unit: String,
+        /// List of the units in which the samples are plausible.
+        units: String,
+    },
     /// Samples are missing.
     #[error("{channel} (column {column}): {count} of {samples} samples are missing")]
     Missing {
@@ -242,6 +256,7 @@ impl LayoutCaution {
             Self::Constant { .. } => "constant-column",
             Self::Same { .. } => "same-column",
             Self::Copy { .. } => "copied-channel",
+            Self::UnitAssumed { .. } => "unit-assumed",
             Self::Missing { .. } => "missing-samples",
             Self::MissingTime { .. } => "missing-time",
         }

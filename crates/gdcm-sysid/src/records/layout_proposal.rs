@@ -6,7 +6,7 @@ use gdcm_model::names::signed_name::sign_between;
 use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::column_candidates::{candidates, without_sign_mark};
-use super::column_use::ColumnUse;
+use super::column_use::{ColumnUse, UnitBasis};
 use super::layout_note::{ColumnConversion, LayoutNote};
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::plausible_units::possible_units;
@@ -343,7 +343,7 @@ impl Proposer<'_> {
     fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
         let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);
-        if used.is_unit_open {
+        if used.unit == UnitBasis::Open {
             return used;
         }
         let possible = possible_units(&table.columns[column], &rule.unit);

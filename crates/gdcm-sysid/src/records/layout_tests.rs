@@ -8,7 +8,7 @@ use gdcm_model::names::ChannelRule;
 use super::column_use::ColumnUse;
 use super::laid_out_record::LaidOutRecord;
 use super::layout_note::{ColumnConversion, LayoutNote};
-use super::layout_problem::LayoutProblem;
+use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::layout_proposal::{LayoutProposal, TimeWish};
 use super::record_channels::{RecordChannels, SaidConversion};
 use super::record_guess::RecordGuess;
@@ -179,6 +179,31 @@ fn with_roll_rate(unit_in_file: &str, peak: f64, unit: &str) -> LayoutProposal {
         proposal.problems.is_empty()
     );
     proposal
+}
+
+#[test]
+fn an_assumed_unit_is_a_caution_until_it_is_confirmed_or_chosen() {
+    let channels = channels();
+    let mut table = record();
+    table.columns[3] = column("roll rate", "", |k| 2.0 * (k - 30.0) / 30.0);
+    let open = RecordLayout::proposed(&table, &channels, &TimeWish::default()).layout;
+    assert_eq!(open.problems(&table, &channels).len(), 1);
+    let assumed = open.assuming_units_of_channels();
+    assert_eq!(assumed.problems(&table, &channels), []);
+    let codes = |layout: &RecordLayout| -> Vec<&str> {
+        let cautions = layout.cautions(&table, &channels);
+        cautions.iter().map(LayoutCaution::code).collect()
+    };
+    assert_eq!(codes(&assumed), ["unit-assumed"]);
+    assert_eq!(codes(&assumed.in_units_of_channels()), [""; 0]);
+    let mut chosen = assumed.clone();
+    chosen.outputs[0] = chosen.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
+    assert_eq!(codes(&chosen), [""; 0]);
+    assert_eq!(
+        assumed.assuming_units_of_channels(),
+        assumed,
+        "an assumption stays one"
+    );
 }
 
 #[test]

@@ -110,6 +110,7 @@ fn column_in_other(column: usize, from: &RecordTable, other: &RecordTable) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::column_use::UnitBasis;
     use crate::records::record_table::RecordColumn;
 
     fn table(names: &[&str]) -> RecordTable {
@@ -129,7 +130,7 @@ mod tests {
 
     fn open(column: usize) -> Option<ColumnUse> {
         Some(ColumnUse {
-            is_unit_open: true,
+            unit: UnitBasis::Open,
             ..ColumnUse::as_it_is(column)
         })
     }
@@ -161,7 +162,7 @@ mod tests {
         let found = layout.following(&other, [&before, &after], &from);
         let edited = found.outputs[0].unwrap();
         assert_eq!(edited.column, 2, "by name");
-        assert!(!edited.is_unit_open);
+        assert_eq!(edited.unit, UnitBasis::Known);
         assert_eq!(edited.remedy, remedy, "kept");
         assert!((edited.factor - 180.0 / std::f64::consts::PI).abs() < 1e-12);
         assert_eq!(found.outputs[1], layout.outputs[1]);

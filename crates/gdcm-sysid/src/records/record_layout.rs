@@ -32,6 +32,7 @@ pub(super) struct ChannelUse<'r> {
 }
 
 /// A channel with its chosen column.
+#[derive(Clone, Copy)]
 pub(super) struct ChosenColumn<'r> {
     pub(super) rule: &'r ChannelRule,
     pub(super) used: ColumnUse,
@@ -88,7 +89,29 @@ impl RecordLayout {
             .as_mut()
     }
 
-    /// Treats the samples of every open column as values in the unit of its channel.
+    /// Assumes the unit of its channel for every column whose unit is open, so that the record can
+    /// be used; the layout then has a caution.
+    #[must_use]
+    pub fn assuming_units_of_channels(&self) -> Self {
+        let mut layout = self.clone();
+        for used in layout.inputs.iter_mut().chain(&mut layout.outputs) {
+            *used = used.map(ColumnUse::assuming_unit_of_channel);
+        }
+        layout
+    }
+
+    /// Returns the layout without the remedies, which belong to one record.
+    #[must_use]
+    pub fn without_remedies(&self) -> Self {
+        let mut layout = self.clone();
+        for used in layout.inputs.iter_mut().chain(&mut layout.outputs) {
+            *used = used.map(ColumnUse::without_remedy);
+        }
+        layout
+    }
+
+    /// Confirms that the samples of every column whose unit is open or assumed are in the unit of
+    /// its channel.
     #[must_use]
     pub fn in_units_of_channels(&self) -> Self {
         let mut layout = self.clone();

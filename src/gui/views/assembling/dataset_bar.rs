@@ -4,7 +4,7 @@ use egui::{Button, RichText, Ui};
 
 use gdcm_model::units::number;
 
-use super::path_field::path_ui;
+use super::path_field::path_field_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
@@ -54,7 +54,7 @@ fn band_end_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>)
 }
 
 fn rules_file_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>) {
-    path_ui(
+    path_field_ui(
         ui,
         "Path of the rules",
         &mut assembly.rules_path,
@@ -80,7 +80,7 @@ fn rules_file_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<C
 }
 
 fn dataset_file_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>) {
-    path_ui(
+    path_field_ui(
         ui,
         "Path of the dataset to make",
         &mut assembly.dataset_path,

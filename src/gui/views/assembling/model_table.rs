@@ -1,6 +1,6 @@
 //! Model table: a row per model, sortable by every column.
 
-use egui::{Align, Button, Color32, Layout, Rect, Role, ScrollArea, Sense, Ui, vec2};
+use egui::{Color32, Rect, Role, ScrollArea, Sense, Ui, vec2};
 
 use gdcm_model::assembly::part::Part;
 
@@ -9,13 +9,15 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::state::assembly_columns::COLUMNS;
 use crate::gui::widgets::controls::{Asks, named, named_switch};
-use crate::gui::widgets::elision::elided_among;
+use crate::gui::widgets::elision::{elided, elided_among};
 use crate::gui::widgets::list_row::ROW_HEIGHT;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
 /// Index of the column in which incomplete models are marked.
 const FILE: usize = COLUMNS.len() - 1;
+/// Distance of a heading and of its cells from the left edge of their column \[pt\].
+const CELL_PAD: f32 = 3.0;
 
 /// Draws the table; only visible rows are laid out.
 pub(super) fn table_ui(
@@ -45,7 +47,7 @@ pub(super) fn table_ui(
         });
 }
 
-/// Draws the headings; a click sorts the table.
+/// Draws the headings above the left ends of their cells; a click sorts the table.
 fn headings_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -53,23 +55,28 @@ fn headings_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 0.0;
-        for (index, column) in COLUMNS.iter().enumerate() {
-            let sorting = assembly.sorting.mark(index);
-            let text = palette.small(format!("{}{sorting}", column.heading));
-            let size = vec2(width * column.share, ROW_HEIGHT);
-            let button =
-                ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-                    ui.set_min_size(size);
-                    ui.add(Button::new(text).frame(false))
-                });
-            let name = format!("Sort models by {}", column.heading);
-            named(button.inner, Role::Button, &name)
-                .on_hover_text(&name)
-                .asks(AssemblingCommand::Sort(index), commands);
-        }
-    });
+    let (rect, _) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::hover());
+    let mut left = rect.left();
+    for (index, column) in COLUMNS.iter().enumerate() {
+        let room = width * column.share;
+        let place = Rect::from_x_y_ranges(left..=left + room, rect.y_range());
+        left += room;
+        let id = ui.scope_id().with(("heading of models", index));
+        let name = format!("Sort models by {}", column.heading);
+        let heading = named(ui.interact(place, id, Sense::click()), Role::Button, &name);
+        let mark = assembly.sorting.mark(index);
+        let color = if heading.hovered() || !mark.is_empty() {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        let text = elided(ui, column.heading, room - 18.0, SMALL_SIZE);
+        let text = format!("{text}{mark}");
+        painted_text(ui, place, CELL_PAD, &text, small(), color);
+        heading
+            .on_hover_text(&name)
+            .asks(AssemblingCommand::Sort(index), commands);
+    }
 }
 
 fn incomplete_parts(assembly: &AssemblyState) -> Vec<usize> {
@@ -139,8 +146,8 @@ impl Table<'_> {
             let others = others.each_ref().map(Option::as_deref);
             let room = rect.width() * column.share;
             let text = elided_among(ui, &text, others, room - 6.0, SMALL_SIZE);
-            let place = Rect::from_x_y_ranges(left + 3.0..=left + room, rect.y_range());
-            painted_text(ui, place, 0.0, &text, small(), color);
+            let place = Rect::from_x_y_ranges(left..=left + room, rect.y_range());
+            painted_text(ui, place, CELL_PAD, &text, small(), color);
             left += room;
         }
     }

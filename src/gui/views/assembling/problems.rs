@@ -23,7 +23,11 @@ pub(super) fn problems_ui(
 ) {
     let assembly = state.assembly();
     let problems = assembly.problem_lines();
-    heading_ui(ui, problems.len(), palette);
+    if assembly.parts().is_empty() {
+        ui.label(palette.dim("No models yet: add a folder or files above, or drop them here"));
+    } else {
+        heading_ui(ui, problems.len(), palette);
+    }
     if problems.is_empty() {
         without_reference_ui(ui, state, palette);
     }
@@ -36,14 +40,20 @@ pub(super) fn problems_ui(
                 let part = caution.parts.first().copied();
                 line_ui(ui, palette.small_warning(words), part, commands);
             }
-            for problem in problems.iter().take(MOST_LINES) {
+            // Without models every property of the dataset is missing: no list says so.
+            let listed = if assembly.parts().is_empty() {
+                &[]
+            } else {
+                &problems[..]
+            };
+            for problem in listed.iter().take(MOST_LINES) {
                 let text = RichText::new(&problem.text)
                     .size(SMALL_SIZE)
                     .color(palette.text);
                 line_ui(ui, text, problem.part, commands);
             }
-            if problems.len() > MOST_LINES {
-                ui.label(palette.small(format!("and {} more", problems.len() - MOST_LINES)));
+            if listed.len() > MOST_LINES {
+                ui.label(palette.small(format!("and {} more", listed.len() - MOST_LINES)));
             }
             unread_tables_ui(ui, state, palette, commands);
             for text in unused_content(state, palette).into_iter().take(MOST_LINES) {
@@ -73,10 +83,12 @@ fn without_reference_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette) {
         return;
     }
     let ids: Vec<String> = conditions.iter().map(i64::to_string).collect();
+    let subject = match &ids[..] {
+        [id] => format!("Condition {id} has"),
+        ids => format!("Conditions {} have", ids.join(", ")),
+    };
     let words = format!(
-        "Conditions {} have no identified models yet: identify models from flight records \
-        afterwards",
-        ids.join(", ")
+        "{subject} no identified models yet: identify models from flight records afterwards"
     );
     ui.add(Label::new(palette.small(words)).wrap());
 }

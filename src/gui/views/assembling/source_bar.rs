@@ -2,12 +2,15 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::path_field::path_ui;
+use gdcm_model::number_format::counted;
+
+use super::path_field::path_field_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::text_fields::is_entered;
 
 pub(super) fn source_bar_ui(
     ui: &mut Ui,
@@ -37,12 +40,16 @@ pub(super) fn source_bar_ui(
 
 /// Shows the path field and the button that adds its folder or file.
 fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>) {
-    let is_entered = path_ui(
+    let field = path_field_ui(
         ui,
         "Folder or file of models",
         &mut assembly.source_path,
         "path of a folder or file, or drop it here",
     );
+    if !std::mem::replace(&mut assembly.had_focus, true) {
+        field.request_focus();
+    }
+    let is_entered = is_entered(ui, &field);
     let path = assembly.source_path.trim();
     let add = ui.add_enabled(!path.is_empty(), Button::new("Add"));
     if (add.clicked() || is_entered) && !path.is_empty() {
@@ -60,7 +67,10 @@ fn reading_ui(
     let Some(reading) = &assembly.reading else {
         let parts = assembly.assembly().parts();
         let included = parts.iter().filter(|part| !part.row.left_out).count();
-        ui.label(palette.small(format!("{included} of {} models included", parts.len())));
+        if !parts.is_empty() {
+            let all = counted(parts.len(), "model");
+            ui.label(palette.small(format!("{included} of {all} included")));
+        }
         return;
     };
     ui.spinner();

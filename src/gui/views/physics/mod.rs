@@ -15,7 +15,7 @@ mod use_parameters;
 
 use std::sync::Arc;
 
-use egui::{Frame, Label, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
+use egui::{Frame, Label, Margin, RichText, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::marks::MarkId;
@@ -120,16 +120,17 @@ pub fn physics_view_ui(
     if state.display.physics.shows_everything {
         ui.add_space(6.0);
         let height = ranking.height().min(0.5 * ui.available_height());
-        ui.horizontal_top(|ui| {
-            let width = ui.available_width();
-            ui.allocate_ui(vec2((1.0 - CORRELATION_PART) * width, height), |ui| {
-                ranking_ui(ui, &ranking, height, commands)
-            });
-            ui.add_space(10.0);
-            ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
-                matrix.ui(ui, commands)
-            });
+        let room = ui.available_rect_before_wrap();
+        let room = room.with_max_y(room.top() + height);
+        let middle = room.right() - CORRELATION_PART * room.width();
+        ui.scope_builder(UiBuilder::new().max_rect(room.with_max_x(middle)), |ui| {
+            ranking_ui(ui, &ranking, height, commands)
         });
+        let right = room.with_min_x(middle + 14.0);
+        ui.scope_builder(UiBuilder::new().max_rect(right), |ui| {
+            matrix.ui(ui, commands)
+        });
+        ui.advance_cursor_after_rect(room);
         ui.add_space(6.0);
         conditions_ui(ui, state, &findings, &assessment, palette, commands);
         return;

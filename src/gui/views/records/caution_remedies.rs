@@ -26,13 +26,21 @@ const MOST_REFERENCES: usize = 3;
 
 /// A button that removes the cause of a caution.
 pub(super) struct Remedy {
+    /// Text of the button.
+    pub(super) short: String,
+    /// The whole effect, in menus and as the accessible name.
     pub(super) label: String,
     pub(super) command: Command,
 }
 
 impl Remedy {
-    fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
+    fn new(
+        short: impl Into<String>,
+        label: impl Into<String>,
+        command: impl Into<Command>,
+    ) -> Self {
         Self {
+            short: short.into(),
             label: label.into(),
             command: command.into(),
         }
@@ -40,7 +48,11 @@ impl Remedy {
 }
 
 pub(super) fn study_band_remedy() -> Remedy {
-    Remedy::new("Use the study's band", RecordsCommand::SetBand(None))
+    Remedy::new(
+        "Study's band",
+        "Use the study's band",
+        RecordsCommand::SetBand(None),
+    )
 }
 
 /// Returns a button that changes the band if this lets the failed identification succeed; `band`
@@ -92,7 +104,7 @@ pub(super) fn caution_remedies(
             };
             let show_pair = SelectionCommand::FocusPair(pair);
             vec![
-                Remedy::new(format!("Show {output}/{input}"), show_pair),
+                Remedy::new("Show", format!("Show {output}/{input}"), show_pair),
                 choose_order(),
             ]
         }
@@ -107,7 +119,11 @@ pub(super) fn caution_remedies(
             remedies
         }
         IdentificationCaution::Unstable { .. } => vec![
-            Remedy::new("Show its poles", RecordsCommand::Show(RecordsPage::Poles)),
+            Remedy::new(
+                "Show poles",
+                "Show its poles",
+                RecordsCommand::Show(RecordsPage::Order),
+            ),
             choose_order(),
         ],
         _ => Vec::new(),
@@ -123,6 +139,7 @@ fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) 
         | RecordCaution::Spike { record, .. } => leave_out(records, record).into_iter().collect(),
         RecordCaution::MovedTogether { .. } => vec![show_inputs()],
         RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![Remedy::new(
+            "Check",
             "Set its column and factor…",
             RecordsCommand::Show(RecordsPage::Columns),
         )],
@@ -137,15 +154,18 @@ fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     let mut remedies = Vec::new();
     if signal.role == ChannelSide::Input {
         remedies.push(Remedy::new(
+            "Held command",
             format!("Treat {name} as a held command"),
             RecordsCommand::SetHold(signal.clone(), Hold::Command { hold_s }),
         ));
     }
     remedies.push(Remedy::new(
+        "Slow sensor",
         format!("Treat {name} as a slow sensor"),
         RecordsCommand::SetHold(signal.clone(), Hold::FreshSamples),
     ));
     remedies.push(Remedy::new(
+        "Unchanged",
         format!("Use {name} unchanged"),
         RecordsCommand::SetHold(signal.clone(), Hold::Acts),
     ));
@@ -189,6 +209,7 @@ fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Op
     }
     let label = repair_label(fault, &contradicting.name);
     Some(Remedy::new(
+        "Correct",
         label,
         RecordsCommand::SetRemedies(row, remedies),
     ))
@@ -231,6 +252,7 @@ pub(super) fn remove_common_delay(
     };
     let delay_s = known_s + delay_s;
     Remedy::new(
+        "Remove",
         format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name),
         RecordsCommand::SetDelay(signal.clone(), delay_s),
     )
@@ -238,6 +260,7 @@ pub(super) fn remove_common_delay(
 
 fn use_band(band: [f64; 2]) -> Remedy {
     Remedy::new(
+        format!("{:.2} to {:.1} rad/s", band[0], band[1]),
         format!("Identify from {:.2} to {:.1} rad/s", band[0], band[1]),
         RecordsCommand::SetBand(Some(band)),
     )
@@ -249,7 +272,11 @@ fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remed
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;
     if PERIODS * once < highest {
-        Some(use_band([PERIODS * once, highest]))
+        let lowest = PERIODS * once;
+        Some(Remedy {
+            short: format!("Start at {lowest:.2}"),
+            ..use_band([lowest, highest])
+        })
     } else {
         None
     }
@@ -263,6 +290,7 @@ fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
         .any(|(other, row)| other != index && !row.guess.held_out);
     if another_is_fitted {
         Some(Remedy::new(
+            "Leave out",
             format!("Leave {name} out"),
             RecordsCommand::SetUsed(index, false),
         ))
@@ -275,6 +303,7 @@ fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
 fn fit_held_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     let index = used_row(records, name)?;
     Some(Remedy::new(
+        "Fit it too",
         format!("Fit {name} too"),
         RecordsCommand::SetHeldOut(index, false),
     ))
@@ -288,11 +317,19 @@ fn used_row(records: &ConditionRecords, name: &str) -> Option<usize> {
 }
 
 fn show_inputs() -> Remedy {
-    Remedy::new("Show the inputs", RecordsCommand::Show(RecordsPage::Inputs))
+    Remedy::new(
+        "Inputs",
+        "Show the inputs",
+        RecordsCommand::Show(RecordsPage::Inputs),
+    )
 }
 
 fn choose_order() -> Remedy {
-    Remedy::new("Set an order…", RecordsCommand::ShowAdvanced(ORDERS))
+    Remedy::new(
+        "Set order…",
+        "Set an order…",
+        RecordsCommand::ShowAdvanced(ORDERS),
+    )
 }
 
 /// Returns remedies that select a reference suggested by its column name, and one that lists all
@@ -307,12 +344,14 @@ fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     {
         let column = &reference.column;
         remedies.push(Remedy::new(
+            "Use reference",
             format!("Use {column} as reference"),
             RecordsCommand::SetReferences(vec![column.clone()]),
         ));
     }
     if !possible.is_empty() {
         remedies.push(Remedy::new(
+            "Choose…",
             "Choose a reference…",
             RecordsCommand::ShowAdvanced(REFERENCES),
         ));

@@ -4,16 +4,20 @@ use egui::{Grid, ScrollArea, Ui};
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ChannelRemedy;
+use gdcm_model::number_format::counted;
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{ms_to_s, number, s_to_ms};
 use gdcm_sysid::identification::ChannelPreparation;
+use gdcm_sysid::records::column_use::UnitBasis;
 use gdcm_sysid::records::time_base::TimeBase;
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordLayout};
 
 use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::column_groups::RecordPlace;
 use crate::gui::widgets::choices::DropDown;
+use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::number_entry::number_entry_ui;
 
 const FIELD_WIDTH: f32 = 90.0;
@@ -44,20 +48,12 @@ const HEADINGS: [(&str, &str); 6] = [
 /// Shows a row for the time and for each channel.
 pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
-        state,
-        records,
-        palette,
+        records, palette, ..
     } = page;
     let Some(row) = records.rows.get(records.chosen) else {
         return;
     };
-    let is_of_dataset = row.table.entry_of_dataset(state.dataset()).is_some();
-    let scope = if is_of_dataset {
-        "every record of this condition"
-    } else {
-        "every added record, in all conditions,"
-    };
-    ui.label(palette.small(format!("Applies to {scope} with the same column names")));
+    scope_ui(ui, page, row, commands);
     ScrollArea::vertical()
         .id_salt("columns of a record")
         .auto_shrink(false)
@@ -78,6 +74,46 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
                 ui.label(palette.small(note));
             }
         });
+}
+
+/// Shows to which records the page applies, and a caution about their assumed units.
+fn scope_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<Command>) {
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
+    let place = RecordPlace {
+        condition: state.condition().id(),
+        row: records.chosen,
+    };
+    let group = state.records.group_of(place);
+    let (count, conditions) = match &group {
+        Some(group) => (group.records, group.conditions.len()),
+        None => (1, 1),
+    };
+    let mut words = format!(
+        "{}: applies to {}",
+        row.table.name,
+        counted(count, "record")
+    );
+    if conditions > 1 {
+        words.push_str(&format!(" of {conditions} conditions"));
+    }
+    words.push_str(" with these columns; the last two columns apply to this record only");
+    ui.label(palette.small(words));
+    if let Some(group) = &group
+        && !group.assumed.is_empty()
+    {
+        ui.horizontal_wrapped(|ui| {
+            let channels = group.assumed.join(", ");
+            let text = format!("⚠ The files do not give the units of {channels}: choose them, or");
+            ui.label(palette.small_warning(text));
+            ui.button("Confirm the dataset's units")
+                .on_hover_text("For the records of all conditions; one step to undo")
+                .asks(RecordsCommand::ConfirmUnits, commands);
+        });
+    }
 }
 
 /// Shows the time column and its conversion factor to seconds.
@@ -171,8 +207,8 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Shows the conversion factor to the dataset's unit. If the unit in the file is unknown, shows
-    /// the possible units with none selected.
+    /// Shows the conversion factor to the dataset's unit. If the file does not give the unit, shows
+    /// the possible units, with the assumed one selected.
     fn factor_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
         let open_units = match self.column_use {
@@ -193,13 +229,22 @@ impl ChannelRow<'_> {
             }
         } else {
             let label = format!("Unit of the column of {name}");
-            let units = open_units
-                .into_iter()
-                .map(|unit| (unit, false, unit.to_owned()));
+            let is_assumed = self
+                .column_use
+                .is_some_and(|column_use| column_use.unit == UnitBasis::Assumed);
+            let units = open_units.into_iter().map(|unit| {
+                let is_selected = is_assumed && unit == self.unit;
+                (unit, is_selected, unit.to_owned())
+            });
+            let text = if is_assumed {
+                format!("{}?", self.unit)
+            } else {
+                "unit?".to_owned()
+            };
             let list = DropDown {
                 name: &label,
                 width: FIELD_WIDTH,
-                text: "unit?",
+                text: &text,
             };
             if let Some(unit) = list.ui(ui, units)
                 && let Some(column_use) = self.column_use

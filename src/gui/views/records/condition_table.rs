@@ -1,71 +1,23 @@
 //! Table with a row for each condition that has records.
 
-use egui::Ui;
-
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::decimals;
 use gdcm_words::Table;
 
-use super::page::Page;
-use crate::gui::commands::command::Command;
-use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::condition_fit::FitStatus;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Index of the column with the number of cautions.
-const CAUTIONS: usize = 6;
-
-/// Shows the table; a heading sorts it, a click on a row displays the condition.
-pub(super) fn condition_table_ui(
-    ui: &mut Ui,
-    page: Page<'_>,
-    sorting: &mut Sorting,
-    commands: &mut Vec<Command>,
-) {
-    let Page { state, palette, .. } = page;
-    let table = condition_table(state);
-    let ids: Vec<ConditionId> = conditions_with_records(state).map(|(id, _)| *id).collect();
-    if ids.is_empty() {
-        ui.label(palette.dim("No condition has records yet"));
-        return;
-    }
-    let displayed = state.condition().id();
-    let look = TableLook {
-        color: &|row, column| {
-            if column == CAUTIONS && table.rows[row][CAUTIONS] != "0" {
-                Some(palette.warning)
-            } else {
-                None
-            }
-        },
-        selected: &|row| ids.get(row) == Some(&displayed),
-    };
-    if let Some(click) = table_ui(ui, &table, sorting, &look, palette, commands)
-        && let Some(id) = ids.get(click.row)
-    {
-        commands.push(SelectionCommand::SelectCondition(*id).into());
-    }
-}
-
-/// Returns the conditions with at least one used record.
-pub(super) fn conditions_with_records(
-    state: &State,
-) -> impl Iterator<Item = (&ConditionId, &ConditionRecords)> {
-    state
-        .records
-        .conditions
-        .iter()
-        .filter(|(_, records)| records.used_rows().next().is_some())
-}
-
-/// Builds a table of the conditions with records: model order, χ²/dof of fitted and held-out
-/// records, numbers of models and cautions, and computing time. Before an identification, cells are
-/// empty or give the reason.
+/// Builds a table of the conditions with records: numbers of records, state of the fit, model
+/// order, χ²/dof of fitted and held-out records, numbers of models and cautions, and computing
+/// time. Before an identification, cells are empty.
 pub fn condition_table(state: &State) -> Table {
     let columns = [
         "condition",
         "airspeed [kt]",
+        "records",
+        "held-out records",
+        "fit",
         "order",
         "χ²/dof",
         "held out",
@@ -74,46 +26,56 @@ pub fn condition_table(state: &State) -> Table {
         "time [s]",
     ];
     let mut table = Table::new("Identified conditions", columns);
-    for (id, records) in conditions_with_records(state) {
-        let airspeed_kt = match state.dataset().condition(*id) {
+    for id in state.records.conditions_in_use() {
+        let airspeed_kt = match state.dataset().condition(id) {
             Some(condition) => decimals(condition.flight_state().airspeed_kt, 0),
             None => String::new(),
         };
-        let mut cells = vec![id.to_string(), airspeed_kt];
-        cells.extend(outcome_cells(state, *id, records));
+        let fit = state.condition_fit(id);
+        let mut cells = vec![
+            id.to_string(),
+            airspeed_kt,
+            fit.counts.fitted.to_string(),
+            fit.counts.held_out.to_string(),
+            status_word(fit.status).to_owned(),
+        ];
+        if let Some(records) = state.records.conditions.get(&id) {
+            cells.extend(outcome_cells(state, id, records));
+        }
         table.row(cells);
     }
     table
 }
 
-/// Returns the cells from the model order on; fewer cells before an identification.
+fn status_word(status: FitStatus) -> &'static str {
+    match status {
+        FitStatus::None => "",
+        FitStatus::Queued => "queued",
+        FitStatus::Running { .. } => "running",
+        FitStatus::Failed => "failed",
+        FitStatus::Outdated => "outdated",
+        FitStatus::Finished { .. } => "finished",
+    }
+}
+
+/// Returns the cells from the model order on; none without a successful identification.
 fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> Vec<String> {
-    if let Some(job) = state.records.job_of(id) {
-        let text = if job.news().step.is_empty() {
-            "waiting"
-        } else {
-            "running"
-        };
-        return vec![text.to_owned()];
-    }
-    match &records.found {
-        None => Vec::new(),
-        Some((_, Err(_))) => vec!["not identified".to_owned()],
-        Some((job, Ok(found))) => {
-            let order = match found.refined.order() {
-                Some(order) => order.to_string(),
-                None => String::new(),
-            };
-            vec![
-                order,
-                decimals(found.cost, 2),
-                decimals_or_empty(found.held_out_cost, 2),
-                (found.bundle.len() + 1).to_string(),
-                found.cautions.len().to_string(),
-                decimals_or_empty(job.news().duration_s, 1),
-            ]
-        }
-    }
+    let (Some((job, Ok(found))), Some(costs)) = (&records.found, state.condition_fit(id).costs)
+    else {
+        return Vec::new();
+    };
+    let order = match found.refined.order() {
+        Some(order) => order.to_string(),
+        None => String::new(),
+    };
+    vec![
+        order,
+        decimals(costs.fitted, 2),
+        decimals_or_empty(costs.held_out, 2),
+        (found.bundle.len() + 1).to_string(),
+        found.cautions.len().to_string(),
+        decimals_or_empty(job.news().duration_s, 1),
+    ]
 }
 
 fn decimals_or_empty(value: Option<f64>, count: usize) -> String {

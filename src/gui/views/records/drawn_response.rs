@@ -12,10 +12,12 @@ use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
 use gdcm_sysid::identification::{Identification, IdentificationCaution, TRUSTED_COHERENCE};
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
+use crate::gui::plot::BodeCurve;
+
 /// Number of points on the curve of a model.
 const POINTS: usize = 200;
 /// Factor by which curves extend beyond the band.
-const BEYOND: f64 = 1.5;
+const BEYOND: f64 = 2.0;
 
 /// Upper or lower half in a Bode plot.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -61,8 +63,8 @@ impl BodePart {
 pub(super) struct CurvePoint {
     /// Frequency \[rad/s\].
     pub(super) omega: f64,
-    magnitude_db: f64,
-    phase_deg: f64,
+    pub(super) magnitude_db: f64,
+    pub(super) phase_deg: f64,
 }
 
 impl CurvePoint {
@@ -86,6 +88,11 @@ pub(super) struct MeasuredPoint {
     pub(super) sd: StandardDeviation,
     /// Whether partial coherence and frequency resolution suffice.
     pub(super) is_trusted: bool,
+    /// Partial coherence, 0 to 1.
+    pub(super) coherence: f64,
+    /// Phase of the measured point minus that of the recommended model, in standard deviations of
+    /// the measured point; `None` without a model or a standard deviation.
+    pub(super) phase_residual: Option<f64>,
 }
 
 /// Band and method of a measured response.
@@ -101,10 +108,13 @@ pub(super) struct MeasuredBand {
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,
+    /// Curve of the refined model, over the band and slightly beyond.
+    pub(super) refined: Vec<CurvePoint>,
     /// Curve of the refined model, at the frequencies of its confidence band.
     pub(super) recommended: Vec<CurvePoint>,
     /// Standard deviation at each point of the recommended curve.
     pub(super) recommended_sds: Vec<StandardDeviation>,
+    /// Curve of the first model, which is drawn while that model is refined.
     pub(super) unrefined: Vec<CurvePoint>,
     /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
     /// (M14.17).
@@ -149,12 +159,52 @@ impl DrawnResponse {
             }
         }
         if let Some(model) = found.refined.state_space() {
+            drawn.refined = model_curve(model, measured_band.band, pair, anchor);
             drawn.recommended = curve(model, band_omega, pair, anchor);
-        }
-        if let Some(model) = found.unrefined.state_space() {
-            drawn.unrefined = model_curve(model, measured_band.band, pair, anchor);
+            let omega: Vec<f64> = drawn
+                .measured
+                .iter()
+                .map(|point| point.point.omega)
+                .collect();
+            let at_points = curve(model, &omega, pair, anchor);
+            for measured in &mut drawn.measured {
+                measured.phase_residual = phase_residual(measured, &at_points);
+            }
         }
         drawn
+    }
+
+    /// Returns the points of a curve from another source, its phase on the branch of these curves.
+    pub(super) fn aligned(&self, curve: &BodeCurve) -> Vec<CurvePoint> {
+        let anchor = self
+            .measured
+            .iter()
+            .find(|measured| measured.is_trusted)
+            .map(|measured| measured.point)
+            .or_else(|| self.refined.first().copied());
+        let mut omega = Vec::new();
+        let mut phase_deg = Vec::new();
+        let mut magnitude_db = Vec::new();
+        for (index, frequency) in curve.omega.iter().enumerate() {
+            if curve.magnitude_db[index].is_finite() && curve.phase_deg[index].is_finite() {
+                omega.push(*frequency);
+                magnitude_db.push(curve.magnitude_db[index]);
+                phase_deg.push(curve.phase_deg[index]);
+            }
+        }
+        let shift_deg = match anchor {
+            Some(anchor) => branch_shift_deg(&omega, &phase_deg, anchor),
+            None => 0.0,
+        };
+        let mut points = Vec::with_capacity(omega.len());
+        for (index, omega) in omega.into_iter().enumerate() {
+            points.push(CurvePoint {
+                omega,
+                magnitude_db: magnitude_db[index],
+                phase_deg: phase_deg[index] + shift_deg,
+            });
+        }
+        points
     }
 
     /// Returns whether an error bar or a band exceeds its maximum drawn length.
@@ -167,6 +217,20 @@ impl DrawnResponse {
                 .any(|part| part.drawn_half_interval(sd) < part.half_interval(sd))
         })
     }
+}
+
+/// Returns the phase residual of a measured point with respect to a model's curve at the measured
+/// frequencies, within half a turn.
+fn phase_residual(measured: &MeasuredPoint, at_points: &[CurvePoint]) -> Option<f64> {
+    let model = at_points
+        .iter()
+        .find(|point| point.omega == measured.point.omega)?;
+    if measured.sd.deg <= 0.0 {
+        return None;
+    }
+    let difference = measured.point.phase_deg - model.phase_deg;
+    let wrapped = difference - 360.0 * (difference / 360.0).round();
+    Some(wrapped / measured.sd.deg)
 }
 
 /// Returns the measured points of a pair. A point is trusted if its partial coherence reaches
@@ -189,6 +253,8 @@ fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
                 deg: sd.to_degrees(),
             },
             is_trusted: estimate.partial_coherence[at] >= TRUSTED_COHERENCE && is_narrow,
+            coherence: estimate.partial_coherence[at],
+            phase_residual: None,
         });
     }
     measured

@@ -1,125 +1,81 @@
-//! Page with the fit of the models: χ²/dof in the frequency domain, fit and Theil's coefficient in
-//! the time domain; below, what further sweeps would bring.
+//! Page Fit: the displayed record over time, above the response in focus.
 
-use egui::{Grid, RichText, ScrollArea, Ui};
+use egui::{Align2, Rect, Role, Sense, Stroke, Ui, UiBuilder, vec2};
 
-use gdcm_sysid::identification::Identification;
-
-use super::next_flight::next_flight_ui;
+use super::fit_layout::FitLayout;
+use super::histories::{histories_ui, shown_outputs};
 use super::page::Page;
-use super::record_list::cost_text;
-use super::simulation::{simulated, time_models_ui};
+use super::parts_lane::parts_lane_ui;
+use super::record_span::RecordSpan;
+use super::response::response_ui;
+use super::role_chips::role_chips_ui;
+use super::simulation::simulated;
 use crate::gui::commands::command::Command;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::plot::BodeCurve;
+use crate::gui::state::records::RecordsPage;
+use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::palette::body;
 
-/// Limit of Theil's coefficient below which the fit of a model counts as good (M14, section 6).
-const GOOD_THEIL: f64 = 0.25;
-
-/// Shows the fit in tables: by record, by output, and in the time domain.
-pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    ScrollArea::vertical()
-        .id_salt("fit")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            if let Some(found) = page.identification_ui(ui) {
-                frequency_fit_ui(ui, page, found);
-            }
-            ui.add_space(10.0);
-            time_fit_ui(ui, page, commands);
-            ui.add_space(10.0);
-            next_flight_ui(ui, page);
-        });
-}
-
-/// Shows χ²/dof by record and by output.
-fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
-    let Page { state, palette, .. } = page;
-    let heading = "Frequency domain: χ² per degree of freedom; 1 if only noise remains";
-    ui.label(RichText::new(heading).strong());
-    Grid::new("fit of records")
-        .num_columns(3)
-        .striped(true)
-        .show(ui, |ui| {
-            for fit in &found.record_fits {
-                ui.label(match found.record_uses.get(fit.record) {
-                    Some(record_use) => record_use.record.as_str(),
-                    None => "",
-                });
-                ui.label(cost_text(fit.cost, palette));
-                ui.label(if fit.held_out { "held out" } else { "" });
-                ui.end_row();
-            }
-        });
-    ui.add_space(6.0);
-    Grid::new("fit of outputs")
-        .num_columns(2)
-        .striped(true)
-        .show(ui, |ui| {
-            let outputs = state.dataset().outputs();
-            for (output, cost) in outputs.iter().zip(&found.output_costs) {
-                ui.label(&output.name);
-                ui.label(cost_text(*cost, palette));
-                ui.end_row();
-            }
-        });
-}
-
-/// Shows fit and Theil's coefficient of each output and selected model, for the displayed record.
-fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page {
-        state,
-        records,
-        palette,
-    } = page;
-    let name = match records.rows.get(records.chosen) {
-        Some(row) => row.table.name.as_str(),
-        None => "",
-    };
-    ui.label(
-        RichText::new(format!(
-            "Time domain: {name}, fit in % and Theil's coefficient"
-        ))
-        .strong(),
-    );
-    time_models_ui(ui, state, palette, commands);
-    let models = simulated(state, palette);
-    Grid::new("fit in time")
-        .num_columns(1 + 2 * models.len())
-        .striped(true)
-        .show(ui, |ui| {
-            ui.label("");
-            for model in &models {
-                ui.label(RichText::new(model.model.name()).color(model.color));
-                ui.label("");
-            }
-            ui.end_row();
-            for (index, output) in state.dataset().outputs().iter().enumerate() {
-                ui.label(&output.name);
-                for model in &models {
-                    ui.label(model.fit_words(index).unwrap_or_else(|| "–".to_owned()));
-                    ui.label(theil_text(model.theil(index), palette));
-                }
-                ui.end_row();
-            }
-        });
-    for model in &models {
-        model.absence_ui(ui, state, palette);
+/// Draws the page; `curves` are the curves of the response in focus in the Bode view.
+pub(super) fn fit_ui(
+    ui: &mut Ui,
+    page: Page<'_>,
+    curves: &[BodeCurve],
+    commands: &mut Vec<Command>,
+) {
+    let area = ui.available_rect_before_wrap();
+    ui.allocate_rect(area, Sense::hover());
+    if page.records.rows.is_empty() {
+        message_ui(ui, page, area, &no_records_text(page));
+        return;
     }
-    ui.label(palette.small(
-        "The fit in the time domain hardly distinguishes models: rank them by the cost of \
-        held-out records",
-    ));
+    let more_outputs = shown_outputs(page).len() - 1;
+    let layout = FitLayout::new(area, more_outputs);
+    let models = simulated(page.state);
+    role_chips_ui(ui, page, &models, layout.chips, commands);
+    match RecordSpan::new(page) {
+        Some(record) => {
+            if let Some(view) = histories_ui(ui, page, &record, &models, &layout.time) {
+                parts_lane_ui(ui, page, &record, layout.lane, &view, commands);
+            }
+        }
+        None => unassigned_ui(ui, page, &layout, commands),
+    }
+    let line = Stroke::new(1.0, page.palette.line);
+    ui.painter().hline(area.x_range(), layout.separator, line);
+    response_ui(ui, page, curves, layout.heading, &layout.response);
 }
 
-/// Formats Theil's coefficient, in the warning colour unless it is below [`GOOD_THEIL`].
-fn theil_text(theil: Option<f64>, palette: &Palette) -> RichText {
-    let Some(theil) = theil else {
-        return RichText::new("–").color(palette.dim_text);
-    };
-    let color = if theil < GOOD_THEIL {
-        palette.text
-    } else {
-        palette.warning
-    };
-    RichText::new(format!("{theil:.3}")).color(color)
+fn no_records_text(page: Page<'_>) -> String {
+    match &page.state.records.reading {
+        Some(reading) => format!("Reading {reading} …"),
+        None => "No flight records of this condition: add files or folders, or drop them here"
+            .to_owned(),
+    }
+}
+
+fn message_ui(ui: &Ui, page: Page<'_>, area: Rect, text: &str) {
+    let color = page.palette.dim_text;
+    ui.painter()
+        .text(area.center(), Align2::CENTER_CENTER, text, body(), color);
+    let response = ui.interact(area, ui.scope_id().with("message"), Sense::hover());
+    named(response, Role::Label, text);
+}
+
+/// Says in the place of the time charts that the columns of the record are not assigned.
+fn unassigned_ui(ui: &mut Ui, page: Page<'_>, layout: &FitLayout, commands: &mut Vec<Command>) {
+    let mut area = layout.lane;
+    for place in &layout.time {
+        area = area.union(*place);
+    }
+    let text = "The columns of this record are not yet assigned to channels";
+    message_ui(ui, page, area.translate(vec2(0.0, -16.0)), text);
+    let button = Rect::from_center_size(area.center() + vec2(0.0, 12.0), vec2(140.0, 24.0));
+    ui.scope_builder(UiBuilder::new().max_rect(button), |ui| {
+        ui.vertical_centered(|ui| {
+            ui.button("Assign columns")
+                .asks(RecordsCommand::Show(RecordsPage::Columns), commands);
+        });
+    });
 }

@@ -1,37 +1,151 @@
-//! Commands in the view's header.
+//! Commands and progress in the view's page bar.
 
-use egui::{Button, Ui};
+use egui::containers::menu::MenuButton;
+use egui::{Button, ProgressBar, RichText, Role, Ui};
 
-use super::offered_models::offered_models_ui;
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
+use gdcm_study::decisions::adopted_models::OfferedModels;
+
+use super::offered_models::OFFERS;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::condition_fit::BatchProgress;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, button_ui};
+use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::widgets::palette::Palette;
 
-/// Draws the commands for the displayed condition, from right to left.
+/// Width of the progress bar \[pt\].
+const BAR: f32 = 72.0;
+/// Room for the words about the progress \[pt\].
+const BAR_WORDS: f32 = 112.0;
+const IDENTIFY_HINT: &str =
+    "Identifies models from the records: CT-PBSID, refined, with confidence bands (M14)";
+
+/// Draws the commands, from right to left: *Use n fits*, then *Identify* or the progress with
+/// *Stop*.
 pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let condition = state.condition().id();
-    if state.records.job_of(condition).is_some() {
-        let stop = Button::new("Stop identifying");
-        button_ui(ui, stop, "", RecordsCommand::Stop, commands);
-        ui.spinner();
+    let palette = Palette::from_visuals(ui.visuals());
+    let fits = state.unused_fits();
+    use_ui(ui, &fits, &palette, commands);
+    match state.batch_progress() {
+        Some(progress) => progress_ui(ui, state, progress, &palette, commands),
+        None => identify_ui(ui, state, fits.is_empty(), &palette, commands),
+    }
+}
+
+/// Returns a button, filled with the accent if it is the primary one.
+fn command_button<'b>(text: String, is_primary: bool, palette: &Palette) -> Button<'b> {
+    if is_primary {
+        let text = RichText::new(text).color(palette.background);
+        Button::new(text).fill(palette.accent)
+    } else {
+        Button::new(text)
+    }
+}
+
+/// Draws the menu beside a button.
+fn more_ui(ui: &mut Ui, name: &str, entries: Vec<(String, Command)>, commands: &mut Vec<Command>) {
+    let (response, _) = MenuButton::from_button(Button::new("▾")).ui(ui, |ui| {
+        entries_ui(ui, entries, commands);
+    });
+    named(response, Role::Button, name);
+}
+
+/// Draws the command that takes all finished fits, and a menu with other models; the fit of the
+/// displayed condition alone is used in the right panel.
+fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut Vec<Command>) {
+    if fits.is_empty() {
         return;
     }
-    let records = state.records.conditions.get(&condition);
-    let has_used_record = records.is_some_and(|records| records.used_rows().next().is_some());
-    let hint = "Identifies models of this condition from its records: CT-PBSID, refined, with \
-        confidence bands (M14)";
-    ui.add_enabled(has_used_record, Button::new("Identify"))
+    let mut entries: Vec<(String, Command)> = Vec::new();
+    for offer in OFFERS {
+        let command = RecordsCommand::TakeAll(offer.models);
+        entries.push((offer.words.to_owned(), command.into()));
+    }
+    more_ui(ui, "Other models of the fits", entries, commands);
+    let text = format!("Use {}", counted(fits.len(), "fit"));
+    let names: Vec<String> = fits.iter().map(ToString::to_string).collect();
+    let hint = format!(
+        "Replaces the identified models of condition {} by the refined models; one step to undo",
+        names.join(", ")
+    );
+    ui.add(command_button(text, true, palette))
         .on_hover_text(hint)
-        .asks(RecordsCommand::Identify, commands);
-    if records.is_some_and(|records| records.identification().is_some()) {
-        let hint = "Replaces the identified models of this condition; one step to undo";
-        if let Some(offered) = offered_models_ui(ui, "Use these models", hint) {
-            commands.push(RecordsCommand::Take(offered).into());
+        .asks(RecordsCommand::TakeAll(OfferedModels::REFINED), commands);
+}
+
+/// Draws the command that identifies all conditions with records.
+fn identify_ui(
+    ui: &mut Ui,
+    state: &State,
+    is_primary: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let condition = state.condition().id();
+    let in_use = state.records.conditions_in_use();
+    let open = state.conditions_to_identify();
+    if in_use.len() > 1 {
+        let mut entries: Vec<(String, Command)> = Vec::new();
+        if in_use.contains(&condition) {
+            let text = format!("Identify condition {condition} only");
+            entries.push((text, RecordsCommand::Identify.into()));
+        }
+        if !entries.is_empty() {
+            more_ui(ui, "More ways to identify", entries, commands);
         }
     }
-    let has_taken_models = state.study.taken_models().any(|(id, _)| id == condition);
-    if has_taken_models && ui.button("Restore the file's models").clicked() {
-        commands.push(RecordsCommand::Return.into());
+    let text = if in_use.len() < 2 {
+        "Identify".to_owned()
+    } else if open.len() == in_use.len() {
+        format!("Identify all {}", in_use.len())
+    } else {
+        format!("Identify {} of {}", open.len(), in_use.len())
+    };
+    let is_primary = is_primary && !in_use.is_empty();
+    ui.add_enabled(
+        !in_use.is_empty(),
+        command_button(text, is_primary, palette),
+    )
+    .on_hover_text(IDENTIFY_HINT)
+    .asks(RecordsCommand::IdentifyAll, commands);
+}
+
+/// Draws the progress at the left of the button that stops it.
+fn progress_ui(
+    ui: &mut Ui,
+    state: &State,
+    progress: BatchProgress,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    button_ui(
+        ui,
+        Button::new("Stop"),
+        "Stops identifying; finished fits are kept",
+        RecordsCommand::Stop,
+        commands,
+    );
+    let mut words = format!("{} of {}", progress.finished, progress.requested);
+    if let Some(left_s) = progress.left_s {
+        words.push_str(&format!(", {left_s:.0} s left"));
     }
+    let size = egui::vec2(BAR_WORDS, ui.spacing().interact_size.y);
+    let step = match state.records.under_way() {
+        Some(job) => format!("condition {}: {}", job.condition, job.news().step),
+        None => "waiting".to_owned(),
+    };
+    ui.allocate_ui_with_layout(
+        size,
+        egui::Layout::left_to_right(egui::Align::Center),
+        |ui| {
+            ui.set_min_width(BAR_WORDS);
+            ui.label(palette.dim(words)).on_hover_text(step);
+        },
+    );
+    let bar = ProgressBar::new(progress.share)
+        .desired_width(BAR)
+        .desired_height(6.0);
+    ui.add(bar);
 }

@@ -1,228 +1,411 @@
-//! Page with the channels of a record over time, and the models' responses to the same inputs.
+//! Charts of the displayed record over time: the excited input, the output in focus and further
+//! outputs, with the models' responses, on a common time axis and with a common cursor.
 
 use std::sync::Arc;
 
-use egui::{Color32, Label, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+use egui::{Align2, Color32, Rect, Shape, Stroke, Ui, pos2};
+use egui_plot::{PlotPoint, PlotTransform};
 
-use gdcm_model::simulation::FlightRecord;
-use gdcm_sysid::records::ModeSpan;
+use gdcm_model::dataset::Channel;
+use gdcm_plot::figure::Range;
 
+use super::caution_marks::channel_caution_marks;
+use super::excited_channel::displayed_input;
+use super::fit_layout::TICKS;
 use super::frame_cache::cached;
-use super::history_spans::{gap_spans, mode_spans, part_spans};
+use super::history_readout::{ChannelReadout, RoleValue};
+use super::history_spans::{gap_spans, mode_spans};
 use super::page::Page;
-use super::record_parts::{part_ui, span_ui};
-use super::simulation::{Simulated, simulated, time_models_ui};
-use super::spectrogram::{spectrogram_choice_ui, spectrogram_ui};
-use crate::gui::commands::command::Command;
-use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartSpan};
+use super::record_span::RecordSpan;
+use super::recorded_lines::{RecordedLines, recorded_lines};
+use super::simulation::{Simulated, value_at};
+use super::spectrogram::spectrogram_ui;
+use super::time_charts::{READOUT_WIDTH, VALUE_AXIS, time_axis};
+use super::value_range::rounded_range;
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartLayout, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::plot::dragged_range::take_dragged_range;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::state::records::TimeRole;
+use crate::gui::widgets::palette::{Palette, small};
 
-/// Minimum chart height \[pt\]; further charts scroll.
-const LEAST_HEIGHT: f32 = 84.0;
+/// Opacity of samples outside the parts in use.
+const OUTSIDE: f32 = 0.4;
+/// Factor by which a model's response may extend the range of the samples; a diverging model is cut.
+const MOST_EXTENSION: f64 = 0.5;
+/// Radius of the dots at the cursor \[pt\].
+const DOT: f32 = 2.8;
 
-/// Shows the toolbar, the spectrogram, and a chart for each input and output.
-pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page {
-        state,
-        records,
-        palette,
-    } = page;
-    let Some(row) = records.rows.get(records.chosen) else {
-        return;
-    };
-    let Some(flight) = &row.flight else {
-        let text = "First assign the record's columns to channels on the Columns page";
-        ui.label(RichText::new(text).color(palette.warning));
-        return;
-    };
-    modes_ui(ui, &row.table.modes, palette);
-    let mut spans = mode_spans(&row.table.modes, palette);
-    spans.extend(part_spans(page));
-    spans.extend(gap_spans(page));
-    ui.horizontal_wrapped(|ui| {
-        time_models_ui(ui, state, palette, commands);
-        spectrogram_choice_ui(ui, page, commands);
-        part_ui(ui, page, commands);
-        span_ui(ui, page);
-    });
-    if let Some(part_s) = take_dragged_range(ui, Page::time_axis()) {
-        spans.push(ChartSpan {
-            ends: part_s.ends,
-            color: palette.accent.gamma_multiply(0.35),
-        });
-        if part_s.has_ended {
-            commands.push(RecordsCommand::AddPart(records.chosen, part_s.ends).into());
-        }
-    }
-    preparation_ui(ui, page);
-    let models = simulated(state, palette);
-    for model in &models {
-        model.absence_ui(ui, state, palette);
-    }
-    spectrogram_ui(ui, page, flight);
-    let charts = ChannelCharts {
+/// What the lane above the charts and the read-outs need.
+pub(super) struct TimeView {
+    /// Transform of the charts; only its horizontal axis is common to all.
+    pub(super) transform: PlotTransform,
+    /// Time at the cursor \[s\].
+    pub(super) cursor_s: f64,
+}
+
+/// Draws the charts into their places; the first is the excited input, the second the output in
+/// focus. Returns `None` without places.
+pub(super) fn histories_ui(
+    ui: &mut Ui,
+    page: Page<'_>,
+    record: &RecordSpan,
+    models: &[Simulated<'_>],
+    places: &[Rect],
+) -> Option<TimeView> {
+    let charts = TimeCharts {
         page,
-        flight,
-        models: &models,
-        spans: &spans,
+        record,
+        models,
+        spans: marked_spans(page),
     };
-    ScrollArea::vertical()
-        .id_salt("histories")
-        .auto_shrink(false)
-        .show(ui, |ui| charts.show(ui));
+    charts.show(ui, places)
 }
 
-/// Lists facts about the preparation of the displayed record that raise no caution, such as an
-/// input at its limit.
-fn preparation_ui(ui: &mut Ui, page: Page<'_>) {
-    let Page {
-        records, palette, ..
-    } = page;
-    let Some(found) = page.current_identification() else {
-        return;
+/// Returns the marked time spans: modes of the logging system, and gaps.
+fn marked_spans(page: Page<'_>) -> Vec<ChartSpan> {
+    let Some(row) = page.records.rows.get(page.records.chosen) else {
+        return Vec::new();
     };
-    for (record, record_use) in found.record_uses.iter().enumerate() {
-        if records.row_of_record(record) == Some(records.chosen) {
-            for fact in record_use.facts() {
-                ui.label(palette.small(fact));
-            }
+    let mut spans = mode_spans(&row.table.modes, page.palette);
+    spans.extend(gap_spans(page));
+    spans
+}
+
+/// Returns the indices of the outputs over time: the output in focus, then the further outputs.
+pub(super) fn shown_outputs(page: Page<'_>) -> Vec<usize> {
+    let count = page.state.dataset().outputs().len();
+    let focus = page.state.display.selection.pair.output;
+    let mut outputs = vec![focus];
+    match &page.state.records.more_outputs {
+        Some(more) => {
+            outputs.extend(
+                more.iter()
+                    .copied()
+                    .filter(|output| *output < count && *output != focus),
+            );
         }
+        None => outputs.extend((0..count).filter(|output| *output != focus)),
     }
+    outputs
 }
 
-/// Charts of a record, inputs before outputs, in two columns.
-struct ChannelCharts<'a> {
+/// A channel that is drawn over time.
+#[derive(Clone, Copy)]
+struct DrawnChannel<'a> {
+    channel: &'a Channel,
+    /// Index among inputs, then outputs.
+    index: usize,
+    /// Index among the outputs; `None` for an input.
+    output: Option<usize>,
+}
+
+/// A chart as drawn.
+struct DrawnChart<'a> {
+    channel: DrawnChannel<'a>,
+    transform: PlotTransform,
+    range: Range,
+    recorded: Arc<RecordedLines>,
+    place: Rect,
+}
+
+/// Charts of a record.
+struct TimeCharts<'a> {
     page: Page<'a>,
-    flight: &'a Arc<FlightRecord>,
+    record: &'a RecordSpan,
     models: &'a [Simulated<'a>],
     /// Marked time spans \[s\], the same in every chart.
-    spans: &'a [ChartSpan],
+    spans: Vec<ChartSpan>,
 }
 
-impl ChannelCharts<'_> {
-    fn show(&self, ui: &mut Ui) {
+impl<'a> TimeCharts<'a> {
+    fn show(&self, ui: &mut Ui, places: &[Rect]) -> Option<TimeView> {
+        let channels = self.channels(ui);
+        let with_spectrogram = self.page.state.records.spectrogram.is_some();
+        // The spectrogram takes the room of the further outputs, or of the input.
+        let spectrogram_place = match places {
+            [.., first, last] if places.len() > 3 && with_spectrogram => Some(first.union(*last)),
+            [first, ..] if with_spectrogram => Some(*first),
+            _ => None,
+        };
+        let mut drawn = Vec::new();
+        for (number, place) in places.iter().enumerate() {
+            let is_taken = match spectrogram_place {
+                Some(taken) => taken.contains(place.center()),
+                None => false,
+            };
+            if is_taken {
+                continue;
+            }
+            let Some(channel) = channels.get(number) else {
+                continue;
+            };
+            let is_lowest = number + 1 == places.len();
+            drawn.push(self.chart_ui(ui, *place, *channel, is_lowest));
+        }
+        let axis = drawn.last()?;
+        if let Some(place) = spectrogram_place {
+            let has_ticks = places
+                .last()
+                .is_some_and(|last| place.contains(last.center()));
+            spectrogram_ui(ui, self.page, self.record, place, has_ticks);
+        }
+        let transform = axis.transform;
+        let cursor_s = self.cursor_s(ui, places, &drawn);
+        for chart in &drawn {
+            self.cursor_ui(ui, chart, cursor_s);
+        }
+        if let Some(last) = places.last() {
+            let at = pos2(transform.frame().left() - 6.0, last.bottom() - 0.5 * TICKS);
+            let color = self.page.palette.dim_text;
+            ui.painter()
+                .text(at, Align2::RIGHT_CENTER, "s", small(), color);
+        }
+        Some(TimeView {
+            transform,
+            cursor_s,
+        })
+    }
+
+    /// Returns the channels in the order of the places.
+    fn channels(&self, ui: &Ui) -> Vec<DrawnChannel<'a>> {
         let dataset = self.page.state.dataset();
-        let count = dataset.inputs().len() + dataset.outputs().len();
-        let rows = count.div_ceil(2).max(1);
-        let height = ((ui.available_height() - 6.0) / rows as f32).max(LEAST_HEIGHT);
-        let width = 0.5 * ui.available_width();
-        let size = vec2(2.0 * width, height * rows as f32);
-        let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-        for index in 0..count {
-            // Fill the grid column by column, so that inputs come before outputs.
-            let column = index / rows;
-            let row = index % rows;
-            let corner = area.min + vec2(column as f32 * width, row as f32 * height);
-            let is_lowest = row + 1 == rows || index + 1 == count;
-            let place = Rect::from_min_size(corner, vec2(width, height));
-            self.channel_ui(ui, place, index, is_lowest);
+        let inputs = dataset.inputs();
+        let input = displayed_input(ui, self.page);
+        let mut channels = Vec::new();
+        if let Some(channel) = inputs.get(input) {
+            channels.push(DrawnChannel {
+                channel,
+                index: input,
+                output: None,
+            });
+        }
+        for output in shown_outputs(self.page) {
+            channels.push(DrawnChannel {
+                channel: &dataset.outputs()[output],
+                index: inputs.len() + output,
+                output: Some(output),
+            });
+        }
+        channels
+    }
+
+    fn is_shown(&self, role: TimeRole) -> bool {
+        !self.page.state.records.hidden_roles.contains(&role)
+    }
+
+    fn chart_ui(
+        &self,
+        ui: &mut Ui,
+        place: Rect,
+        channel: DrawnChannel<'a>,
+        is_lowest: bool,
+    ) -> DrawnChart<'a> {
+        let palette = self.page.palette;
+        let recorded = recorded_lines(ui, self.record, channel.index);
+        let range = self.value_range(ui, channel, &recorded);
+        let title = format!("{} [{}]", channel.channel.name, channel.channel.unit);
+        let mut chart = Chart::new(&title, ChartAxis::Linear, "", "");
+        chart.group = Some(time_axis(self.record));
+        chart.fits_values = true;
+        chart.values = Some(range);
+        let [from, to] = self.record.span_s;
+        chart.whole_across = Some(Range::new(from, to));
+        chart.layout = ChartLayout {
+            title_height: 0.0,
+            value_axis_width: VALUE_AXIS,
+            right_margin: READOUT_WIDTH,
+            has_ticks_across: is_lowest,
+        };
+        chart.spans = self.spans.clone();
+        for model in self.models {
+            if let Some(output) = channel.output
+                && self.is_shown(model.role)
+            {
+                let lines = model.lines(ui, output);
+                add_lines(&mut chart, &lines, model.role, palette);
+            }
+        }
+        if self.is_shown(TimeRole::Measured) {
+            let color = TimeRole::Measured.color(palette).gamma_multiply(OUTSIDE);
+            for points in &recorded.outside {
+                chart.lines.push(ChartLine {
+                    points: Arc::clone(points),
+                    color,
+                    width: 1.0,
+                    dashed: false,
+                });
+            }
+            add_lines(&mut chart, &recorded.inside, TimeRole::Measured, palette);
+        }
+        chart.notes = self.caution_marks(&channel.channel.name);
+        let transform = chart_ui(ui, place, &chart, palette).transform;
+        DrawnChart {
+            channel,
+            transform,
+            range,
+            recorded,
+            place,
         }
     }
 
-    /// Draws the chart of a channel; `index` counts inputs, then outputs. The lowest chart of a
-    /// column labels the time axis.
-    fn channel_ui(&self, ui: &mut Ui, place: Rect, index: usize, is_lowest: bool) {
-        let Page { state, palette, .. } = self.page;
-        let dataset = state.dataset();
-        let inputs = dataset.inputs();
-        let output = index.checked_sub(inputs.len());
-        let channel = match output {
-            None => &inputs[index],
-            Some(output) => &dataset.outputs()[output],
+    /// Returns the range of a channel: that of the samples, extended by the models' responses
+    /// whether they are shown or not, so that the chips never move the axis.
+    fn value_range(
+        &self,
+        ui: &Ui,
+        channel: DrawnChannel<'_>,
+        recorded: &Arc<RecordedLines>,
+    ) -> Range {
+        let source = Arc::clone(recorded) as _;
+        let name = format!("range {}", channel.index);
+        let samples = cached(ui, &name, &[source], (), || {
+            Range::spanning(recorded.points().map(|point| point[1]))
+        });
+        let Some(samples) = *samples else {
+            return Range::new(-1.0, 1.0);
         };
-        let title = format!("{} [{}]", channel.name, channel.unit);
-        let across = if is_lowest { "time [s]" } else { "" };
-        let mut chart = Chart::new(&title, ChartAxis::Linear, across, "");
-        chart.group = Some(Page::time_axis());
-        chart.fits_values = true;
-        chart.chooses = state.records.chooses_parts;
-        chart.spans = self.spans.to_vec();
-        chart.lines = self.recorded_lines(ui, index, output);
-        if let Some(output) = output {
+        let limit = Range::new(
+            samples.min - MOST_EXTENSION * samples.width(),
+            samples.max + MOST_EXTENSION * samples.width(),
+        );
+        let mut range = samples;
+        if let Some(output) = channel.output {
             for model in self.models {
-                chart.lines.extend(model.lines(ui, output));
-                if let Some(fit) = model.fit_words(output) {
-                    chart.notes.push((fit, model.color));
+                let lines = model.lines(ui, output);
+                let source = Arc::clone(&lines) as _;
+                let name = format!("range {} of {}", channel.index, model.role.name());
+                let response = cached(ui, &name, &[source], (), || {
+                    let points = lines.iter().flat_map(|line| line.iter());
+                    Range::spanning(points.map(|point| point[1]))
+                });
+                if let Some(response) = *response {
+                    range.min = range.min.min(response.min.max(limit.min));
+                    range.max = range.max.max(response.max.min(limit.max));
                 }
             }
         }
-        chart.notes.extend(self.caution_marks(&channel.name));
-        chart_ui(ui, place, &chart, palette);
+        rounded_range(range)
     }
 
-    fn recorded_lines(&self, ui: &Ui, index: usize, output: Option<usize>) -> Vec<ChartLine> {
-        let palette = self.page.palette;
-        let color = if output.is_none() {
-            palette.text
-        } else {
-            palette.identified
-        };
-        let flight = self.flight;
-        let source = Arc::clone(flight) as _;
-        let lines = cached(ui, &format!("channel {index}"), &[source], (), || {
-            recorded_points(flight, index)
-        });
-        lines
+    /// Returns the time under the pointer \[s\]; without a pointer, that of the largest sample of the
+    /// output in focus.
+    fn cursor_s(&self, ui: &Ui, places: &[Rect], drawn: &[DrawnChart<'_>]) -> f64 {
+        let pointer = ui.input(|input| input.pointer.hover_pos());
+        if let Some(pointer) = pointer
+            && let Some(chart) = drawn.last()
+        {
+            let frame = chart.transform.frame();
+            let is_over = places.iter().any(|place| place.contains(pointer))
+                && frame.x_range().contains(pointer.x)
+                && ui.ctx().layer_id_at(pointer) == Some(ui.layer_id());
+            if is_over {
+                return chart.transform.value_from_position(pointer).x;
+            }
+        }
+        let focus = drawn
             .iter()
-            .map(|points| ChartLine {
-                points: Arc::clone(points),
-                color,
-                width: 1.0,
-                dashed: false,
-            })
-            .collect()
+            .find(|chart| chart.channel.output.is_some())
+            .or(drawn.first());
+        match focus {
+            Some(chart) => *cached(
+                ui,
+                "largest sample",
+                &[Arc::clone(&chart.recorded) as _],
+                (),
+                || time_of_largest(&chart.recorded).unwrap_or(self.record.span_s[0]),
+            ),
+            None => self.record.span_s[0],
+        }
+    }
+
+    /// Draws the cursor of a chart, and the values there in the margin.
+    fn cursor_ui(&self, ui: &mut Ui, chart: &DrawnChart<'_>, cursor_s: f64) {
+        let palette = self.page.palette;
+        let frame = *chart.transform.frame();
+        let values = self.values_at(ui, chart, cursor_s);
+        let x = chart
+            .transform
+            .position_from_point(&PlotPoint::new(cursor_s, 0.0))
+            .x;
+        if frame.x_range().contains(x) {
+            let painter = ui.painter().with_clip_rect(frame);
+            let line = [pos2(x, frame.top()), pos2(x, frame.bottom())];
+            let stroke = Stroke::new(1.0, palette.dim_text);
+            painter.extend(Shape::dashed_line(&line, stroke, 4.0, 3.0));
+            for role_value in &values {
+                if let Some(value) = role_value.value
+                    && self.is_shown(role_value.role)
+                {
+                    let at = chart
+                        .transform
+                        .position_from_point(&PlotPoint::new(cursor_s, value));
+                    let color = role_value.role.color(palette);
+                    painter.circle(at, DOT, color, Stroke::new(1.0, palette.background));
+                }
+            }
+        }
+        let readout = ChannelReadout {
+            channel: chart.channel.channel,
+            output: chart.channel.output,
+            range: chart.range,
+            values,
+            models: self.models,
+            page: self.page,
+        };
+        let mut place = chart.place.with_min_x(frame.right() + 10.0);
+        place.max.y = frame.bottom();
+        readout.show(ui, place);
+    }
+
+    fn values_at(&self, ui: &Ui, chart: &DrawnChart<'_>, cursor_s: f64) -> Vec<RoleValue> {
+        let mut values = Vec::new();
+        if let Some(output) = chart.channel.output {
+            for model in self.models {
+                values.push(RoleValue {
+                    role: model.role,
+                    value: value_at(&model.lines(ui, output), cursor_s),
+                });
+            }
+        }
+        let inside = value_at(&chart.recorded.inside, cursor_s);
+        values.push(RoleValue {
+            role: TimeRole::Measured,
+            value: inside.or_else(|| value_at(&chart.recorded.outside, cursor_s)),
+        });
+        values
     }
 
     /// Returns short marks for the cautions about a channel, in the displayed record or in all
     /// records.
     fn caution_marks(&self, channel: &str) -> Vec<(String, Color32)> {
-        let Page {
-            records, palette, ..
-        } = self.page;
         let mut marks = Vec::new();
-        for (rows, note) in records.cautions() {
-            let is_of_record = rows.is_empty() || rows.contains(&records.chosen);
-            if is_of_record && note.channel.as_deref() == Some(channel) {
-                marks.push((format!("⚠ {}", note.mark()), palette.warning));
-            }
+        for mark in channel_caution_marks(self.page, channel) {
+            marks.push((mark, self.page.palette.warning));
         }
         marks
     }
 }
 
-/// Returns the time \[s\] and value of a channel as lines, interrupted where samples are missing.
-fn recorded_points(flight: &FlightRecord, index: usize) -> Vec<Arc<[[f64; 2]]>> {
-    let inputs = flight.inputs.ncols();
-    let mut points = Vec::with_capacity(flight.time_s.len());
-    for (sample, &time_s) in flight.time_s.iter().enumerate() {
-        let value = if index < inputs {
-            flight.inputs[(sample, index)]
-        } else {
-            flight.outputs[(sample, index - inputs)]
-        };
-        points.push([time_s, value]);
+fn add_lines(chart: &mut Chart<'_>, lines: &[Arc<[[f64; 2]]>], role: TimeRole, palette: &Palette) {
+    for points in lines {
+        chart.lines.push(ChartLine {
+            points: Arc::clone(points),
+            color: role.color(palette),
+            width: role.width(),
+            dashed: false,
+        });
     }
-    points
-        .split(|[time_s, value]| !time_s.is_finite() || !value.is_finite())
-        .filter(|run| !run.is_empty())
-        .map(Arc::from)
-        .collect()
 }
 
-/// Lists the modes of the logging system in a line.
-fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
-    if modes.is_empty() {
-        return;
-    }
-    let mut words = Vec::new();
-    for mode in modes {
-        let [from, to] = mode.ends_s;
-        words.push(format!("{} {from:.1} to {to:.1} s", mode.name));
-    }
-    let words = words.join(" · ");
-    ui.add(Label::new(palette.small(&words)).truncate())
-        .on_hover_text(words);
+/// Returns the time \[s\] at which the samples in use deviate most from their mean.
+fn time_of_largest(recorded: &RecordedLines) -> Option<f64> {
+    let points: Vec<[f64; 2]> = recorded
+        .inside
+        .iter()
+        .flat_map(|line| line.iter().copied())
+        .collect();
+    let mean = points.iter().map(|point| point[1]).sum::<f64>() / points.len().max(1) as f64;
+    let largest = points
+        .iter()
+        .max_by(|a, b| (a[1] - mean).abs().total_cmp(&(b[1] - mean).abs()))?;
+    Some(largest[0])
 }

@@ -1,5 +1,4 @@
-//! Time spans marked in the charts of a record: modes of the logging system, other parts of the
-//! same file, and gaps.
+//! Time spans marked in the charts of a record: modes of the logging system, and gaps.
 
 use gdcm_sysid::records::ModeSpan;
 use gdcm_sysid::spectra::gap::{Gap, Treatment};
@@ -17,29 +16,6 @@ pub(super) fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan
             ends: mode.ends_s,
             color: palette.dim_text.gamma_multiply(opacity),
         });
-    }
-    spans
-}
-
-/// Returns the time spans of other records that are parts of the same file.
-pub(super) fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
-    let Page {
-        records, palette, ..
-    } = page;
-    let Some(chosen) = records.rows.get(records.chosen) else {
-        return Vec::new();
-    };
-    let mut spans = Vec::new();
-    for (index, row) in records.rows.iter().enumerate() {
-        if index != records.chosen
-            && row.table.source == chosen.table.source
-            && let Some(ends) = row.table.part_s
-        {
-            spans.push(ChartSpan {
-                ends,
-                color: palette.identified.gamma_multiply(0.15),
-            });
-        }
     }
     spans
 }

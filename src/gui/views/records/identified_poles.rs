@@ -1,47 +1,41 @@
 //! Identified poles: over the model order, and in the s-plane.
 
-use egui::{Sense, Ui};
-
 use gdcm_model::response::pole_estimate::{POLE_INTERVAL, PoleEstimate};
 use gdcm_sysid::identification::Identification;
 
 use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartMarks};
-use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Shows pole moduli over frequency, a row for each order. Crosses mark poles that agree with a
-/// pole of the model whose order is lower by two.
-pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
+/// Returns the stabilisation diagram: pole moduli over frequency, a row for each order. Crosses mark
+/// poles that agree with a pole of the model whose order is lower by two.
+pub(super) fn stabilisation_chart<'a>(
+    page: Page<'_>,
+    found: &Identification,
+    across: &'a str,
+) -> Chart<'a> {
     let Page {
         state,
         records,
         palette,
     } = page;
-    let Some(found) = page.identification_ui(ui) else {
-        return;
-    };
-    ui.label(palette.small(
-        "Cross: within 5 % of a pole of the model whose order is lower by two. Circle: no such \
-        pole. Dotted line: band.",
-    ));
     let unit = state.display.curves.unit;
-    let across = unit.axis_label();
-    let title = "Stabilisation diagram: |λ| of the models of every order, at the best Laguerre \
-                 pole and past window";
-    let mut chart = Chart::new(title, ChartAxis::Frequency(unit), &across, "order");
+    let axis = ChartAxis::Frequency(unit);
+    let mut chart = Chart::new("Stabilisation diagram: |λ|", axis, across, "order");
     if let Some((job, _)) = &records.found {
-        chart.verticals.extend(job.request.options.band);
+        chart.band = Some(job.request.options.band);
     }
     for mark in records.marks("order-limit") {
         chart.notes.push((mark, palette.warning));
     }
+    let note = "×: within 5 % of the order lower by 2".to_owned();
+    chart.notes.push((note, palette.dim_text));
     for is_stable in [false, true] {
         chart
             .marks
             .push(stabilisation_marks(found, is_stable, palette));
     }
-    fill_with_chart(ui, &chart, palette);
+    chart
 }
 
 /// Returns the nonzero poles that agree with a pole of the lower-order model, or the poles that do
@@ -67,34 +61,32 @@ fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palett
     }
 }
 
-/// Shows the poles in the s-plane, each with an error bar.
-pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
+/// Returns the chart of the poles in the s-plane, each with an error bar.
+pub(super) fn poles_chart<'a>(page: Page<'_>, found: &Identification) -> Chart<'a> {
     let Page {
         records, palette, ..
     } = page;
-    let Some(found) = page.identification_ui(ui) else {
-        return;
-    };
-    ui.label(palette.small(
-        "± 3 standard deviations, approximate. Grey: below the band, or not determined by these \
-        records.",
-    ));
     let mut chart = Chart::new(
-        "Poles of CT-PBSID, refined",
+        "Identified poles ± 3 σ",
         ChartAxis::Linear,
         "Re λ [rad/s]",
         "Im λ [rad/s]",
     );
-    chart.verticals = vec![0.0];
     for mark in records.marks("unstable") {
         chart.notes.push((mark, palette.warning));
     }
+    let note = "grey: not determined".to_owned();
+    chart.notes.push((note, palette.dim_text));
+    add_poles(&mut chart, &found.poles, palette);
+    chart
+}
+
+/// Adds the poles and the imaginary axis to a chart.
+pub(super) fn add_poles(chart: &mut Chart<'_>, poles: &[PoleEstimate], palette: &Palette) {
+    chart.verticals = vec![0.0];
     for is_determined in [false, true] {
-        chart
-            .marks
-            .push(pole_marks(&found.poles, is_determined, palette));
+        chart.marks.push(pole_marks(poles, is_determined, palette));
     }
-    fill_with_chart(ui, &chart, palette);
 }
 
 /// Returns the poles with their intervals. Poles that the records do not determine have no
@@ -126,11 +118,4 @@ fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) ->
         filled: false,
         crosses: true,
     }
-}
-
-/// Draws a chart in the available space.
-fn fill_with_chart(ui: &mut Ui, chart: &Chart<'_>, palette: &Palette) {
-    let area = ui.available_rect_before_wrap();
-    ui.allocate_rect(area, Sense::hover());
-    chart_ui(ui, area, chart, palette);
 }

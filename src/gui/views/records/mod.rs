@@ -1,65 +1,77 @@
-//! Flight records of the displayed condition and the models identified from them: records and
-//! search settings on the left, a page about them on the right.
+//! Flight records of all conditions and the models identified from them: records in the left panel
+//! of the window (`list_panel.rs`), a page about the displayed condition in the middle, and its fit
+//! in the right panel (`side_column.rs`).
 
 mod autospectra;
+mod caution_list;
+mod caution_marks;
 mod caution_remedies;
 mod columns;
+mod columns_fold;
 mod condition_table;
 mod drawn_response;
+mod excited_channel;
+mod fit_layout;
 mod fit_page;
+mod fit_summary;
+mod fold_summary;
 pub mod frame_cache;
 mod header;
 mod histories;
+mod history_readout;
 mod history_spans;
+mod identified_grid;
 mod identified_poles;
 mod input_charts;
+mod list_panel;
 mod next_flight;
 mod offered_models;
-mod outcome;
+mod order_fits;
+mod order_page;
 pub mod page;
+mod parts_lane;
+mod record_details;
 mod record_files;
 mod record_list;
 mod record_parts;
 mod record_problems;
+mod record_span;
+mod recorded_lines;
 mod references;
 mod response;
-mod response_legend;
+mod role_chips;
 mod search_settings;
+mod side_column;
 mod simulation;
+mod small_plots;
 mod spectrogram;
+mod time_charts;
 mod typed_lists;
+mod unassigned_records;
+mod value_range;
 
-use egui::scroll_area::ScrollBarVisibility;
-use egui::{Frame, Margin, Panel, ScrollArea, Ui};
+use egui::Ui;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::page_tab_ui;
+use crate::gui::views::PageEntry;
+use crate::gui::views::frequency_curves::plain_curves;
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::panel_layout::restore_panel_size;
 use columns::columns_ui;
-use condition_table::condition_table_ui;
 use fit_page::fit_ui;
-use histories::histories_ui;
-use identified_poles::{identified_poles_ui, stabilisation_ui};
 use input_charts::inputs_ui;
-use outcome::outcome_ui;
+use order_page::order_ui;
 use page::Page;
-use record_files::source_ui;
-use record_list::record_list_ui;
-use response::response_ui;
-use search_settings::search_settings_ui;
 
 pub use condition_table::condition_table;
 pub use header::records_header_ui;
+pub use list_panel::{records_panel_ui, records_sheet_ui};
+pub use side_column::records_side_ui;
 pub use simulation::simulation_jobs;
 
-/// Initial width of the record list \[pt\].
-const LIST_WIDTH: f32 = 340.0;
-
-/// Draws the records and their results.
+/// Draws a page about the displayed condition.
 pub fn records_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -67,75 +79,33 @@ pub fn records_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let condition = state.condition().id();
-    // The page borrows the state, so the fields that widgets change are taken out of it meanwhile.
-    let mut path = std::mem::take(&mut state.records.path);
-    let mut sorting = state.records.sorting;
-    let mut focused = state.records.advanced_field;
+    let curves = match state.records.page {
+        RecordsPage::Fit => plain_curves(state, state.display.selection.pair),
+        _ => Vec::new(),
+    };
     let nothing = ConditionRecords::default();
-    let records = state.records.conditions.get(&condition).unwrap_or(&nothing);
     let page = Page {
         state,
-        records,
+        records: state.records.conditions.get(&condition).unwrap_or(&nothing),
         palette,
     };
-    let width = LIST_WIDTH.min(0.4 * ui.available_width());
-    restore_panel_size(ui, "records");
-    Panel::left("records")
-        .resizable(true)
-        .default_size(width)
-        .size_range(180.0..=480.0)
-        .show(ui, |ui| {
-            ScrollArea::vertical()
-                .id_salt("records")
-                .auto_shrink(false)
-                .show(ui, |ui| {
-                    source_ui(ui, page, &mut path, commands);
-                    record_list_ui(ui, page, commands);
-                    search_settings_ui(ui, page, &mut focused, commands);
-                    outcome_ui(ui, page, commands);
-                });
-        });
-    // The margin keeps the content away from the line between list and page.
-    let margin = Margin {
-        left: 6,
-        ..Margin::ZERO
-    };
-    Frame::new().inner_margin(margin).show(ui, |ui| {
-        page_tabs_ui(ui, state.records.page, commands);
-        match state.records.page {
-            RecordsPage::Histories => histories_ui(ui, page, commands),
-            RecordsPage::Inputs => inputs_ui(ui, page),
-            RecordsPage::Response => response_ui(ui, page),
-            RecordsPage::Stabilisation => stabilisation_ui(ui, page),
-            RecordsPage::Poles => identified_poles_ui(ui, page),
-            RecordsPage::Fit => fit_ui(ui, page, commands),
-            RecordsPage::Columns => columns_ui(ui, page, commands),
-            RecordsPage::Conditions => condition_table_ui(ui, page, &mut sorting, commands),
-        }
-    });
-    state.records.path = path;
-    state.records.sorting = sorting;
-    state.records.advanced_field = focused;
+    match state.records.page {
+        RecordsPage::Fit => fit_ui(ui, page, &curves, commands),
+        RecordsPage::Inputs => inputs_ui(ui, page),
+        RecordsPage::Order => order_ui(ui, page),
+        RecordsPage::Columns => columns_ui(ui, page, commands),
+    }
 }
 
-/// Shows a tab for each page, in a line that scrolls if it is too long.
-fn page_tabs_ui(ui: &mut Ui, displayed: RecordsPage, commands: &mut Vec<Command>) {
-    let tabs = ScrollArea::horizontal()
-        .id_salt("pages")
-        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
-    tabs.show(ui, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 2.0;
-            for page in RecordsPage::ALL {
-                let is_displayed = page == displayed;
-                let (tab, is_clicked) = page_tab_ui(ui, is_displayed, page.words());
-                if tab.gained_focus() {
-                    tab.scroll_to_me(None);
-                }
-                if is_clicked {
-                    commands.push(RecordsCommand::Show(page).into());
-                }
-            }
+/// Returns the pages, in display order.
+pub fn records_pages(state: &State) -> Vec<PageEntry> {
+    let mut pages = Vec::with_capacity(RecordsPage::ALL.len());
+    for page in RecordsPage::ALL {
+        pages.push(PageEntry {
+            words: page.words(),
+            is_shown: page == state.records.page,
+            command: RecordsCommand::Show(page).into(),
         });
-    });
+    }
+    pages
 }

@@ -19,6 +19,9 @@ pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
         return;
     };
     let Some(plan) = job.news().next_flight else {
+        ui.label(palette.small(
+            "The intervals after further sweeps cannot be predicted from this identification",
+        ));
         return;
     };
     ui.label(RichText::new("Next flight: predicted 95 % intervals").strong());

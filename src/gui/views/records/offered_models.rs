@@ -1,25 +1,38 @@
-//! Menu of the identified models that can replace the present models of a condition.
+//! The identified models that can replace the present models of a condition.
 
 use egui::Ui;
 
 use gdcm_study::decisions::adopted_models::OfferedModels;
 
-const CHOICES: [(&str, OfferedModels); 3] = [
-    ("The refined models", OfferedModels::REFINED),
-    (
-        "The refined models, and CT-PBSID (unrefined)",
-        OfferedModels::WITH_UNREFINED,
-    ),
-    ("The measured response", OfferedModels::MEASURED),
+/// A choice of models, and its name in menus.
+#[derive(Clone, Copy)]
+pub(super) struct Offer {
+    pub(super) words: &'static str,
+    pub(super) models: OfferedModels,
+}
+
+pub(super) const OFFERS: [Offer; 3] = [
+    Offer {
+        words: "The refined models",
+        models: OfferedModels::REFINED,
+    },
+    Offer {
+        words: "The refined models, and CT-PBSID (unrefined)",
+        models: OfferedModels::WITH_UNREFINED,
+    },
+    Offer {
+        words: "The measured response",
+        models: OfferedModels::MEASURED,
+    },
 ];
 
 /// Shows a menu button; returns the chosen models.
 pub(super) fn offered_models_ui(ui: &mut Ui, text: &str, hint: &str) -> Option<OfferedModels> {
     let menu = ui.menu_button(text, |ui| {
-        for (words, models) in CHOICES {
-            if ui.button(words).clicked() {
+        for offer in OFFERS {
+            if ui.button(offer.words).clicked() {
                 ui.close();
-                return Some(models);
+                return Some(offer.models);
             }
         }
         None

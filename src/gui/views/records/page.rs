@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use egui::{Id, Ui};
+use egui::Ui;
 
 use gdcm_sysid::identification::Identification;
 
@@ -24,24 +24,16 @@ impl<'a> Page<'a> {
     pub fn identification_ui(self, ui: &mut Ui) -> Option<&'a Identification> {
         let found = self.records.identification();
         if found.is_none() {
-            ui.label(
-                self.palette
-                    .dim("No identification yet: choose Identify above"),
-            );
+            ui.label(self.palette.dim("No identification yet: choose Identify"));
         }
         found.map(AsRef::as_ref)
     }
 
     /// Returns the identification; `None` if records or settings have changed since.
     pub(super) fn current_identification(self) -> Option<&'a Arc<Identification>> {
-        if self.records.changed {
+        if self.state.is_fit_outdated(self.state.condition().id()) {
             return None;
         }
         self.records.identification()
-    }
-
-    /// Returns the id of the time axis that all charts of a record share.
-    pub(super) fn time_axis() -> Id {
-        Id::unique("flight record")
     }
 }

@@ -1,132 +1,91 @@
-//! Commands that add record files, questions about the added records, and the commands that
-//! identify or use the models of all conditions.
+//! Commands that add record files, and questions about the added records.
 
+use egui::containers::menu::MenuButton;
 use egui::{Button, Label, Ui};
 
-use gdcm_sysid::records::LayoutProblem;
+use gdcm_sysid::records::{LaidOutRecord, LayoutProblem};
 
-use super::condition_table::conditions_with_records;
-use super::offered_models::offered_models_ui;
 use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, button_ui};
-use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
+use crate::gui::widgets::controls::{button_ui, entries_ui};
 
 /// Shows the commands that add records, and questions about the added records.
-pub(super) fn source_ui(
-    ui: &mut Ui,
-    page: Page<'_>,
-    path: &mut String,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn source_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page { state, palette, .. } = page;
-    add_ui(ui, path, commands);
-    if let Some(reading) = &state.records.reading {
-        ui.horizontal(|ui| {
+    ui.horizontal(|ui| {
+        add_menu_ui(ui, commands);
+        if let Some(reading) = &state.records.reading {
             ui.spinner();
-            ui.label(palette.small(format!("reading {reading}")));
-        });
-    }
-    open_units_ui(ui, state, palette, commands);
-    all_conditions_ui(ui, state, commands);
+            ui.add(Label::new(palette.small(format!("reading {reading}"))).truncate());
+        } else {
+            ui.label(palette.small("or drop files here"));
+        }
+    });
+    assumed_units_ui(ui, page, commands);
     other_channels_ui(ui, page, commands);
     for fault in &state.records.faults {
         ui.add(Label::new(palette.small_warning(fault)).wrap());
     }
 }
 
-/// Shows the button and the path field that add record files.
-fn add_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
-        let hint = "CSV, text, .mat, .npz, .zip: files of flight records";
-        let add = Button::new("Add records…");
-        button_ui(ui, add, hint, RecordsCommand::AskFiles, commands);
-        let width = (ui.available_width() - 8.0).max(40.0);
-        let field = text_field_ui(ui, "Path of records", path, "or a path", width);
-        if is_entered(ui, &field) && !path.trim().is_empty() {
-            commands.push(RecordsCommand::Add(vec![path.trim().into()]).into());
-        }
-    });
-}
-
-/// Shows a question about the missing units of all conditions, with buttons that set them.
-fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some(open) = state.records.open_units() else {
-        return;
-    };
-    let channels: Vec<String> = open
-        .channels
-        .iter()
-        .map(|(name, unit)| format!("{name} [{unit}]"))
-        .collect();
-    let records = if open.records == 1 {
-        "1 record".to_owned()
-    } else {
-        format!("{} records", open.records)
-    };
-    let conditions = if open.conditions == 1 {
-        String::new()
-    } else {
-        format!(" of {} conditions", open.conditions)
-    };
-    let question = format!(
-        "{records}{conditions} without units: do the units of the dataset apply, {}?",
-        channels.join(", ")
-    );
-    ui.add(Label::new(palette.small_warning(question)).wrap());
-    ui.horizontal_wrapped(|ui| {
-        button_ui(
+/// Shows the menu that adds files, archives and folders.
+fn add_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+    let button = Button::new("Add records…");
+    let (response, _) = MenuButton::from_button(button).ui(ui, |ui| {
+        let entries = [
+            ("Files and archives…", RecordsCommand::AskFiles),
+            ("Folder…", RecordsCommand::AskFolder),
+            ("Path…", RecordsCommand::AskPath),
+        ];
+        entries_ui(
             ui,
-            Button::new("Take the dataset's units"),
-            "Applies to every file without units, in all conditions; one step to undo",
-            RecordsCommand::TakeDatasetUnits,
+            entries.map(|(text, command)| (text, command.into())),
             commands,
         );
+    });
+    response.on_hover_text(
+        "CSV, text, .mat, .npz, .zip and logs; each record goes to the condition in the name of \
+        its file or folder",
+    );
+}
+
+/// Shows a caution about assumed units, over the records of all conditions.
+fn assumed_units_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let Some(units) = page.state.records.assumed_units() else {
+        return;
+    };
+    let text = format!("⚠ Units of {} missing", units.channels.join(", "));
+    ui.add(Label::new(page.palette.small_warning(text)).wrap());
+    ui.horizontal_wrapped(|ui| {
+        let records = if units.records == 1 {
+            "1 record".to_owned()
+        } else {
+            format!("{} records", units.records)
+        };
+        ui.label(page.palette.small(format!("dataset units used, {records}")));
         button_ui(
             ui,
-            Button::new("Choose others…"),
+            Button::new("Check").small(),
             "Opens the columns of the first such record; a unit set there applies to all records \
              with the same columns",
-            RecordsCommand::ShowUnclear,
+            RecordsCommand::CheckUnits,
+            commands,
+        );
+        button_ui(
+            ui,
+            Button::new("Confirm").small(),
+            "The units of the dataset apply to all these records; one step to undo",
+            RecordsCommand::ConfirmUnits,
             commands,
         );
     });
-}
-
-/// Shows the commands for all conditions, if several have records.
-fn all_conditions_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let count = conditions_with_records(state).count();
-    if count < 2 || !state.records.running.is_empty() {
-        return;
-    }
-    ui.button(format!("Identify all {count} conditions"))
-        .on_hover_text("One after another, in the background")
-        .asks(RecordsCommand::IdentifyAll, commands);
-    let found = state
-        .records
-        .conditions
-        .values()
-        .filter(|records| records.identification().is_some())
-        .count();
-    if found > 1 {
-        let text = format!("Use the models of {found} conditions");
-        let hint = "Replaces the identified models of these conditions; one step to undo";
-        if let Some(offered) = offered_models_ui(ui, &text, hint) {
-            commands.push(RecordsCommand::TakeAll(offered).into());
-        }
-    }
 }
 
 /// Offers to make a dataset from records that lack the open dataset's channels.
 fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let has_missing = page
-        .records
-        .rows
-        .iter()
-        .any(|row| row.problems.iter().any(LayoutProblem::is_missing));
+    let has_missing = page.records.rows.iter().any(lacks_channels)
+        || page.state.records.unassigned.iter().any(lacks_channels);
     if !has_missing {
         return;
     }
@@ -143,4 +102,8 @@ fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             commands,
         );
     });
+}
+
+fn lacks_channels(row: &LaidOutRecord) -> bool {
+    row.problems.iter().any(LayoutProblem::is_missing)
 }

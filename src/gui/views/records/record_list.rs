@@ -1,226 +1,378 @@
-//! Record list: a row for each record with its use and fit; below, manoeuvre and problems of the
-//! displayed record.
+//! Records of the displayed condition: a row for each record and each part, with its use, its
+//! length and the fit of the model.
 
-use egui::{Align, Checkbox, Color32, Grid, Label, Layout, RichText, Role, Sense, Ui, vec2};
+use std::sync::Arc;
 
-use gdcm_io::Example;
-use gdcm_model::dataset::condition::RecordKind;
+use egui::{Align2, Checkbox, Galley, Rect, Role, Sense, Stroke, StrokeKind, Ui};
+use egui::{pos2, vec2};
+
+use gdcm_model::units::number;
 use gdcm_sysid::records::LaidOutRecord;
 
 use super::page::Page;
-use super::record_problems::problem_texts;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::choices::DropDown;
+pub(super) use crate::gui::state::condition_fit::BAD_FIT;
 use crate::gui::widgets::controls::{Asks, named, named_switch};
-use crate::gui::widgets::elision::elided_among;
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use crate::gui::widgets::list_row::{ROW_HEIGHT, RowLook};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Width of all columns except the names \[pt\].
-const OTHER_COLUMNS: f32 = 124.0;
-/// Minimum width of the names \[pt\].
-const LEAST_NAME: f32 = 60.0;
 /// Tooltip of fit costs.
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
-/// Limit of χ²/dof above which the fit of a record is bad (M14, section 6).
-pub(super) const BAD_FIT: f64 = 1.5;
 
-const HEADINGS: [(&str, &str); 4] = [
-    ("use", "Use the record for identification or validation"),
-    (
-        "hold",
-        "Held out: not fitted, so that it can test the model",
-    ),
-    ("record", "Click to display"),
-    ("χ²/dof", CHI_SQUARED),
-];
+/// Left edge of the name of a record \[pt\].
+const NAME: f32 = 20.0;
+/// Indentation of the parts of a record \[pt\].
+const INDENT: f32 = 18.0;
+/// Distances of the columns from the right edge of a row \[pt\].
+const LENGTH_END: f32 = 88.0;
+const COST_END: f32 = 46.0;
+const CAUTION_CENTER: f32 = 36.0;
+const LOCK_CENTER: f32 = 20.0;
+const REMOVE_CENTER: f32 = 5.0;
+/// Width of the column of lengths \[pt\].
+const LENGTH_WIDTH: f32 = 26.0;
 
-/// Shows a row for each record: whether it is used or held out, and the model's fit.
-pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page {
-        records, palette, ..
-    } = page;
-    if records.rows.is_empty() {
-        no_records_ui(ui, page);
-        return;
-    }
-    let name_width = (ui.available_width() - OTHER_COLUMNS).max(LEAST_NAME);
-    Grid::new("flight records")
-        .num_columns(4)
-        .spacing([6.0, 2.0])
-        .striped(true)
-        .show(ui, |ui| {
-            for (heading, hint) in HEADINGS {
-                ui.label(palette.small(heading)).on_hover_text(hint);
-            }
-            ui.end_row();
-            for index in 0..records.rows.len() {
-                use_ui(ui, page, index, commands);
-                name_ui(ui, page, index, name_width, commands);
-                ui.horizontal(|ui| fit_ui(ui, page, index));
-                ui.end_row();
-            }
-        });
-    let Some(row) = records.rows.get(records.chosen) else {
-        return;
-    };
-    kind_ui(ui, records.chosen, row, palette, commands);
-    for problem in problem_texts(&row.problems) {
-        note_ui(ui, problem, palette.warning);
-    }
-    for caution in &row.cautions {
-        note_ui(ui, caution.to_string(), palette.dim_text);
+/// Shows a row for each record, its parts below it.
+pub(super) fn record_rows_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let names = whole_names(page);
+    let prefix = common_prefix(&names);
+    heads_ui(ui, page, prefix);
+    // Controls must not be higher than the row.
+    ui.spacing_mut().interact_size.y = 16.0;
+    for (index, row) in page.records.rows.iter().enumerate() {
+        let row = RecordRow {
+            page,
+            index,
+            row,
+            shown_name: shown_name(row, prefix),
+        };
+        row.ui(ui, commands);
     }
 }
 
-fn no_records_ui(ui: &mut Ui, page: Page<'_>) {
+/// Names of the whole records, in the order of the rows.
+fn whole_names(page: Page<'_>) -> Vec<&str> {
+    let mut names = Vec::new();
+    for row in &page.records.rows {
+        if row.table.part_s.is_none() {
+            names.push(row.table.name.as_str());
+        }
+    }
+    names
+}
+
+/// Returns the beginning that all names share, up to a separator; empty for a single name. No name
+/// consists of the beginning alone.
+fn common_prefix<'n>(names: &[&'n str]) -> &'n str {
+    const SEPARATORS: [char; 6] = ['_', '-', ' ', '.', '/', ','];
+    let [first, rest @ ..] = names else {
+        return "";
+    };
+    if rest.is_empty() {
+        return "";
+    }
+    let mut end = 0;
+    for (at, letter) in first.char_indices() {
+        let next = at + letter.len_utf8();
+        let is_shared = rest.iter().all(|name| name.starts_with(&first[..next]));
+        if !is_shared {
+            break;
+        }
+        let is_all_of_a_name = names.iter().any(|name| name.len() == next);
+        if SEPARATORS.contains(&letter) && !is_all_of_a_name {
+            end = next;
+        }
+    }
+    &first[..end]
+}
+
+/// Returns the name of a record without the common beginning, or "part 4 to 52 s".
+fn shown_name(row: &LaidOutRecord, prefix: &str) -> String {
+    if let Some([from, to]) = row.table.part_s {
+        return format!("part {} to {} s", number(from), number(to));
+    }
+    let name = &row.table.name;
+    name.strip_prefix(prefix).unwrap_or(name).to_owned()
+}
+
+fn heads_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
     let Page { state, palette, .. } = page;
-    let text = "No flight records of this condition yet. Add files or a folder above, or drop \
-                them here: CSV, text, .mat, .npz or .zip, with column names.";
-    ui.add(Label::new(palette.small(text)).wrap());
-    if state.records.example == Some(Example::Simulated) {
-        let text = "The example includes the records of conditions 3 and 10; the records of all \
-                    conditions are in assets/example-records.zip of the sources.";
-        ui.add(Label::new(palette.small(text)).wrap());
-    }
-}
-
-fn note_ui(ui: &mut Ui, text: String, color: Color32) {
-    let text = RichText::new(text).size(SMALL_SIZE).color(color);
-    ui.add(Label::new(text).wrap());
-}
-
-/// Draws two check boxes: whether a record is used, and whether it is held out for validation.
-fn use_ui(ui: &mut Ui, page: Page<'_>, index: usize, commands: &mut Vec<Command>) {
-    let row = &page.records.rows[index];
-    let name = &row.table.name;
-    let is_usable = row.flight.is_some();
-    if let Some(used) = box_ui(ui, is_usable, row.used, format!("Use {name}")) {
-        commands.push(RecordsCommand::SetUsed(index, used).into());
-    }
-    let label = format!("Hold out {name}");
-    if let Some(held_out) = box_ui(ui, is_usable, row.guess.held_out, label) {
-        commands.push(RecordsCommand::SetHeldOut(index, held_out).into());
-    }
-}
-
-/// Draws a check box without text; returns a changed value.
-fn box_ui(ui: &mut Ui, is_enabled: bool, is_checked: bool, label: String) -> Option<bool> {
-    let mut value = is_checked;
-    let response = ui.add_enabled(is_enabled, Checkbox::without_text(&mut value));
-    if named_switch(response, Role::CheckBox, value, label).changed() {
-        Some(value)
+    let beginning = if prefix.is_empty() {
+        String::new()
     } else {
-        None
-    }
-}
-
-/// Shows the name of a record, shortened so that it differs from its neighbours; a click displays
-/// the record.
-fn name_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut Vec<Command>) {
-    let Page {
-        records, palette, ..
-    } = page;
-    let row = &records.rows[index];
-    let name = &row.table.name;
-    let neighbours = [index.checked_sub(1), index.checked_add(1)]
-        .map(|neighbour| Some(records.rows.get(neighbour?)?.table.name.as_str()));
-    let elided_name = elided_among(ui, name, neighbours, width, BODY_SIZE);
-    let color = if row.problems.is_empty() {
-        palette.text
-    } else {
-        palette.warning
+        format!("{prefix}…")
     };
-    let mut text = RichText::new(&elided_name).size(BODY_SIZE).color(color);
-    let is_chosen = index == records.chosen;
-    if is_chosen {
-        text = text.strong().background_color(palette.selected);
-    }
-    let size = vec2(width, ui.spacing().interact_size.y);
-    let line = ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-        ui.set_min_width(width);
-        ui.add(Label::new(text).truncate().sense(Sense::click()))
-    });
-    let mut response = named_switch(
-        line.inner,
-        Role::Button,
-        is_chosen,
-        format!("Record {name}"),
+    let room = ui.available_width() - NAME - LENGTH_END - LENGTH_WIDTH;
+    let galley = wrapped(ui, &beginning, room, false, palette.dim_text);
+    let height = galley.size().y.max(18.0);
+    let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    ui.painter().galley(
+        pos2(row.left() + NAME, row.center().y - 0.5 * galley.size().y),
+        galley,
+        palette.dim_text,
     );
-    if elided_name != *name {
-        response = response.on_hover_text(name);
-    }
-    response.asks(RecordsCommand::Choose(index), commands);
+    let upto = row.with_max_x(row.right() - LENGTH_END);
+    painted_text(ui, upto, AT_RIGHT_END, "s", small(), palette.dim_text);
+    let upto = row.with_max_x(row.right() - COST_END);
+    let is_outdated = state.is_fit_outdated(state.condition().id());
+    let place = if is_outdated {
+        painted_text(ui, upto, AT_RIGHT_END, "outdated", small(), palette.warning)
+    } else {
+        painted_text(ui, upto, AT_RIGHT_END, "χ²/dof", small(), palette.dim_text)
+    };
+    let heading = ui.interact(place, ui.scope_id().with("cost heading"), Sense::hover());
+    heading.on_hover_text(if is_outdated {
+        "χ²/dof of the latest fit; records or settings have changed since"
+    } else {
+        CHI_SQUARED
+    });
 }
 
-/// Shows the fit cost of a record, and a warning sign if cautions concern the record.
-fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
-    let Page {
-        records, palette, ..
-    } = page;
-    ui.label(match fit_cost(page, index) {
-        Some(cost) => cost_text(cost, palette),
-        None => RichText::new(""),
-    });
-    let cautions: Vec<String> = records
-        .cautions()
-        .filter(|(rows, _)| rows.contains(&index))
-        .map(|(_, note)| note.text)
-        .collect();
-    if !cautions.is_empty() {
-        let mark = ui.label(palette.small_warning("⚠"));
+/// Row of a record.
+struct RecordRow<'a> {
+    page: Page<'a>,
+    index: usize,
+    row: &'a LaidOutRecord,
+    /// Name without the beginning that all records share.
+    shown_name: String,
+}
+
+impl RecordRow<'_> {
+    fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let Page {
+            records, palette, ..
+        } = self.page;
+        let name = &self.row.table.name;
+        let width = ui.available_width();
+        let left = NAME + self.indent();
+        let is_selected = self.index == records.chosen;
+        // A long name is wrapped: cut names could look like other numbers.
+        let room = width - left - LENGTH_END - LENGTH_WIDTH;
+        let galley = wrapped(
+            ui,
+            &self.shown_name,
+            room,
+            is_selected,
+            self.name_color(palette),
+        );
+        let look = RowLook {
+            is_selected,
+            is_pointed: false,
+            height: (galley.size().y + 4.0).max(ROW_HEIGHT),
+        };
+        let (rect, response) = look.row_ui(ui, palette, &format!("Record {name}"));
+        ui.painter().galley(
+            pos2(rect.left() + left, rect.center().y - 0.5 * galley.size().y),
+            galley,
+            palette.text,
+        );
+        self.use_ui(ui, rect, commands);
+        self.paint_length(ui, rect);
+        self.cost_ui(ui, rect);
+        self.cautions_ui(ui, rect);
+        self.hold_out_ui(ui, rect, commands);
+        self.remove_ui(ui, rect, commands);
+        response.asks(RecordsCommand::Choose(self.index), commands);
+        if self.shown_name != *name {
+            response.on_hover_text(name);
+        }
+    }
+
+    fn is_part(&self) -> bool {
+        self.row.table.part_s.is_some()
+    }
+
+    fn indent(&self) -> f32 {
+        if self.is_part() { INDENT } else { 0.0 }
+    }
+
+    fn name_color(&self, palette: &Palette) -> egui::Color32 {
+        if !self.row.problems.is_empty() {
+            palette.warning
+        } else if self.row.used {
+            palette.text
+        } else {
+            palette.quiet_text
+        }
+    }
+
+    /// Draws the box that uses the record.
+    fn use_ui(&self, ui: &mut Ui, rect: Rect, commands: &mut Vec<Command>) {
+        let name = &self.row.table.name;
+        let mut used = self.row.used && self.row.flight.is_some();
+        let corner = rect.min + vec2(self.indent(), 0.0);
+        let place = Rect::from_min_size(corner, vec2(16.0, rect.height()));
+        let response = ui
+            .add_enabled_ui(self.row.flight.is_some(), |ui| {
+                ui.put(place, Checkbox::without_text(&mut used))
+            })
+            .inner;
+        let response = named_switch(response, Role::CheckBox, used, format!("Use {name}"));
+        if response.changed() {
+            commands.push(RecordsCommand::SetUsed(self.index, used).into());
+        }
+        response.on_hover_text("Use the record for identification or validation");
+    }
+
+    fn paint_length(&self, ui: &Ui, rect: Rect) {
+        let palette = self.page.palette;
+        let words = match self.row.span_s() {
+            Some([first_s, last_s]) => format!("{:.0}", last_s - first_s),
+            None => "–".to_owned(),
+        };
+        let upto = rect.with_max_x(rect.right() - LENGTH_END);
+        painted_text(ui, upto, AT_RIGHT_END, &words, body(), palette.dim_text);
+    }
+
+    /// Paints χ²/dof of the record: dim if outdated, in the warning colour if the fit is bad.
+    fn cost_ui(&self, ui: &Ui, rect: Rect) {
+        let Page {
+            state,
+            palette,
+            records,
+        } = self.page;
+        let Some(cost) = records.fit_cost(&self.row.table.name) else {
+            return;
+        };
+        let color = if state.is_fit_outdated(state.condition().id()) {
+            palette.quiet_text
+        } else if cost > BAD_FIT {
+            palette.warning
+        } else {
+            palette.text
+        };
+        let upto = rect.with_max_x(rect.right() - COST_END);
+        painted_text(ui, upto, AT_RIGHT_END, &format!("{cost:.2}"), body(), color);
+    }
+
+    /// Draws a sign if cautions about the identification or the columns concern the record.
+    fn cautions_ui(&self, ui: &Ui, rect: Rect) {
+        let Page {
+            records, palette, ..
+        } = self.page;
+        let mut cautions: Vec<String> = records
+            .cautions()
+            .filter(|(rows, _)| rows.contains(&self.index))
+            .map(|(_, note)| note.text)
+            .collect();
+        for caution in &self.row.cautions {
+            cautions.push(caution.to_string());
+        }
+        if cautions.is_empty() {
+            return;
+        }
+        let center = pos2(rect.right() - CAUTION_CENTER, rect.center().y);
+        ui.painter()
+            .text(center, Align2::CENTER_CENTER, "⚠", small(), palette.warning);
+        let place = Rect::from_center_size(center, vec2(14.0, rect.height()));
+        let id = ui.scope_id().with(("cautions", self.index));
+        let mark = ui.interact(place, id, Sense::hover());
         named(
             mark.on_hover_text(cautions.join("\n\n")),
             Role::Label,
-            format!("Cautions of {}", records.rows[index].table.name),
+            format!("Cautions of {}", self.row.table.name),
         );
+    }
+
+    /// Draws the lock that holds the record out; only a held-out record always shows it.
+    fn hold_out_ui(&self, ui: &Ui, rect: Rect, commands: &mut Vec<Command>) {
+        if self.row.flight.is_none() {
+            return;
+        }
+        let palette = self.page.palette;
+        let is_held_out = self.row.guess.held_out;
+        let center = pos2(rect.right() - LOCK_CENTER, rect.center().y);
+        let place = Rect::from_center_size(center, vec2(15.0, rect.height()));
+        let id = ui.scope_id().with(("hold out", self.index));
+        let response = ui.interact(place, id, Sense::click());
+        let is_pointed = response.hovered() || response.has_focus();
+        if is_held_out {
+            paint_lock(ui, rect, palette.text);
+        } else if is_pointed || ui.rect_contains_pointer(rect) {
+            paint_lock(ui, rect, palette.quiet_mark);
+        }
+        let name = format!("Hold out {}", self.row.table.name);
+        let response = named_switch(response, Role::CheckBox, is_held_out, name);
+        let command = RecordsCommand::SetHeldOut(self.index, !is_held_out);
+        response.asks(command, commands);
+        response.on_hover_text(if is_held_out {
+            "Held out: not fitted, so that it tests the model; click to fit it"
+        } else {
+            "Hold out: not fitted, so that it tests the model"
+        });
+    }
+
+    /// Draws the button that removes a part of a record.
+    fn remove_ui(&self, ui: &Ui, rect: Rect, commands: &mut Vec<Command>) {
+        if !self.is_part() {
+            return;
+        }
+        let palette = self.page.palette;
+        let center = pos2(rect.right() - REMOVE_CENTER, rect.center().y);
+        let place = Rect::from_center_size(center, vec2(13.0, rect.height()));
+        let id = ui.scope_id().with(("remove", self.index));
+        let response = ui.interact(place, id, Sense::click());
+        let color = if response.hovered() || response.has_focus() {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        ui.painter()
+            .text(center, Align2::CENTER_CENTER, "×", body(), color);
+        let name = format!("Remove {}", self.row.table.name);
+        let response = named(response, Role::Button, name);
+        response.asks(RecordsCommand::RemovePart(self.index), commands);
+        response.on_hover_text("Remove the part");
     }
 }
 
-/// Returns χ²/dof of the recommended model for a record; `None` without a current identification.
-fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
-    let found = page.current_identification()?;
-    let fit = found
-        .record_fits
-        .iter()
-        .find(|fit| page.records.row_of_record(fit.record) == Some(index))?;
-    Some(fit.cost)
-}
-
-/// Formats χ²/dof, in the warning colour if the fit is bad.
-pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
-    let color = if cost <= BAD_FIT {
-        palette.text
-    } else {
-        palette.warning
+/// Paints a closed lock in its column of a row.
+fn paint_lock(ui: &Ui, row: Rect, color: egui::Color32) {
+    let center = pos2(row.right() - LOCK_CENTER, row.center().y + 1.5);
+    let body = Rect::from_center_size(center, vec2(8.0, 6.0));
+    let stroke = Stroke::new(1.2, color);
+    ui.painter()
+        .rect_stroke(body, 1.0, stroke, StrokeKind::Middle);
+    let bow = Rect::from_center_size(pos2(center.x, body.top() - 0.5), vec2(5.0, 7.0));
+    let corners = egui::CornerRadius {
+        nw: 3,
+        ne: 3,
+        sw: 0,
+        se: 0,
     };
-    RichText::new(format!("{cost:.2}")).color(color)
+    let visible = row.with_max_y(body.top());
+    ui.painter()
+        .with_clip_rect(visible.intersect(ui.clip_rect()))
+        .rect_stroke(bow, corners, stroke, StrokeKind::Middle);
 }
 
-/// Draws the selector of a record's manoeuvre, as the end of the sentence "name: a sweep", and for
-/// a part of a record also the button that removes the part.
-fn kind_ui(
-    ui: &mut Ui,
-    index: usize,
-    row: &LaidOutRecord,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    ui.horizontal(|ui| {
-        ui.label(palette.small(format!("{}: a", row.table.name)));
-        let chosen = row.guess.kind;
-        let kinds = RecordKind::ALL.map(|kind| (kind, kind == chosen, kind.word().to_owned()));
-        let list = DropDown {
-            name: "Manoeuvre of the record",
-            width: 90.0,
-            text: chosen.word(),
-        };
-        if let Some(kind) = list.ui(ui, kinds) {
-            commands.push(RecordsCommand::SetKind(index, kind).into());
-        }
-        if row.table.part_s.is_some() && ui.small_button("Remove part").clicked() {
-            commands.push(RecordsCommand::RemovePart(index).into());
-        }
-    });
+/// Lays out a text within `room` \[pt\], wrapped between words or after punctuation.
+fn wrapped(ui: &Ui, text: &str, room: f32, is_strong: bool, color: egui::Color32) -> Arc<Galley> {
+    let font = if is_strong { medium(BODY_SIZE) } else { body() };
+    ui.fonts_mut(|fonts| fonts.layout(text.to_owned(), font, color, room.max(40.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_beginning_up_to_a_separator_is_left_out_of_the_names() {
+        let names = [
+            "cond10_sweep_COL_1",
+            "cond10_sweep_LON_1",
+            "cond10_validation",
+        ];
+        assert_eq!(common_prefix(&names), "cond10_");
+        // The digits that distinguish the records stay whole.
+        assert_eq!(common_prefix(&["run_121", "run_122"]), "run_");
+        assert_eq!(common_prefix(&["flight12", "flight13"]), "");
+        assert_eq!(common_prefix(&["run_1", "run_"]), "", "no name is empty");
+        assert_eq!(common_prefix(&["a_1_x", "a_1_y", "a_12"]), "a_");
+        assert_eq!(common_prefix(&["only_one"]), "");
+        assert_eq!(common_prefix(&[]), "");
+    }
 }

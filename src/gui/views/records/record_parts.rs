@@ -1,5 +1,5 @@
-//! Parts of a record that are used as separate records: the typed part, the switch for dragging,
-//! and the time span of the displayed record.
+//! Parts of a record that are used as separate records: the typed part, and the time span of the
+//! displayed record. Parts are dragged in `parts_lane.rs`.
 
 use egui::{Label, Ui};
 
@@ -10,16 +10,13 @@ use super::typed_lists::numbers;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::text_fields::entry_ui;
 use crate::message::Message;
 
-/// Draws the controls that make a typed or dragged part a separate record.
+/// Draws the field that makes a typed part a separate record.
 pub(super) fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
-        state,
-        records,
-        palette,
+        records, palette, ..
     } = page;
     ui.label(palette.small("part [s]"));
     let text = entry_ui(ui, "Part of the record", "", "from to", 70.0);
@@ -35,11 +32,6 @@ pub(super) fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) 
                 or \"+5 +34\" from the start of the record, found \"{text}\""
             )))),
         });
-    }
-    let hint = "Drag over a chart to use that part as a separate record, fitted or held out, \
-        instead of the whole record";
-    if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
-        commands.push(RecordsCommand::ChooseParts(chooses).into());
     }
 }
 

@@ -1,58 +1,132 @@
-//! Page with the measured response and the identified models, as a Bode plot. `drawn_response`
-//! computes the curves.
+//! The response in focus: measured points, identified model with its confidence band, physics and
+//! corrected models; below, partial coherence and phase residual.
 
 use std::sync::Arc;
 
-use egui::{Color32, Id, Rect, RichText, Sense, Ui, vec2};
+use egui::{Align2, Color32, Id, Rect, Role as WidgetRole, Sense, Ui, pos2};
 
-use gdcm_sysid::identification::CautionNote;
+use gdcm_plot::figure::Range;
+use gdcm_sysid::identification::{CautionNote, TRUSTED_COHERENCE};
 
 use super::drawn_response::{BodePart, CurvePoint, DrawnResponse, MeasuredBand};
+use super::fit_layout::{CaptionedChart, ResponseLayout, TICKS};
 use super::frame_cache::cached;
 use super::page::Page;
-use super::response_legend::legend_ui;
-use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
+use super::value_range::rounded_range;
+use crate::gui::plot::chart::{
+    Chart, ChartAxis, ChartBand, ChartLayout, ChartLine, ChartMarks, ChartSpan,
+};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::plot::{BodeCurve, Role};
+use crate::gui::state::records::TimeRole;
+use crate::gui::widgets::controls::named;
+use crate::gui::widgets::elision::{elided, text_width};
+use crate::gui::widgets::painted_text::painted_text;
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
 /// Substitute band \[rad/s\] for an identification without a job.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
 /// Half-height of the marks along the curve of the recommended model \[dB\] and \[deg\].
 const MARK_DB: f64 = 2.0;
 const MARK_DEG: f64 = 15.0;
+/// Width of the value axes \[pt\].
+const VALUE_AXIS: f32 = 40.0;
+/// Factors by which the visible frequencies extend beyond the band.
+const BEYOND: [f64; 2] = [1.4, 1.7];
+/// Highest value of the coherence axis.
+const HIGHEST_COHERENCE: f64 = 1.08;
+/// Half-width of the shaded band of the phase residual, in standard deviations.
+const RESIDUAL_BAND: f64 = 2.0;
+/// Limits of the axis of the phase residual, in standard deviations.
+const RESIDUAL_LIMITS: [f64; 2] = [4.0, 10.0];
+/// Share of the range of the curves within the band by which error bars may extend the axis.
+const MOST_EXTENSION: f64 = 0.3;
 
-/// Draws the Bode plot of the identified response; during refinement, of the first model.
-pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
+/// Draws the heading, magnitude and phase, and the strips below; before an identification, the
+/// reason why there is none.
+pub(super) fn response_ui(
+    ui: &mut Ui,
+    page: Page<'_>,
+    curves: &[BodeCurve],
+    heading: Rect,
+    layout: &ResponseLayout,
+) {
     let Page { state, palette, .. } = page;
+    let name = state.dataset().pair_name(state.display.selection.pair);
+    let title = format!("Response {name}");
+    let shown = painted_text(ui, heading, 0.0, &title, medium(BODY_SIZE), palette.text);
     let Some(drawn) = drawn_response(ui, page) else {
-        let text = "No identification yet: choose Identify above. This page then shows the \
-                    measured response, the models and their bands.";
-        ui.label(RichText::new(text).color(palette.dim_text));
+        empty_ui(ui, page, layout);
         return;
     };
-    legend_ui(ui, &drawn, palette);
-    let area = ui.available_rect_before_wrap();
-    ui.allocate_rect(area, Sense::hover());
-    let name = state.dataset().pair_name(state.display.selection.pair);
-    let size = vec2(area.width(), 0.5 * area.height());
-
-    let title = format!("{name}: magnitude");
-    let mut magnitude = Chart::new(&title, frequency_axis(page), "", "Magnitude [dB]");
-    add_response(&mut magnitude, &drawn, BodePart::Magnitude, palette);
-    for mark in caution_marks(page) {
-        magnitude.notes.push((format!("⚠ {mark}"), palette.warning));
+    let marks = caution_marks(page);
+    let mut right = heading.right();
+    for mark in marks.iter().rev() {
+        let text = format!("⚠ {mark}");
+        right -= text_width(ui, &text, small());
+        let x = right - heading.left();
+        painted_text(ui, heading, x, &text, small(), palette.warning);
+        right -= 10.0;
     }
-    magnitude.spans.extend(caution_spans(page));
-    let place = Rect::from_min_size(area.min, size);
-    chart_ui(ui, place, &magnitude, palette);
+    let words = heading_words(&drawn);
+    let from = shown.right() - heading.left() + 10.0;
+    let words = elided(ui, &words, right - heading.left() - from, SMALL_SIZE);
+    painted_text(ui, heading, from, &words, small(), palette.dim_text);
+    let charts = ResponseCharts {
+        page,
+        drawn: &drawn,
+        curves,
+        name: &name,
+        band: job_band(page),
+    };
+    charts.bode_ui(ui, layout.magnitude, BodePart::Magnitude);
+    charts.bode_ui(ui, layout.phase, BodePart::Phase);
+    charts.coherence_ui(ui, layout.coherence);
+    if let Some(place) = layout.residual {
+        charts.residual_ui(ui, place);
+    }
+}
 
-    let title = format!("{name}: phase");
-    let across = state.display.curves.unit.axis_label();
-    let mut phase = Chart::new(&title, frequency_axis(page), &across, "Phase [deg]");
-    add_response(&mut phase, &drawn, BodePart::Phase, palette);
-    phase.spans.extend(caution_spans(page));
-    let place = Rect::from_min_size(area.min + vec2(0.0, size.y), size);
-    chart_ui(ui, place, &phase, palette);
+/// Returns the meaning of bands and bars.
+fn heading_words(drawn: &DrawnResponse) -> String {
+    if drawn.refined.is_empty() {
+        return "first model, being refined".to_owned();
+    }
+    let mut words = "identified with 95 % band, measured ± 1.96 σ".to_owned();
+    if drawn.has_cut_intervals() {
+        words.push_str(", cut at ± 20 dB and ± 180°");
+    }
+    if !drawn.unexcited.is_empty() {
+        words.push_str("; grey: not excited by the reference");
+    }
+    words
+}
+
+/// Draws empty frames with the reason why there is no response.
+fn empty_ui(ui: &Ui, page: Page<'_>, layout: &ResponseLayout) {
+    let Page { state, palette, .. } = page;
+    let text = if state.records.job_of(state.condition().id()).is_some() {
+        "Identification in progress: the first model appears here"
+    } else {
+        match &page.records.found {
+            Some((_, Err(_))) => "The identification failed: the reason is at the right",
+            _ => "No identification yet: choose Identify for the measured response and the models",
+        }
+    };
+    let area = layout
+        .magnitude
+        .caption
+        .union(layout.phase.chart)
+        .union(layout.coherence.chart);
+    ui.painter().text(
+        area.center(),
+        Align2::CENTER_CENTER,
+        text,
+        small(),
+        palette.dim_text,
+    );
+    let response = ui.interact(area, ui.scope_id().with("no response"), Sense::hover());
+    named(response, WidgetRole::Label, text);
 }
 
 /// Returns the curves of the pair in focus: of the first model while it is refined, otherwise of
@@ -86,8 +160,239 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     }))
 }
 
-fn frequency_axis(page: Page<'_>) -> ChartAxis {
-    ChartAxis::Frequency(page.state.display.curves.unit)
+/// Returns the band of the identification that is drawn \[rad/s\].
+fn job_band(page: Page<'_>) -> [f64; 2] {
+    let Page { state, records, .. } = page;
+    if let Some(job) = state.records.job_of(state.condition().id()) {
+        return job.request.options.band;
+    }
+    match &records.found {
+        Some((job, _)) => job.request.options.band,
+        None => UNKNOWN_BAND,
+    }
+}
+
+/// Charts of the response in focus.
+struct ResponseCharts<'a> {
+    page: Page<'a>,
+    drawn: &'a DrawnResponse,
+    /// Curves of the Bode view.
+    curves: &'a [BodeCurve],
+    /// Name of the response.
+    name: &'a str,
+    /// Band of the identification \[rad/s\].
+    band: [f64; 2],
+}
+
+impl ResponseCharts<'_> {
+    /// Returns an empty chart over the frequencies that all charts share.
+    fn chart<'c>(&self, title: &'c str, place: CaptionedChart, values: Range) -> Chart<'c> {
+        let unit = self.page.state.display.curves.unit;
+        let mut chart = Chart::new(title, ChartAxis::Frequency(unit), "", "");
+        let band_bits = self.band.map(f64::to_bits);
+        chart.group = Some(Id::unique(("identified response", band_bits)));
+        chart.fits_values = true;
+        chart.values = Some(values);
+        let [low, high] = self.band;
+        chart.whole_across = Some(Range::new(low / BEYOND[0], high * BEYOND[1]));
+        chart.layout = ChartLayout {
+            title_height: 0.0,
+            value_axis_width: VALUE_AXIS,
+            right_margin: 2.0,
+            has_ticks_across: place.has_ticks,
+        };
+        chart.band = Some(self.band);
+        chart.spans = self.caution_spans();
+        chart
+    }
+
+    /// Draws a chart below its caption, with the unit of the frequencies at its lower left corner.
+    fn show(&self, ui: &mut Ui, place: CaptionedChart, caption: [&str; 2], chart: &Chart<'_>) {
+        let palette = self.page.palette;
+        let frame = *chart_ui(ui, place.chart, chart, palette).transform.frame();
+        let line = place.caption.with_min_x(frame.left());
+        let [quantity, unit] = caption;
+        let shown = painted_text(ui, line, 0.0, quantity, small(), palette.text);
+        let x = shown.right() - line.left() + 5.0;
+        painted_text(ui, line, x, unit, small(), palette.dim_text);
+        if place.has_ticks {
+            let at = pos2(frame.left() - 6.0, place.chart.bottom() - 0.5 * TICKS);
+            let unit = self.page.state.display.curves.unit.symbol();
+            let color = palette.dim_text;
+            ui.painter()
+                .text(at, Align2::RIGHT_CENTER, unit, small(), color);
+        }
+    }
+
+    fn bode_ui(&self, ui: &mut Ui, place: CaptionedChart, part: BodePart) {
+        let palette = self.page.palette;
+        let caption = match part {
+            BodePart::Magnitude => ["Magnitude", "dB"],
+            BodePart::Phase => ["Phase", "deg"],
+        };
+        let title = format!("{}: {}", self.name, caption[0].to_lowercase());
+        let models = self.model_lines(part);
+        let values = self.value_range(part, &models);
+        let mut chart = self.chart(&title, place, values);
+        if part == BodePart::Magnitude {
+            chart.notes = self.notes();
+        }
+        chart.lines.extend(models);
+        add_response(&mut chart, self.drawn, part, self.page);
+        if self.is_shown(TimeRole::Measured) {
+            for is_trusted in [false, true] {
+                chart
+                    .marks
+                    .push(measured_marks(self.drawn, part, is_trusted, palette));
+            }
+        }
+        self.show(ui, place, caption, &chart);
+    }
+
+    /// Returns the notes in the accessible name: marks of the cautions about the response.
+    fn notes(&self) -> Vec<(String, Color32)> {
+        let mut notes = Vec::new();
+        for mark in caution_marks(self.page) {
+            notes.push((format!("⚠ {mark}"), self.page.palette.warning));
+        }
+        notes
+    }
+
+    fn is_shown(&self, role: TimeRole) -> bool {
+        !self.page.state.records.hidden_roles.contains(&role)
+    }
+
+    /// Returns the curves of the physics representative and its correction.
+    fn model_lines(&self, part: BodePart) -> Vec<ChartLine> {
+        let mut lines = Vec::new();
+        for (role, time_role) in [
+            (Role::Representative, TimeRole::Physics),
+            (Role::Corrected, TimeRole::Corrected),
+        ] {
+            let curve = self.curves.iter().find(|curve| curve.role == role);
+            if let Some(curve) = curve
+                && self.is_shown(time_role)
+            {
+                lines.push(ChartLine {
+                    points: line_points(&self.drawn.aligned(curve), part),
+                    color: time_role.color(self.page.palette),
+                    width: time_role.width(),
+                    dashed: false,
+                });
+            }
+        }
+        lines
+    }
+
+    /// Returns the range of the values within the band; trusted points and their bars may extend it.
+    fn value_range(&self, part: BodePart, models: &[ChartLine]) -> Range {
+        let [low, high] = self.band;
+        let is_inside = |omega: f64| (low..=high).contains(&omega);
+        let mut values = Vec::new();
+        for line in models {
+            values.extend(
+                line.points
+                    .iter()
+                    .filter(|point| is_inside(point[0]))
+                    .map(|point| point[1]),
+            );
+        }
+        for curve in [&self.drawn.refined, &self.drawn.unrefined] {
+            for point in curve {
+                if is_inside(point.omega) {
+                    values.push(point.place(part)[1]);
+                }
+            }
+        }
+        let mut bars = Vec::new();
+        for measured in &self.drawn.measured {
+            if measured.is_trusted && is_inside(measured.point.omega) {
+                let value = measured.point.place(part)[1];
+                let half = part.drawn_half_interval(measured.sd);
+                values.push(value);
+                bars.extend([value - half, value + half]);
+            }
+        }
+        let Some(curves) = Range::spanning(values) else {
+            return Range::new(-1.0, 1.0);
+        };
+        let most = MOST_EXTENSION * curves.width();
+        let mut range = curves;
+        for bar in bars {
+            range = range.including(bar.clamp(curves.min - most, curves.max + most));
+        }
+        rounded_range(range)
+    }
+
+    fn coherence_ui(&self, ui: &mut Ui, place: CaptionedChart) {
+        let palette = self.page.palette;
+        let title = format!("{}: partial coherence", self.name);
+        let mut chart = self.chart(&title, place, Range::new(0.0, HIGHEST_COHERENCE));
+        chart.levels = vec![TRUSTED_COHERENCE];
+        let points: Vec<[f64; 2]> = self
+            .drawn
+            .measured
+            .iter()
+            .map(|measured| [measured.point.omega, measured.coherence])
+            .collect();
+        chart.lines.push(ChartLine {
+            points: points.into(),
+            color: palette.text,
+            width: 1.3,
+            dashed: false,
+        });
+        let caption = ["Partial coherence", "below 0.6 hollow, not used"];
+        self.show(ui, place, caption, &chart);
+    }
+
+    fn residual_ui(&self, ui: &mut Ui, place: CaptionedChart) {
+        let palette = self.page.palette;
+        let title = format!("{}: phase residual", self.name);
+        let mut points = Vec::new();
+        let mut largest = 0.0f64;
+        for measured in &self.drawn.measured {
+            if let Some(residual) = measured.phase_residual {
+                points.push([measured.point.omega, residual, 0.0]);
+                if measured.is_trusted {
+                    largest = largest.max(residual.abs());
+                }
+            }
+        }
+        let [least, most] = RESIDUAL_LIMITS;
+        let half = largest.clamp(least, most);
+        let mut chart = self.chart(&title, place, Range::new(-half, half));
+        chart.tolerance = Some(ChartSpan {
+            ends: [-RESIDUAL_BAND, RESIDUAL_BAND],
+            color: palette.text.gamma_multiply(0.08),
+        });
+        chart.marks.push(ChartMarks {
+            points,
+            sideways: Vec::new(),
+            color: palette.text,
+            filled: true,
+            crosses: false,
+        });
+        self.show(ui, place, ["Phase residual", "in σ, band ± 2"], &chart);
+    }
+
+    /// Returns the frequency intervals to which cautions about all responses refer.
+    fn caution_spans(&self) -> Vec<ChartSpan> {
+        let Page {
+            records, palette, ..
+        } = self.page;
+        let mut spans = Vec::new();
+        for (_, note) in records.cautions() {
+            for ends in doubtful_intervals(&note, self.band) {
+                if ends[0] < ends[1] {
+                    spans.push(ChartSpan {
+                        ends,
+                        color: palette.warning.gamma_multiply(0.1),
+                    });
+                }
+            }
+        }
+        spans
+    }
 }
 
 /// Returns short marks for the cautions about the displayed response: about its pair, its input or
@@ -113,29 +418,6 @@ fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
     marks
 }
 
-/// Returns the frequency intervals to which cautions about all responses refer.
-fn caution_spans(page: Page<'_>) -> Vec<ChartSpan> {
-    let Page {
-        records, palette, ..
-    } = page;
-    let band = match &records.found {
-        Some((job, _)) => job.request.options.band,
-        None => [0.0; 2],
-    };
-    let mut spans = Vec::new();
-    for (_, note) in records.cautions() {
-        for ends in doubtful_intervals(&note, band) {
-            if ends[0] < ends[1] {
-                spans.push(ChartSpan {
-                    ends,
-                    color: palette.warning.gamma_multiply(0.1),
-                });
-            }
-        }
-    }
-    spans
-}
-
 /// Returns the intervals \[rad/s\] to which a caution refers: the lower end of the band for short
 /// records, or the ends of `band` that no input excites.
 fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
@@ -146,22 +428,29 @@ fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// Adds the curves, bands and points of a response to a chart.
-fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, palette: &Palette) {
-    chart.group = Some(Id::unique("identified response"));
-    chart.bands.push(confidence_band(drawn, part, palette));
-    chart.lines.push(ChartLine {
-        points: line_points(&drawn.unrefined, part),
-        color: palette.accent,
-        width: 1.2,
-        dashed: true,
-    });
-    chart.lines.push(ChartLine {
-        points: line_points(&drawn.recommended, part),
-        color: palette.identified,
-        width: 2.0,
-        dashed: false,
-    });
+/// Adds the curves and bands of the identified models to a chart.
+fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, page: Page<'_>) {
+    let palette = page.palette;
+    if !page
+        .state
+        .records
+        .hidden_roles
+        .contains(&TimeRole::Identified)
+    {
+        chart.bands.push(confidence_band(drawn, part, palette));
+        let is_refined = !drawn.refined.is_empty();
+        let curve = if is_refined {
+            &drawn.refined
+        } else {
+            &drawn.unrefined
+        };
+        chart.lines.push(ChartLine {
+            points: line_points(curve, part),
+            color: TimeRole::Identified.color(palette),
+            width: TimeRole::Identified.width(),
+            dashed: !is_refined,
+        });
+    }
     for interval in &drawn.deviating {
         chart
             .bands
@@ -171,11 +460,6 @@ fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, pa
         chart
             .bands
             .push(interval_mark(drawn, *interval, part, palette.dim_text));
-    }
-    for is_trusted in [false, true] {
-        chart
-            .marks
-            .push(measured_marks(drawn, part, is_trusted, palette));
     }
 }
 

@@ -1,11 +1,12 @@
 //! Identification settings: band, references, model orders, past windows, Laguerre poles.
 
-use egui::{CollapsingHeader, Grid, Id, Ui};
+use egui::{Grid, Id, Ui};
 
-use gdcm_model::units::{number, six_digits};
+use gdcm_model::units::{number, six_digits, telling};
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
 
+use super::fold_summary::FoldSummary;
 use super::page::Page;
 use super::references::{REFERENCES, references_ui};
 use super::typed_lists::{list_text, numbers, typed_band, whole_numbers};
@@ -75,41 +76,46 @@ impl SearchList {
     }
 }
 
-/// Draws the settings in a section that can be folded; with an empty field, the identification
-/// chooses the values.
-///
-/// Unfolds the section once to focus the field named `focused`.
-pub(super) fn search_settings_ui(
-    ui: &mut Ui,
-    page: Page<'_>,
-    focused: &mut Option<&'static str>,
-    commands: &mut Vec<Command>,
-) {
+/// Summarises the settings: "0.5–12 rad/s · orders automatic".
+pub(super) fn settings_summary(page: Page<'_>) -> FoldSummary {
+    let [low, high] = page.state.identified_band(page.state.condition().id());
+    let search = &page.records.search;
+    let orders = if search.orders.is_empty() {
+        "orders automatic".to_owned()
+    } else {
+        format!("orders {}", list_text(&search.orders))
+    };
+    FoldSummary {
+        text: format!("{}–{} rad/s · {orders}", telling(low, 2), telling(high, 1)),
+        is_doubtful: false,
+    }
+}
+
+/// Draws the settings; with an empty field, the identification chooses the values. Focuses the
+/// requested field.
+pub(super) fn search_settings_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let palette = page.palette;
-    let forced_open = if focused.is_some() { Some(true) } else { None };
-    CollapsingHeader::new(palette.small("Advanced"))
-        .id_salt("advanced identification")
-        .open(forced_open)
+    let focused = page.state.records.advanced_field;
+    ui.add_space(2.0);
+    Grid::new("advanced identification")
+        .num_columns(2)
+        .spacing([6.0, 3.0])
         .show(ui, |ui| {
-            Grid::new("advanced identification")
-                .num_columns(2)
-                .spacing([6.0, 3.0])
-                .show(ui, |ui| {
-                    band_ui(ui, page, commands);
-                    let is_focused = *focused == Some(REFERENCES);
-                    references_ui(ui, page, FIELD_WIDTH, is_focused, commands);
-                    for list in SearchList::ALL {
-                        search_list_ui(ui, &page.records.search, list, palette, commands);
-                    }
-                });
-            if let Some(name) = focused.take() {
-                ui.scroll_to_cursor(None);
-                if name != REFERENCES {
-                    let entry = Id::unique(("entry", field_name(name)));
-                    ui.memory_mut(|memory| memory.request_focus(entry.with("field")));
-                }
+            band_ui(ui, page, commands);
+            let is_focused = focused == Some(REFERENCES);
+            references_ui(ui, page, FIELD_WIDTH, is_focused, commands);
+            for list in SearchList::ALL {
+                search_list_ui(ui, &page.records.search, list, palette, commands);
             }
         });
+    if let Some(name) = focused {
+        ui.scroll_to_cursor(None);
+        if name != REFERENCES {
+            let entry = Id::unique(("entry", field_name(name)));
+            ui.memory_mut(|memory| memory.request_focus(entry.with("field")));
+        }
+        commands.push(RecordsCommand::AdvancedFocused.into());
+    }
 }
 
 fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {

@@ -1,8 +1,8 @@
-//! Models compared with a record over time: selection, simulation jobs, and responses.
+//! Models compared with a record over time: simulation jobs and responses.
 
 use std::sync::Arc;
 
-use egui::{Color32, Label, RichText, Ui};
+use egui::Ui;
 
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::{BundleKind, StateSpace};
@@ -11,35 +11,35 @@ use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_words::missing_results::simulation_failure_text;
 
 use super::frame_cache::cached;
-use crate::gui::commands::command::Command;
-use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::chart::ChartLine;
-use crate::gui::state::records::{ConditionRecords, TimeModel};
+use crate::gui::state::records::{ConditionRecords, TimeRole};
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Points of a curve over time, as a line for each window.
+type Lines = Vec<Arc<[[f64; 2]]>>;
 
 /// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {
-    pub(super) model: TimeModel,
-    pub(super) color: Color32,
+    pub(super) role: TimeRole,
     /// Response of the model, or the reason for its absence; `None` while it is being computed.
     pub(super) result: Option<&'a Result<Arc<Validation>, SimulationFailure>>,
 }
 
 impl Simulated<'_> {
     /// Returns the response once it is computed.
-    fn validation(&self) -> Option<&Validation> {
+    fn validation(&self) -> Option<&Arc<Validation>> {
         match self.result {
             Some(Ok(validation)) => Some(validation),
             _ => None,
         }
     }
 
-    /// Formats the fit of an output \[%\]; `None` if it is not available.
-    pub(super) fn fit_words(&self, output: usize) -> Option<String> {
-        let fits = &self.validation()?.fit_percent;
-        let fit = fits.get(output).copied().flatten()?;
-        Some(format!("{fit:.1} %"))
+    /// Returns the fit of an output \[%\]; `None` if it is not available.
+    pub(super) fn fit_percent(&self, output: usize) -> Option<f64> {
+        self.validation()?
+            .fit_percent
+            .get(output)
+            .copied()
+            .flatten()
     }
 
     /// Returns Theil's coefficient of an output; `None` if it is not available.
@@ -47,41 +47,52 @@ impl Simulated<'_> {
         self.validation()?.theil.get(output).copied().flatten()
     }
 
-    /// Shows why there is no response, or that it is being computed.
-    pub(super) fn absence_ui(&self, ui: &mut Ui, state: &State, palette: &Palette) {
-        let (words, color) = match self.result {
-            Some(Ok(_)) => return,
-            Some(Err(why)) => (simulation_failure_text(why), palette.warning),
-            None => (state.results.absence().to_owned(), palette.dim_text),
-        };
-        let words = format!("{} model: {words}", self.model.name());
-        ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
+    /// Returns why the model cannot be compared with the record.
+    pub(super) fn failure(&self) -> Option<String> {
+        match self.result {
+            Some(Err(why)) => Some(format!(
+                "{} model: {}",
+                self.role.name(),
+                simulation_failure_text(why)
+            )),
+            _ => None,
+        }
     }
 
-    /// Returns the lines of an output, one per window, each from its own initial state.
-    pub(super) fn lines(&self, ui: &Ui, output: usize) -> Vec<ChartLine> {
-        let Some(Ok(validation)) = self.result else {
-            return Vec::new();
+    /// Returns the response of an output, a line per window, each from its own initial state.
+    pub(super) fn lines(&self, ui: &Ui, output: usize) -> Arc<Lines> {
+        let Some(validation) = self.validation() else {
+            return Arc::default();
         };
-        let name = format!("{} {output}", self.model.name());
+        let name = format!("{} {output}", self.role.name());
         let source = Arc::clone(validation) as _;
-        let lines = cached(ui, &name, &[source], (), || {
+        cached(ui, &name, &[source], (), || {
             simulated_points(validation, output)
-        });
-        lines
-            .iter()
-            .map(|points| ChartLine {
-                points: Arc::clone(points),
-                color: self.color,
-                width: 1.3,
-                dashed: self.model == TimeModel::Physics,
-            })
-            .collect()
+        })
     }
 }
 
+/// Returns the value of a curve at a time \[s\], interpolated linearly; `None` outside its lines.
+pub(super) fn value_at(lines: &[Arc<[[f64; 2]]>], time_s: f64) -> Option<f64> {
+    for line in lines {
+        let after = line.partition_point(|point| point[0] < time_s);
+        let Some(next) = line.get(after) else {
+            continue;
+        };
+        if next[0] == time_s {
+            return Some(next[1]);
+        }
+        let Some(before) = after.checked_sub(1).and_then(|before| line.get(before)) else {
+            continue;
+        };
+        let share = (time_s - before[0]) / (next[0] - before[0]);
+        return Some(before[1] + share * (next[1] - before[1]));
+    }
+    None
+}
+
 /// Returns time \[s\] and simulated output, as a line for each window.
-fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]]>> {
+fn simulated_points(validation: &Validation, output: usize) -> Lines {
     let mut lines = Vec::new();
     for window in &validation.windows {
         let mut points = Vec::new();
@@ -94,13 +105,14 @@ fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]
     lines
 }
 
-/// A model selected for the displayed record, with the job that computes its response.
+/// A model of the displayed condition, with the job that computes its response to the displayed
+/// record.
 struct ModelJob {
-    model: TimeModel,
+    role: TimeRole,
     job: SimulationJob,
 }
 
-/// Returns the selected models that are available in continuous time.
+/// Returns the models that are available in continuous time.
 fn model_jobs(state: &State) -> Vec<ModelJob> {
     let Some(records) = state.records.conditions.get(&state.condition().id()) else {
         return Vec::new();
@@ -113,20 +125,20 @@ fn model_jobs(state: &State) -> Vec<ModelJob> {
     };
     let preparation = records.preparation();
     let mut jobs = Vec::new();
-    for &model in &state.records.time_models {
-        if let Some(space) = state_space(state, records, model) {
+    for role in TimeRole::MODELS {
+        if let Some(space) = state_space(state, records, role) {
             let job = SimulationJob {
                 record: Arc::clone(flight).into(),
                 preparation: preparation.clone(),
                 model: space,
             };
-            jobs.push(ModelJob { model, job });
+            jobs.push(ModelJob { role, job });
         }
     }
     jobs
 }
 
-/// Returns the jobs that simulate the models selected for the displayed record.
+/// Returns the jobs that simulate the models' responses to the displayed record.
 pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
     model_jobs(state)
         .into_iter()
@@ -134,18 +146,17 @@ pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
         .collect()
 }
 
-/// Returns the models selected for the displayed record.
-pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulated<'a>> {
+/// Returns the models compared with the displayed record.
+pub(super) fn simulated(state: &State) -> Vec<Simulated<'_>> {
     let mut models = Vec::new();
-    for ModelJob { model, job } in model_jobs(state) {
+    for ModelJob { role, job } in model_jobs(state) {
         let known = state
             .results
             .simulations
             .iter()
             .find(|(known, _)| *known == job);
         models.push(Simulated {
-            model,
-            color: model.color(palette),
+            role,
             result: known.map(|(_, result)| result),
         });
     }
@@ -154,8 +165,8 @@ pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulate
 
 /// Returns the state space of a model; `None` if the model is unavailable or not in continuous time
 /// without delays.
-fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpace> {
-    if model == TimeModel::Identified {
+fn state_space(state: &State, records: &ConditionRecords, role: TimeRole) -> Option<StateSpace> {
+    if role == TimeRole::Identified {
         return records.identification()?.refined.state_space().cloned();
     }
     let analysis = state.shown()?;
@@ -165,7 +176,7 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
         .condition
         .model(BundleKind::Physics, name)?
         .state_space()?;
-    let space = if model == TimeModel::Corrected {
+    let space = if role == TimeRole::Corrected {
         analysis
             .corrected_model(physics, &analysis.correction, Pade::default())
             .ok()?
@@ -180,27 +191,20 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
     }
 }
 
-/// Draws the selector of the models that are compared with the record.
-pub(super) fn time_models_ui(
-    ui: &mut Ui,
-    state: &State,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    ui.label(palette.small("compare with the simulated response of:"));
-    for model in TimeModel::ALL {
-        let mut is_drawn = state.records.time_models.contains(&model);
-        let text = RichText::new(format!("{} model", model.name()))
-            .size(SMALL_SIZE)
-            .color(model.color(palette));
-        let hint = "Simulated in windows of 10 s (shorter for an unstable model), each with a \
-            separate initial state and offsets";
-        if ui
-            .checkbox(&mut is_drawn, text)
-            .on_hover_text(hint)
-            .changed()
-        {
-            commands.push(RecordsCommand::ShowTimeModel(model, is_drawn).into());
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_interpolated_within_a_line_and_absent_between_lines() {
+        let lines: Lines = vec![
+            Arc::from([[0.0, 1.0], [1.0, 3.0]]),
+            Arc::from([[4.0, 5.0], [5.0, 7.0]]),
+        ];
+        let values = [-0.1, 0.0, 0.25, 1.0, 2.0, 4.5, 5.1].map(|time_s| value_at(&lines, time_s));
+        assert_eq!(
+            values,
+            [None, Some(1.0), Some(1.5), Some(3.0), None, Some(6.0), None]
+        );
     }
 }

@@ -1,23 +1,23 @@
-//! Spectrogram of an input, above the channel charts.
+//! Spectrogram of an input on the time axis of the charts.
 
 use std::sync::Arc;
 
-use egui::{ColorImage, Sense, TextureHandle, TextureOptions, Ui, vec2};
+use egui::{Align2, ColorImage, Rect, TextureHandle, TextureOptions, Ui, vec2};
 
 use gdcm_model::simulation::FlightRecord;
+use gdcm_plot::figure::Range;
 use gdcm_sysid::records::spectrogram::Spectrogram;
 
 use super::frame_cache::{Source, cached};
 use super::page::Page;
+use super::record_span::RecordSpan;
+use super::time_charts::{READOUT_WIDTH, VALUE_AXIS, time_axis};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::chart::{Chart, ChartAxis, ChartImage};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartImage, ChartLayout};
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::widgets::choices::choice_ui;
-use crate::gui::widgets::palette::Palette;
-
-/// Chart height \[pt\].
-const SPECTROGRAM_HEIGHT: f32 = 150.0;
+use crate::gui::widgets::choices::DropDown;
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
 /// A spectrogram with its picture on the graphics card.
 struct PaintedSpectrogram {
@@ -28,22 +28,36 @@ struct PaintedSpectrogram {
 /// Draws the selector of the input whose spectrogram is shown; no input is an option.
 pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let state = page.state;
-    ui.label(page.palette.small("spectrogram of"));
-    let hint = "Power over time and frequency: a sweep is a rising ridge";
-    let mut choices = vec![(None, "none", "Channels over time only")];
+    let wanted = state.records.spectrogram;
+    let mut shown = "off";
+    let mut choices = vec![(None, wanted.is_none(), "off".to_owned())];
     for (index, channel) in state.dataset().inputs().iter().enumerate() {
-        choices.push((Some(index), channel.name.as_str(), hint));
+        let is_shown = wanted == Some(index);
+        if is_shown {
+            shown = &channel.name;
+        }
+        choices.push((Some(index), is_shown, channel.name.clone()));
     }
-    let mut wanted = state.records.spectrogram;
-    choice_ui(ui, "Input of the spectrogram", &mut wanted, &choices);
-    if wanted != state.records.spectrogram {
-        commands.push(RecordsCommand::ShowSpectrogram(wanted).into());
+    let list = DropDown {
+        name: "Input of the spectrogram",
+        width: 118.0,
+        text: &format!("spectrogram {shown}"),
+    };
+    if let Some(chosen) = list.ui(ui, choices) {
+        commands.push(RecordsCommand::ShowSpectrogram(chosen).into());
     }
 }
 
 /// Shows the spectrogram of the selected input up to twice the upper band limit, on the time axis
 /// of the charts.
-pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
+pub(super) fn spectrogram_ui(
+    ui: &mut Ui,
+    page: Page<'_>,
+    record: &RecordSpan,
+    place: Rect,
+    has_ticks_across: bool,
+) {
+    let flight = &record.flight;
     let Page {
         state,
         records,
@@ -66,28 +80,47 @@ pub(super) fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRec
         paint(ui, flight, index, highest, palette)
     });
     let Some(painted) = &*painted else {
-        ui.label(palette.small("The record is too short or sampled too slowly for a spectrogram"));
+        let text = "The record is too short or sampled too slowly for a spectrogram";
+        let center = place.center();
+        ui.painter().text(
+            center,
+            Align2::CENTER_CENTER,
+            text,
+            small(),
+            palette.dim_text,
+        );
         return;
     };
-    let title = format!(
-        "{}: power over time [dB relative to the maximum]",
-        channel.name
-    );
+    let title = format!("{}: power over time", channel.name);
     let unit = state.display.curves.unit;
-    let label = unit.axis_label();
-    let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
-    chart.group = Some(Page::time_axis());
+    let mut chart = Chart::new(&title, ChartAxis::Linear, "", "");
+    chart.group = Some(time_axis(record));
     chart.fits_values = true;
-    chart.chooses = state.records.chooses_parts;
+    let [from, to] = record.span_s;
+    chart.whole_across = Some(Range::new(from, to));
+    chart.layout = ChartLayout {
+        title_height: 0.0,
+        value_axis_width: VALUE_AXIS,
+        right_margin: READOUT_WIDTH,
+        has_ticks_across,
+    };
     chart.image = Some(ChartImage {
         texture: painted.texture.id(),
         across: painted.spectrogram.time_s,
         omega: painted.spectrogram.omega,
         unit,
     });
-    let size = vec2(ui.available_width(), SPECTROGRAM_HEIGHT);
-    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-    chart_ui(ui, area, &chart, palette);
+    let frame = *chart_ui(ui, place, &chart, palette).transform.frame();
+    let margin = place.with_min_x(frame.right() + 10.0);
+    let lines = [
+        (channel.name.clone(), medium(BODY_SIZE), palette.text),
+        (unit.axis_label(), small(), palette.dim_text),
+        ("bright: more power".to_owned(), small(), palette.dim_text),
+    ];
+    for (row, (text, font, color)) in lines.into_iter().enumerate() {
+        let at = margin.min + vec2(0.0, 15.0 * row as f32);
+        ui.painter().text(at, Align2::LEFT_TOP, text, font, color);
+    }
 }
 
 /// Computes the spectrogram of an input up to `highest` \[rad/s\] and uploads its picture; `None`

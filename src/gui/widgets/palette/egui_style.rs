@@ -87,7 +87,9 @@ impl Palette {
     pub fn style(&self) -> Style {
         let mut style = Style {
             visuals: self.visuals(),
-            animation_time: 0.08,
+            // Menus fade in over this time, and with software rendering a frame may be the last for
+            // a while: a menu must be opaque from its first frame on.
+            animation_time: 0.0,
             ..Style::default()
         };
         style.text_styles = [
@@ -228,6 +230,24 @@ mod tests {
             }
         });
         output.drop_without_applying_deltas();
+    }
+
+    #[test]
+    fn menus_are_opaque_from_their_first_frame_on() {
+        let ctx = Context::default();
+        apply(&ctx);
+        // The first frame measures the menu; the second shows it.
+        for _ in 0..2 {
+            let mut opacity = 0.0;
+            let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                egui::Area::new(egui::Id::unique("menu")).show(ui.ctx(), |ui| {
+                    opacity = ui.opacity();
+                    ui.label("entry");
+                });
+            });
+            output.drop_without_applying_deltas();
+            assert_eq!(opacity, 1.0);
+        }
     }
 
     #[test]

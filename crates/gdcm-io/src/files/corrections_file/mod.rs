@@ -21,12 +21,12 @@ use std::path::{Path, PathBuf};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
-use self::assessment_csv::write_assessment_csv;
 use self::physics::write_physics_csv;
 use crate::file_error::FileError;
 use crate::json_writing::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
 
+pub(crate) use self::assessment_csv::write_assessment_csv;
 pub(crate) use self::corrections_csv::write_corrections_csv;
 pub use self::corrections_json::corrections;
 

@@ -241,6 +241,7 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
+        ("peak_error", ..) => "multiple of the tolerance".to_owned(),
         ("correlation", None, _) => "the flown or the simulated output is constant".to_owned(),
         ("correlation", _, Some(trend)) => format!("off-axis, trend {}", trend.name()),
         _ => String::new(),

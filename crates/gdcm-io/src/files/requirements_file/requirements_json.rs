@@ -7,7 +7,12 @@ use std::io;
 use serde::Serialize;
 use serde_json::Value;
 
-use gdcm_model::dataset::Dataset;
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::results::requirement_grid::{
+    GridCount, GridRow, GridSource, Requirement, RequirementGrid,
+};
+use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::missing_results::{
@@ -24,8 +29,23 @@ pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
     pub time_histories: &'a TimeHistories,
     pub dataset: &'a Dataset,
+    /// Limits and tolerances of the grid.
+    pub settings: &'a RequirementSettings,
     /// SHA-256 of the dataset's file.
     pub sha256: &'a str,
+}
+
+impl RequirementResults<'_> {
+    /// Returns the grid of the requirements for a role of the corrected model.
+    pub fn grid(&self, role: RequirementRole) -> RequirementGrid {
+        RequirementGrid::new(&GridSource {
+            requirements: self.requirements,
+            histories: Some(self.time_histories),
+            dataset: self.dataset,
+            settings: self.settings,
+            role,
+        })
+    }
 }
 
 /// Returns the contents of `requirements.json`.
@@ -40,6 +60,9 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
         },
         requirements: results.requirements,
         time_histories: results.time_histories,
+        grid: [RequirementRole::Corrected, RequirementRole::Scheduled]
+            .map(|role| GridDocument::new(&results.grid(role), results))
+            .into(),
     };
     with_sentences(&document, results)
 }
@@ -54,6 +77,93 @@ struct RequirementsDocument<'a> {
     #[serde(flatten)]
     requirements: &'a Requirements,
     time_histories: &'a TimeHistories,
+    grid: Vec<GridDocument>,
+}
+
+/// The grid for a role of the corrected model: counts, and the values by requirement and condition.
+#[derive(Serialize)]
+struct GridDocument {
+    role: RequirementRole,
+    #[serde(flatten)]
+    count: GridCount,
+    conditions: Vec<ConditionId>,
+    rows: Vec<GridRowDocument>,
+}
+
+/// A requirement in all conditions; its values are fractions, seconds or costs.
+#[derive(Serialize)]
+struct GridRowDocument {
+    requirement: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    output: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    input: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quantity: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mode: Option<String>,
+    values: Vec<Option<f64>>,
+    verdicts: Vec<&'static str>,
+    physics_values: Vec<Option<f64>>,
+    physics_verdicts: Vec<&'static str>,
+}
+
+impl GridDocument {
+    fn new(grid: &RequirementGrid, results: RequirementResults<'_>) -> Self {
+        Self {
+            role: grid.role,
+            count: grid.count(),
+            conditions: grid
+                .conditions
+                .iter()
+                .map(|condition| condition.id)
+                .collect(),
+            rows: grid
+                .rows
+                .iter()
+                .map(|row| GridRowDocument::new(row, results))
+                .collect(),
+        }
+    }
+}
+
+impl GridRowDocument {
+    fn new(row: &GridRow, results: RequirementResults<'_>) -> Self {
+        let mut document = Self {
+            requirement: row.requirement.code(),
+            output: None,
+            input: None,
+            quantity: None,
+            mode: None,
+            values: Vec::new(),
+            verdicts: Vec::new(),
+            physics_values: Vec::new(),
+            physics_verdicts: Vec::new(),
+        };
+        match row.requirement {
+            Requirement::Bandwidth(pair) | Requirement::PhaseDelay(pair) => {
+                document.set_response(pair, results.dataset);
+            }
+            Requirement::PeakError(index) => {
+                let tolerance = results.settings.tolerances.rows().get(index);
+                document.quantity = tolerance.map(|tolerance| tolerance.quantity.clone());
+            }
+            Requirement::ModeFrequency(name) => document.mode = Some(name.to_string()),
+            Requirement::MeanJOnAxis | Requirement::MeanJAll | Requirement::MuadShareOnAxis => {}
+        }
+        for cell in &row.cells {
+            document.values.push(cell.corrected.value);
+            document.verdicts.push(cell.corrected.verdict.code());
+            document.physics_values.push(cell.physics.value);
+            document.physics_verdicts.push(cell.physics.verdict.code());
+        }
+        document
+    }
+
+    fn set_response(&mut self, pair: Pair, dataset: &Dataset) {
+        self.output = Some(dataset.outputs()[pair.output].name.clone());
+        self.input = Some(dataset.inputs()[pair.input].name.clone());
+    }
 }
 
 #[derive(Serialize)]

@@ -1,7 +1,7 @@
 //! Conversion between study files and decisions: a study becomes text, and text becomes decisions
 //! that are checked against the dataset.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use gdcm_model::dataset::location::Location;
@@ -9,11 +9,12 @@ use gdcm_model::dataset::{Condition, ConditionId, Dataset};
 use gdcm_study::Study;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_study::decisions::choices::ConditionChoice;
+use gdcm_study::decisions::export_choices::ExportChoices;
 use gdcm_study::decisions::named_decisions::Decisions;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};
 
 use super::json_form::{
-    ConditionText, DatasetReference, FORMAT, StudyText, TakenText, VariantText,
+    ConditionText, DatasetReference, ExportText, FORMAT, StudyText, TakenText, VariantText,
 };
 use crate::content_fault::{ContentError, ContentFault};
 use crate::files::dataset_file::{ModelText, RecordText};
@@ -52,7 +53,53 @@ impl StudyText {
             taken,
             signs: study.turned_channels(),
             requirements: study.requirements.as_ref().clone(),
+            export: ExportText::from_choices(&study.exports),
             variants,
+        }
+    }
+}
+
+impl ExportText {
+    /// Returns the choices of the last export; `None` for the defaults.
+    fn from_choices(choices: &ExportChoices) -> Option<Self> {
+        if *choices == ExportChoices::default() {
+            return None;
+        }
+        let conditions = choices.conditions.iter().flatten();
+        Some(Self {
+            formats: choices.formats.iter().cloned().collect(),
+            conditions: conditions.copied().collect(),
+            per_condition: choices.per_condition,
+            model: choices.model.clone(),
+            breakpoints_kt: choices.breakpoints_kt.clone().unwrap_or_default(),
+            pade_order: choices.pade_order as u64,
+            folder: choices.folder.clone(),
+            prefix: choices.prefix.clone(),
+            replaces: choices.replaces,
+        })
+    }
+
+    fn into_choices(self) -> ExportChoices {
+        let conditions: BTreeSet<ConditionId> = self.conditions.into_iter().collect();
+        ExportChoices {
+            formats: self.formats.into_iter().collect(),
+            conditions: if conditions.is_empty() {
+                None
+            } else {
+                Some(conditions)
+            },
+            per_condition: self.per_condition,
+            model: self.model,
+            breakpoints_kt: if self.breakpoints_kt.is_empty() {
+                None
+            } else {
+                Some(self.breakpoints_kt)
+            },
+            // An order outside the range is reported by the export.
+            pade_order: self.pade_order.try_into().unwrap_or(usize::MAX),
+            folder: self.folder,
+            prefix: self.prefix,
+            replaces: self.replaces,
         }
     }
 }
@@ -100,6 +147,9 @@ pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisio
                 return Err(error);
             }
         }
+    }
+    if let Some(export) = text.export {
+        decisions.exports = Arc::new(export.into_choices());
     }
     decisions.signs = text.signs;
     decisions.requirements = Arc::new(text.requirements);
@@ -160,6 +210,7 @@ fn present_decisions(
         taken: Vec::new(),
         signs: Vec::new(),
         requirements: Arc::default(),
+        exports: Arc::default(),
         variants: Vec::new(),
     })
 }

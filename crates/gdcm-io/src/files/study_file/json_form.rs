@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use gdcm_model::whole_number::whole;
 use gdcm_study::decisions::choices::BundleChoice;
@@ -13,6 +14,10 @@ use gdcm_study::decisions::signs::TurnedChannel;
 use crate::files::dataset_file::{ModelText, RecordText};
 use crate::json_reading::{Format, list};
 
+/// Maximum number of names of export formats in a study file.
+const MOST_FORMATS: usize = 100;
+/// Maximum number of airspeeds of an exported table in a study file.
+const MOST_BREAKPOINTS: usize = 1000;
 /// Maximum number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
@@ -50,6 +55,9 @@ pub(super) struct StudyText {
     /// Decisions about the requirements; omitted if they are the defaults.
     #[serde(default, skip_serializing_if = "is_default")]
     pub(super) requirements: RequirementSettings,
+    /// Choices of the last export; absent in older studies, and omitted if they are the defaults.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) export: Option<ExportText>,
     /// Named alternatives to the decisions; absent in older studies.
     #[serde(
         default,
@@ -68,6 +76,37 @@ pub(super) struct TakenText {
     pub(super) identified_models: Vec<ModelText>,
     #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
     pub(super) records: Vec<RecordText>,
+}
+
+/// Choices of an export.
+#[derive(Deserialize, Serialize)]
+pub(super) struct ExportText {
+    /// Names of the formats; unknown names are ignored.
+    #[serde(deserialize_with = "list::<MOST_FORMATS, _, _>")]
+    pub(super) formats: Vec<String>,
+    /// Exported conditions; omitted if all are.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CONDITIONS, _, _>"
+    )]
+    pub(super) conditions: Vec<ConditionId>,
+    pub(super) per_condition: bool,
+    pub(super) model: String,
+    /// Airspeeds \[kt\] of lookup tables; omitted if they are those of the conditions.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_BREAKPOINTS, _, _>"
+    )]
+    pub(super) breakpoints_kt: Vec<f64>,
+    #[serde(deserialize_with = "whole")]
+    pub(super) pade_order: u64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) folder: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) prefix: Option<String>,
+    pub(super) replaces: bool,
 }
 
 /// A named alternative to the decisions.

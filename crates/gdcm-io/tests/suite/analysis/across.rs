@@ -18,19 +18,20 @@ fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
     let band = Band::new(0.5, 12.0).unwrap();
     let models = vec![ids[0].clone(), missing, ids[1].clone()];
     let job = AcrossJob {
+        moved_dataset: dataset.clone().into(),
         dataset: dataset.into(),
         models,
         couplings: None,
         grid: (band, 5),
     };
     let curves = job.run(&mut (), &Unobserved).unwrap();
-    let found: Vec<&ModelId> = curves.responses.iter().map(|(id, _)| id).collect();
+    let found: Vec<&ModelId> = curves.responses.iter().map(|found| &found.model).collect();
     assert_eq!(found, [&ids[0], &ids[1]]);
     let pair = job.dataset.measuring_pairs().marked().next().unwrap();
     assert!(
         curves
             .responses
             .iter()
-            .all(|(_, response)| response.curve(pair).len() == 5)
+            .all(|found| found.response.curve(pair).len() == 5 && found.coupled.is_none())
     );
 }

@@ -1,13 +1,14 @@
 //! Named parameters as a stage of the analysis (M18.5): everything after the fit sees the moved
 //! physics models.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use gdcm_io::load_dataset;
 use gdcm_method::correction::Channel;
-use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::physics_parameter::{MovedModel, MovedParameters, ParameterChange};
 use gdcm_model::dataset::{Condition, Model};
+use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::decisions::physics_settings::ParameterDecision;
 use gdcm_study::jobs::analysis_jobs::PhysicsJob;
 use gdcm_study::jobs::job::Job;
@@ -218,9 +219,9 @@ fn the_job_for_the_named_parameters_agrees_with_the_reference() {
 
 #[test]
 fn moved_models_reach_corrections_schedule_and_assessment() {
-    let chosen = DATASET.ids().collect();
-    let before = corrections(&OFF, "", &chosen);
-    let after = corrections(&ALL, "", &chosen);
+    let ids: BTreeSet<ConditionId> = OFF.study.dataset.ids().collect();
+    let before = corrections(&OFF, "", &ids);
+    let after = corrections(&ALL, "", &ids);
     for key in ["conditions", "schedule", "assessment"] {
         assert_ne!(before[key], after[key], "{key}");
     }

@@ -1,0 +1,193 @@
+//! A response in every condition, coloured by airspeed, and the error that the schedule leaves.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::AcrossRole;
+use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::job::Job;
+use gdcm_study::results::analysis::Analysis;
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, display_band};
+
+use super::airspeed_response::{AirspeedCache, AirspeedCurves, AirspeedResponse};
+use super::axis::{Axis, Range};
+use super::bode::{ResponsePlot, band_ground};
+use super::bode_curve::Pane;
+use super::bode_options::BodeOptions;
+use super::condition_source::settings_words;
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::frequency_panels::{FrequencyPanels, side_by_side};
+use super::marks::{Envelope, Rule};
+use super::responses::fitted_values;
+use super::uncertainty_band::BodeBand;
+
+/// Range of the errors at the optima.
+const OPTIMA: Color = Color::new(Hue::Corrected).tint(22);
+/// Line without an error.
+const NO_ERROR: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
+/// Margin above and below the curves, relative to their height.
+const MARGIN: f64 = 0.06;
+/// Minimum height of the error range \[dB\] and \[deg\].
+const LEAST_ERROR_DB: f64 = 1.0;
+const LEAST_ERROR_DEG: f64 = 5.0;
+/// Ratio of frame height to width of two plots side by side.
+const ASPECT: f64 = 1.2;
+
+/// Plots the responses `pairs` of the models with these roles in the `conditions`, magnitude above
+/// phase; with a single response, also the error of the schedule beside it. `None` if no condition
+/// has such a model.
+pub fn airspeeds_figure(
+    analysis: &Analysis,
+    pairs: &[Pair],
+    roles: &[AcrossRole],
+    conditions: &[ConditionId],
+    options: &BodeOptions,
+) -> Option<Figure> {
+    let dataset = &analysis.study.dataset;
+    let settings = &analysis.study.settings;
+    let grid = (display_band(settings.band), CURVE_POINTS);
+    let job = AcrossJob::for_conditions(dataset, Some(analysis), grid);
+    let across = Arc::new(job.run(&mut (), &Unobserved).ok()?);
+    let options = BodeOptions {
+        unit: options.unit,
+        omega: options.omega,
+        values: options.values,
+        ..BodeOptions::default()
+    };
+    let names: Vec<&str> = roles.iter().map(|role| role.name()).collect();
+    let mut plots = Vec::new();
+    for &pair in pairs {
+        let response = AirspeedResponse {
+            dataset,
+            analysis: Some(analysis),
+            roles,
+            conditions,
+            pair,
+            band: settings.band,
+            responses: &across,
+        };
+        let curves = response.curves(&mut AirspeedCache::default());
+        plots.push(AirspeedPlots {
+            curves,
+            analysis,
+            options: &options,
+        });
+    }
+    if plots.iter().all(|plot| plot.curves.responses.is_empty()) {
+        return None;
+    }
+    let caption = format!(
+        "{} {}",
+        settings_words(dataset, settings),
+        "Curves are coloured by airspeed, from dark at the lowest to pale at the highest."
+    );
+    if let ([pair], [plot]) = (pairs, plots.as_slice())
+        && !plot.curves.errors.is_empty()
+    {
+        let title = format!(
+            "{} · every condition: {}",
+            dataset.pair_name(*pair),
+            names.join(", ")
+        );
+        return Some(
+            Figure::new(title)
+                .caption(format!(
+                    "{caption} Error: scheduled minus identified model; green: range of the errors \
+                    at the optima of the conditions."
+                ))
+                .columns(2)
+                .aspect(ASPECT)
+                .shared_x()
+                .plots([plot.response_plot("Response"), plot.error_plot()]),
+        );
+    }
+    let title = format!("Every condition: {}", names.join(", "));
+    let figure = side_by_side(dataset, pairs, title, |pair| {
+        match pairs.iter().position(|known| *known == pair) {
+            Some(index) => plots[index].response_plot(""),
+            None => Plot::default(),
+        }
+    });
+    Some(figure.caption(caption))
+}
+
+/// Both plots of a response.
+struct AirspeedPlots<'a> {
+    curves: AirspeedCurves,
+    analysis: &'a Analysis,
+    options: &'a BodeOptions,
+}
+
+impl AirspeedPlots<'_> {
+    /// Builds the plot of the models, magnitude above phase.
+    fn response_plot(&self, title: &str) -> Plot {
+        let contents = ResponsePlot {
+            curves: &self.curves.responses,
+            bands: &[],
+            references: &[],
+            ratio_unit: "",
+            band: self.analysis.study.settings.band,
+            options: self.options,
+        };
+        Plot {
+            title: title.to_owned(),
+            ..contents.plot()
+        }
+    }
+
+    /// Builds the plot of the error of the schedule.
+    fn error_plot(&self) -> Plot {
+        Plot::new("Error of the schedule")
+            .panel(self.error_panel(
+                Pane::Magnitude,
+                Axis::linear("Error of magnitude [dB]"),
+                LEAST_ERROR_DB,
+            ))
+            .panel(self.error_panel(
+                Pane::Phase,
+                Axis::degrees("Error of phase [deg]"),
+                LEAST_ERROR_DEG,
+            ))
+    }
+
+    fn error_panel(&self, pane: Pane, axis: Axis, least: f64) -> Panel {
+        let band = self.analysis.study.settings.band;
+        let shown = Range::new(band.min(), band.max());
+        let range = fitted_values(&self.curves.errors, pane, shown);
+        let axis = axis.showing(range.map(|range| range.with_margin(MARGIN, least)));
+        let panels = FrequencyPanels {
+            curves: &self.curves.errors,
+            references: &[],
+            bands: &[],
+            strips: &[],
+            options: self.options,
+        };
+        let mut panel = panels.panel(pane, axis);
+        if let Some(optima) = &self.curves.optima {
+            panel = panel.over(optima_envelope(optima, pane, self.options));
+        }
+        panel
+            .over(band_ground(band, self.options))
+            .with(Rule::horizontal(0.0, NO_ERROR))
+    }
+}
+
+/// Returns the shaded range of the errors at the optima.
+fn optima_envelope(optima: &BodeBand, pane: Pane, options: &BodeOptions) -> Envelope {
+    let values = match pane {
+        Pane::Magnitude => &optima.magnitude_db,
+        Pane::Phase => &optima.phase_deg,
+    };
+    let mut points = Vec::with_capacity(values.len());
+    for (omega, [low, high]) in optima.omega.iter().zip(values) {
+        points.push([options.unit.of_omega(*omega), *low, *high]);
+    }
+    Envelope {
+        name: "range of the optima".to_owned(),
+        color: OPTIMA,
+        edge: None,
+        points,
+    }
+}

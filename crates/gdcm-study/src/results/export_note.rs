@@ -1,0 +1,159 @@
+//! Facts about an exported file, found by its writer: the kind of its contents, and what it omits
+//! or approximates.
+
+use gdcm_method::correction::{Channel, LeadPrice};
+use gdcm_method::couplings::problem::CouplingError;
+use gdcm_method::schedule::ScheduleError;
+use gdcm_model::dataset::ConditionId;
+
+use super::schedule_losses::DelayedChannel;
+
+/// Kind and size of the contents of an exported file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileSummary {
+    /// All results.
+    Results { has_error_bars: bool },
+    /// A table of results.
+    Rows { rows: usize },
+    /// The schedule as a function of airspeed.
+    Function {
+        channels: usize,
+        has_delays: bool,
+        has_leads: bool,
+    },
+    /// The schedule at some airspeeds.
+    Table { airspeeds: usize },
+    /// Corrected models; each has this number of states more than its physics model, at most.
+    Models { models: usize, added_states: usize },
+    /// SHA-256 of the other files.
+    Checksums { files: usize },
+}
+
+/// Something that an exported file omits or approximates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExportNote {
+    /// The schedule has no delays, although the conditions' own corrections have some.
+    DelaysNotScheduled { channels: Vec<DelayedChannel> },
+    /// Each scheduled delay is the same at all airspeeds.
+    ConstantDelays {
+        /// Whether the delays are signed: of delays and leads.
+        is_signed: bool,
+    },
+    /// The signed delay of a channel in one condition is far from those in the others.
+    SignedDelayNotScheduled {
+        channel: Channel,
+        condition: ConditionId,
+        tau_s: f64,
+        elsewhere_s: f64,
+    },
+    /// The requested couplings are unavailable.
+    CouplingsLeftOut { why: CouplingError },
+    /// Maximum error of linear interpolation in a lookup table: \[%\] of a gain.
+    GainTableError {
+        channel: Channel,
+        error_percent: f64,
+        airspeed_kt: f64,
+        /// Rounded airspeed \[kt\] that would reduce the error; `None` if the table has it.
+        remedy_kt: Option<f64>,
+    },
+    /// Maximum error of linear interpolation in a lookup table: \[ms\] of a delay or of the time
+    /// constant of a lead.
+    TimeTableError {
+        channel: Channel,
+        error_ms: f64,
+        airspeed_kt: f64,
+        /// Rounded airspeed \[kt\] that would reduce the error; `None` if the table has it.
+        remedy_kt: Option<f64>,
+    },
+    /// Lead filters are tables over airspeed.
+    LeadsTabulated { points: u32 },
+    /// Padé approximants replace delays.
+    PadeError {
+        order: usize,
+        error_deg: f64,
+        band_top_rad_s: f64,
+        /// Order with a smaller error; `None` for the highest order.
+        remedy: Option<usize>,
+    },
+    /// Tustin's rule replaces the lead filters of sampled models.
+    TustinError { error_deg: f64, band_top_rad_s: f64 },
+    /// Lead filters limit the range of validity.
+    NotValidAbove { price: LeadPrice },
+    /// Conditions that the engineer has left out of the export.
+    ConditionsNotChosen { conditions: Vec<ConditionId> },
+    /// Conditions that the fit of the schedule leaves out.
+    ConditionsNotScheduled { conditions: Vec<ConditionId> },
+    /// Chosen conditions without a result.
+    ConditionsWithoutResult { conditions: Vec<ConditionId> },
+    /// The results contain no schedule.
+    NoSchedule { why: ScheduleError },
+    /// The error bars are not computed.
+    NoErrorBars,
+}
+
+/// A change of the study or of the export that removes or reduces what a note states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ExportRemedy {
+    /// Schedules the delays.
+    ScheduleDelays,
+    /// Lets the signed delays depend on airspeed.
+    SignedDelaysOverAirspeed,
+    /// Adds a row to the lookup tables.
+    AddBreakpoint { airspeed_kt: f64 },
+    /// Raises the order of the Padé approximants.
+    UsePadeOrder { order: usize },
+    /// Exports all conditions.
+    IncludeAllConditions,
+}
+
+impl ExportNote {
+    /// Returns the stable code, for scripts and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::DelaysNotScheduled { .. } => "delays-not-scheduled",
+            Self::ConstantDelays { .. } => "constant-delays",
+            Self::SignedDelayNotScheduled { .. } => "signed-delay-not-scheduled",
+            Self::CouplingsLeftOut { .. } => "couplings-left-out",
+            Self::GainTableError { .. } => "gain-table-error",
+            Self::TimeTableError { .. } => "time-table-error",
+            Self::LeadsTabulated { .. } => "leads-tabulated",
+            Self::PadeError { .. } => "pade-error",
+            Self::TustinError { .. } => "tustin-error",
+            Self::NotValidAbove { .. } => "not-valid-above",
+            Self::ConditionsNotChosen { .. } => "conditions-not-chosen",
+            Self::ConditionsNotScheduled { .. } => "conditions-not-scheduled",
+            Self::ConditionsWithoutResult { .. } => "conditions-without-result",
+            Self::NoSchedule { .. } => "no-schedule",
+            Self::NoErrorBars => "no-error-bars",
+        }
+    }
+
+    /// Returns whether notes of several files state the same fact, so that one of them is enough.
+    pub fn has_same_subject(&self, other: &Self) -> bool {
+        match (self, other) {
+            // Functions concern the scheduled conditions, models the exported ones.
+            (Self::DelaysNotScheduled { .. }, Self::DelaysNotScheduled { .. }) => true,
+            _ => self == other,
+        }
+    }
+
+    /// Returns the remedy, if there is one.
+    pub fn remedy(&self) -> Option<ExportRemedy> {
+        match self {
+            Self::DelaysNotScheduled { .. } => Some(ExportRemedy::ScheduleDelays),
+            Self::ConstantDelays { is_signed: true } => {
+                Some(ExportRemedy::SignedDelaysOverAirspeed)
+            }
+            Self::GainTableError { remedy_kt, .. } | Self::TimeTableError { remedy_kt, .. } => {
+                let airspeed_kt = (*remedy_kt)?;
+                Some(ExportRemedy::AddBreakpoint { airspeed_kt })
+            }
+            Self::PadeError { remedy, .. } => {
+                let order = (*remedy)?;
+                Some(ExportRemedy::UsePadeOrder { order })
+            }
+            Self::ConditionsNotChosen { .. } => Some(ExportRemedy::IncludeAllConditions),
+            _ => None,
+        }
+    }
+}

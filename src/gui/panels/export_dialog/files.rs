@@ -1,0 +1,296 @@
+//! The files that an export writes, with the head of the selected one, and what they omit or
+//! approximate.
+
+use egui::{Button, Frame, Label, RichText, Role, ScrollArea, Sense, Stroke, Ui, vec2};
+
+use gdcm_io::export::export_set::{ExportPlan, PlannedFile, PlannedNote};
+use gdcm_model::number_format::counted;
+use gdcm_words::export::{
+    export_note_detail, export_note_title, export_remedy_text, file_summary_text,
+};
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::elision::{end_elided, text_width};
+use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium};
+
+/// Height of the row of a file \[pt\].
+const ROW: f32 = 24.0;
+/// Maximum height of the list of files \[pt\].
+const FILES: f32 = 7.0 * ROW;
+/// Height of the head of a file \[pt\].
+const HEAD: f32 = 104.0;
+
+/// Draws the files with their sizes, and the head of the selected file.
+pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
+    let plan = state.forms.export.plan.as_ref().map(|(_, plan)| plan);
+    let is_current = state.current_export_plan().is_some();
+    let summary = match plan {
+        Some(plan) if is_current => {
+            let count = plan.files.len() + usize::from(plan.report.is_some());
+            format!("{}, {}", counted(count, "file"), size_words(plan.size()))
+        }
+        _ => waiting_words(state),
+    };
+    heading_ui(ui, "Files to write", &summary, palette);
+    let Some(plan) = plan else {
+        ui.add_space(ROW);
+        return;
+    };
+    let mut selected = state.forms.export.selected;
+    if selected >= plan.files.len() {
+        selected = 0;
+    }
+    // While a new dry run is computed, the older one stays, dimmed.
+    ui.scope(|ui| {
+        if !is_current {
+            ui.set_opacity(0.5);
+        }
+        ScrollArea::vertical()
+            .id_salt("exported files")
+            .max_height(FILES)
+            .show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                for (index, file) in plan.files.iter().enumerate() {
+                    if file_ui(ui, file, index == selected, palette) {
+                        selected = index;
+                    }
+                }
+                if let Some(name) = &plan.report {
+                    report_ui(ui, name, palette);
+                }
+            });
+        ui.add_space(6.0);
+        if let Some(file) = plan.files.get(selected) {
+            head_ui(ui, file, palette);
+        }
+    });
+    state.forms.export.selected = selected;
+}
+
+/// Explains why there is no current dry run.
+fn waiting_words(state: &State) -> String {
+    if let Some(message) = state.incomplete_results() {
+        return message.text;
+    }
+    match state.forms.export.set() {
+        Ok(_) => "computing …".to_owned(),
+        Err(message) => message.text,
+    }
+}
+
+/// Draws a heading with a remark at the right.
+fn heading_ui(ui: &mut Ui, text: &str, remark: &str, palette: &Palette) {
+    let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::hover());
+    let heading = painted_text(ui, line, 0.0, text, medium(BODY_SIZE), palette.text);
+    let room = line.right() - heading.right() - 16.0;
+    let remark = end_elided(ui, remark, room, BODY_SIZE);
+    painted_text(ui, line, AT_RIGHT_END, &remark, body(), palette.dim_text);
+}
+
+/// Draws the row of a file; returns whether it was clicked.
+fn file_ui(ui: &mut Ui, file: &PlannedFile, is_selected: bool, palette: &Palette) -> bool {
+    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let fill = if is_selected {
+        palette.selected
+    } else if response.hovered() {
+        palette.raised
+    } else {
+        palette.panel
+    };
+    ui.painter().rect_filled(row, 4.0, fill);
+    let inner = row.shrink2(vec2(8.0, 0.0));
+    let (words, size, color) = match &file.contents {
+        Ok(contents) => {
+            let words = file_summary_text(&contents.summary);
+            (words, size_words(contents.bytes.len()), palette.dim_text)
+        }
+        Err(fault) => (fault.to_string(), String::new(), palette.warning),
+    };
+    let name = painted_text(ui, inner, 0.0, &file.name, body(), palette.text);
+    let room = inner.right() - name.right() - 20.0 - text_width(ui, &size, body());
+    let shown = end_elided(ui, &words, room, BODY_SIZE);
+    let rest = inner.with_min_x(name.right() + 10.0);
+    painted_text(ui, rest, 0.0, &shown, body(), color);
+    painted_text(ui, inner, AT_RIGHT_END, &size, body(), palette.dim_text);
+    let label = format!("File {}", file.name);
+    let response = named_switch(response, Role::Button, is_selected, label);
+    let is_clicked = response.clicked();
+    if shown != words {
+        response.on_hover_text(words);
+    }
+    is_clicked
+}
+
+/// Draws the row of the report, which is written after the other files.
+fn report_ui(ui: &mut Ui, name: &str, palette: &Palette) {
+    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    let inner = row.shrink2(vec2(8.0, 0.0));
+    let shown = painted_text(ui, inner, 0.0, name, body(), palette.text);
+    let rest = inner.with_min_x(shown.right() + 10.0);
+    let words = "every plot; written last, in a few seconds";
+    painted_text(ui, rest, 0.0, words, body(), palette.dim_text);
+    named(response, Role::Label, format!("File {name}"));
+}
+
+/// Draws the first lines of a file.
+fn head_ui(ui: &mut Ui, file: &PlannedFile, palette: &Palette) {
+    let frame = Frame::new()
+        .fill(palette.background)
+        .stroke(Stroke::new(1.0, palette.line))
+        .corner_radius(6.0)
+        .inner_margin(8.0);
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.set_height(HEAD - 16.0);
+        ScrollArea::both()
+            .id_salt(("head", &file.name))
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
+                match &file.contents {
+                    Ok(contents) => {
+                        for line in &contents.head {
+                            let text = RichText::new(line).size(SMALL_SIZE).color(palette.text);
+                            ui.add(Label::new(text).extend());
+                        }
+                    }
+                    Err(fault) => {
+                        ui.add(Label::new(palette.small_warning(fault.to_string())).wrap());
+                    }
+                }
+            });
+    });
+}
+
+/// Draws what the files omit or approximate, with a remedy where there is one.
+pub(super) fn notes_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some((_, plan)) = &state.forms.export.plan else {
+        return;
+    };
+    let remark = plan.notes.len().to_string();
+    heading_ui(ui, "Not included, or approximate", &remark, palette);
+    ScrollArea::vertical()
+        .id_salt("omitted or approximate")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            if state.current_export_plan().is_none() {
+                ui.set_opacity(0.5);
+            }
+            if plan.notes.is_empty() {
+                ui.label(palette.dim("Everything is included exactly"));
+            }
+            for (index, planned) in plan.notes.iter().enumerate() {
+                if index > 0 {
+                    ui.separator();
+                }
+                note_ui(ui, planned, plan, state, palette, commands);
+            }
+        });
+}
+
+/// Draws a note: what it states with its remedy, and the files concerned with the reason.
+fn note_ui(
+    ui: &mut Ui,
+    planned: &PlannedNote,
+    plan: &ExportPlan,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let dataset = state.dataset();
+    let width = ui.available_width();
+    let (line, _) = ui.allocate_exact_size(vec2(width, 20.0), Sense::hover());
+    painted_text(ui, line, 0.0, "⚠", body(), palette.warning);
+    let words = line.with_min_x(line.left() + 20.0);
+    let title = export_note_title(&planned.note, dataset);
+    let mut room = words.width();
+    if let Some(remedy) = planned.note.remedy() {
+        let text = export_remedy_text(remedy);
+        let button_width = text_width(ui, &text, body()) + 10.0;
+        room -= button_width + 8.0;
+        let place = words.with_min_x(words.right() - button_width);
+        let button = Button::new(RichText::new(text).color(palette.accent)).frame(false);
+        ui.put(place, button)
+            .asks(OutputCommand::ApplyExportRemedy(remedy), commands);
+    }
+    let shown = end_elided(ui, &title, room, BODY_SIZE);
+    painted_text(ui, words, 0.0, &shown, body(), palette.text);
+    let label = ui.interact(
+        words.with_max_x(words.left() + room),
+        ui.scope_id().with(("note", planned.note.code(), &title)),
+        Sense::hover(),
+    );
+    named(label, Role::Label, title);
+    let scheduling = state.study.settings.schedule_delays;
+    let detail = export_note_detail(&planned.note, dataset, scheduling);
+    let names = file_words(planned, plan);
+    let text = if detail.is_empty() {
+        names
+    } else {
+        format!("{names}; {detail}")
+    };
+    ui.horizontal_top(|ui| {
+        ui.add_space(20.0);
+        let text = RichText::new(text).color(palette.dim_text);
+        ui.add(Label::new(text).wrap());
+    });
+}
+
+/// Lists the files of a note: "every file", or their extensions where these tell them apart.
+fn file_words(planned: &PlannedNote, plan: &ExportPlan) -> String {
+    if planned.files.len() == plan.files.len() && plan.files.len() > 1 {
+        return "every file".to_owned();
+    }
+    let names: Vec<String> = planned
+        .files
+        .iter()
+        .map(|&index| short_name(plan, index))
+        .collect();
+    names.join(", ")
+}
+
+/// Returns ".m" if only this file has the extension, else the file name.
+fn short_name(plan: &ExportPlan, index: usize) -> String {
+    let name = &plan.files[index].name;
+    let Some((_, extension)) = name.rsplit_once('.') else {
+        return name.clone();
+    };
+    let ending = format!(".{extension}");
+    let count = plan
+        .files
+        .iter()
+        .filter(|file| file.name.ends_with(&ending))
+        .count();
+    if count == 1 { ending } else { name.clone() }
+}
+
+/// Formats a size: "863 kB".
+fn size_words(bytes: usize) -> String {
+    let kilobytes = bytes as f64 / 1e3;
+    if bytes < 1000 {
+        format!("{bytes} B")
+    } else if kilobytes < 9.95 {
+        format!("{kilobytes:.1} kB")
+    } else if kilobytes < 999.5 {
+        format!("{kilobytes:.0} kB")
+    } else {
+        format!("{:.1} MB", 1e-3 * kilobytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_have_three_digits_at_most() {
+        let sizes = [999, 5_200, 42_000, 862_900, 1_234_567];
+        let words = sizes.map(size_words);
+        assert_eq!(words, ["999 B", "5.2 kB", "42 kB", "863 kB", "1.2 MB"]);
+    }
+}

@@ -1,0 +1,82 @@
+//! Content of the plots across conditions.
+
+use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_study::{AcrossRole, Study};
+
+/// Models and conditions in the plots across conditions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AcrossDisplay {
+    /// Drawn models of each condition, in the order of [`AcrossRole::ALL`].
+    pub roles: Vec<AcrossRole>,
+    pub conditions: AcrossConditions,
+    /// Shown page, where the window has no room for both.
+    pub page: AcrossPage,
+}
+
+impl Default for AcrossDisplay {
+    fn default() -> Self {
+        Self {
+            roles: AcrossRole::SHOWN_AT_FIRST.to_vec(),
+            conditions: AcrossConditions::default(),
+            page: AcrossPage::default(),
+        }
+    }
+}
+
+impl AcrossDisplay {
+    /// Shows or hides the models of a role.
+    pub fn show(&mut self, role: AcrossRole, is_shown: bool) {
+        self.roles.retain(|known| *known != role);
+        if is_shown {
+            self.roles.push(role);
+            self.roles.sort();
+        }
+    }
+}
+
+/// Conditions in the plots across conditions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AcrossConditions {
+    #[default]
+    All,
+    /// Conditions to which the schedule is fitted.
+    InSchedule,
+}
+
+impl AcrossConditions {
+    pub const ALL: [Self; 2] = [Self::All, Self::InSchedule];
+
+    /// Returns the text in the list.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::InSchedule => "in the schedule",
+        }
+    }
+
+    /// Returns the conditions of a study.
+    pub fn of_study(self, study: &Study) -> Vec<ConditionId> {
+        study
+            .dataset
+            .ids()
+            .filter(|id| self == Self::All || study.choice(*id).is_in_schedule())
+            .collect()
+    }
+}
+
+/// Page of the plots across conditions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AcrossPage {
+    #[default]
+    Response,
+    Error,
+}
+
+/// Content for which the axes of the plots across conditions were last fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossFit {
+    pub pair: Pair,
+    pub condition: ConditionId,
+    pub roles: Vec<AcrossRole>,
+    pub conditions: AcrossConditions,
+}

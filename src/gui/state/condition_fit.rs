@@ -1,0 +1,242 @@
+//! State of the identification of every condition, as the list of conditions, the page bar and the
+//! status bar show it.
+
+use gdcm_model::dataset::{ConditionId, Dynamics};
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
+use gdcm_sysid::identification::Identification;
+
+use super::condition_records::ConditionRecords;
+use super::window_state::State;
+
+/// Limit of χ²/dof above which a fit is bad (M14, section 6).
+pub const BAD_FIT: f64 = 1.5;
+
+/// Numbers of used records of a condition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RecordCounts {
+    pub fitted: usize,
+    /// Records that are not fitted, but test the model.
+    pub held_out: usize,
+}
+
+/// Stage of the identification of a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FitStatus {
+    /// Nothing has been identified.
+    None,
+    Queued,
+    /// Running, with the completed share \[%\].
+    Running {
+        percent: usize,
+    },
+    /// The identification failed.
+    Failed,
+    /// Records or settings have changed since.
+    Outdated,
+    /// Finished, with the number of cautions.
+    Finished {
+        cautions: usize,
+    },
+}
+
+/// Costs per degree of freedom of the recommended model. Every place in the window shows these
+/// numbers, so that they agree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitCosts {
+    pub fitted: f64,
+    /// Cost of the held-out records for the model as it is; `None` without such records.
+    pub held_out: Option<f64>,
+    /// Whether the model does not predict the held-out records (M14.17).
+    pub is_held_out_bad: bool,
+}
+
+impl FitCosts {
+    pub fn of_identification(found: &Identification) -> Self {
+        let [_, limit] = HELD_OUT;
+        Self {
+            fitted: found.cost,
+            held_out: found.held_out_cost,
+            is_held_out_bad: found.held_out_normalised.is_some_and(|cost| cost > limit),
+        }
+    }
+}
+
+/// Records and fit of a condition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConditionFit {
+    pub counts: RecordCounts,
+    /// Costs of the latest fit, which may be outdated.
+    pub costs: Option<FitCosts>,
+    pub status: FitStatus,
+}
+
+/// Progress of the identification of several conditions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BatchProgress {
+    pub finished: usize,
+    pub requested: usize,
+    /// Completed share, 0 to 1.
+    pub share: f32,
+    /// Estimated time until the end \[s\]; `None` until the first condition is finished.
+    pub left_s: Option<f64>,
+}
+
+impl ConditionRecords {
+    pub fn counts(&self) -> RecordCounts {
+        let mut counts = RecordCounts::default();
+        for (_, row) in self.used_rows() {
+            if row.guess.held_out {
+                counts.held_out += 1;
+            } else {
+                counts.fitted += 1;
+            }
+        }
+        counts
+    }
+}
+
+impl State {
+    /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
+    /// otherwise the study's.
+    pub fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
+        let records = self.records.conditions.get(&condition);
+        if let Some(own) = records.and_then(|records| records.band) {
+            return own;
+        }
+        let band = self.study.settings.band;
+        [band.min(), band.max()]
+    }
+
+    /// Returns whether records or settings of a condition have changed since its latest
+    /// identification; false without one.
+    pub fn is_fit_outdated(&self, condition: ConditionId) -> bool {
+        let Some(records) = self.records.conditions.get(&condition) else {
+            return false;
+        };
+        let Some((job, _)) = &records.found else {
+            return false;
+        };
+        records.changed || job.request.options.band != self.identified_band(condition)
+    }
+
+    /// Returns records and fit of a condition; without loaded records, there are none.
+    pub fn condition_fit(&self, condition: ConditionId) -> ConditionFit {
+        let mut fit = ConditionFit {
+            counts: RecordCounts::default(),
+            costs: None,
+            status: FitStatus::None,
+        };
+        let Some(records) = self.records.conditions.get(&condition) else {
+            return fit;
+        };
+        fit.counts = records.counts();
+        if let Some(found) = records.identification() {
+            fit.costs = Some(FitCosts::of_identification(found));
+        }
+        fit.status = self.fit_status(condition, records);
+        fit
+    }
+
+    fn fit_status(&self, condition: ConditionId, records: &ConditionRecords) -> FitStatus {
+        if let Some(job) = self.records.job_of(condition) {
+            if job.news().step.is_empty() {
+                return FitStatus::Queued;
+            }
+            let steps = self.results.background.identification.unwrap_or_default();
+            return FitStatus::Running {
+                percent: steps.percent(),
+            };
+        }
+        match &records.found {
+            None => FitStatus::None,
+            Some(_) if self.is_fit_outdated(condition) => FitStatus::Outdated,
+            Some((_, Err(_))) => FitStatus::Failed,
+            Some((_, Ok(found))) => FitStatus::Finished {
+                cautions: found.cautions.len(),
+            },
+        }
+    }
+
+    /// Returns the conditions that *Identify* runs, the displayed one first: those with used
+    /// records and without a current fit, or all with used records if every fit is current.
+    pub fn conditions_to_identify(&self) -> Vec<ConditionId> {
+        let mut in_use = self.records.conditions_in_use();
+        let shown = self.condition().id();
+        in_use.sort_by_key(|id| *id != shown);
+        let mut open = in_use.clone();
+        open.retain(|id| {
+            !matches!(
+                self.condition_fit(*id).status,
+                FitStatus::Finished { .. } | FitStatus::Queued | FitStatus::Running { .. }
+            )
+        });
+        if open.is_empty() { in_use } else { open }
+    }
+
+    /// Returns the conditions whose current fit is not in the study.
+    pub fn unused_fits(&self) -> Vec<ConditionId> {
+        let mut unused = Vec::new();
+        for (id, records) in &self.records.conditions {
+            let Some(found) = records.identification() else {
+                continue;
+            };
+            if self.is_fit_outdated(*id) || self.records.job_of(*id).is_some() {
+                continue;
+            }
+            let is_used = self
+                .study
+                .taken_models()
+                .any(|(taken, models)| taken == *id && is_taken_from(models, found));
+            if !is_used {
+                unused.push(*id);
+            }
+        }
+        unused
+    }
+
+    /// Returns the progress of the requested identifications; `None` if none is running.
+    pub fn batch_progress(&self) -> Option<BatchProgress> {
+        let unfinished = self.records.running.len();
+        if unfinished == 0 {
+            return None;
+        }
+        let requested = self.records.requested_count.max(unfinished);
+        let finished = requested - unfinished;
+        let steps = self.results.background.identification.unwrap_or_default();
+        let part = steps.done as f32 / steps.total.max(1) as f32;
+        let mut durations_s = Vec::new();
+        for records in self.records.conditions.values() {
+            if let Some((job, _)) = &records.found {
+                durations_s.extend(job.news().duration_s);
+            }
+        }
+        let left_s = if finished == 0 || durations_s.is_empty() {
+            None
+        } else {
+            let mean_s = durations_s.iter().sum::<f64>() / durations_s.len() as f64;
+            Some(mean_s * (unfinished as f64 - f64::from(part)))
+        };
+        Some(BatchProgress {
+            finished,
+            requested,
+            share: (finished as f32 + part) / requested as f32,
+            left_s,
+        })
+    }
+}
+
+/// Returns whether adopted models come from this identification.
+fn is_taken_from(taken: &AdoptedModels, found: &Identification) -> bool {
+    for model in &taken.models {
+        if *model == found.refined || *model == found.unrefined {
+            return true;
+        }
+        if let Dynamics::Measured(response) = &model.dynamics
+            && found.measured.measured().as_ref() == Some(response)
+        {
+            return true;
+        }
+    }
+    false
+}

@@ -1,0 +1,171 @@
+//! The input that a flight record excites most, found by comparison with the other records of the
+//! condition: the unit and the trim of an input have no influence.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::condition::RecordKind;
+use gdcm_model::simulation::FlightRecord;
+use gdcm_sysid::records::LaidOutRecord;
+
+use super::condition_records::{ConditionRecords, Opening};
+
+/// Share from which an input counts as excited.
+const EXCITED: f64 = 0.5;
+
+/// Excitation of the inputs by a record: the standard deviation of each input, relative to the
+/// largest among the records, 0 to 1.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Excitation(Vec<f64>);
+
+impl Excitation {
+    /// Compares records.
+    ///
+    /// ```text
+    /// s_ri   standard deviation of input i in record r
+    /// share of input i in record r = s_ri / max_r s_ri
+    /// ```
+    pub fn compare_records(flights: &[Arc<FlightRecord>]) -> Vec<Self> {
+        let deviations: Vec<Vec<f64>> = flights
+            .iter()
+            .map(|flight| input_deviations(flight))
+            .collect();
+        let mut greatest: Vec<f64> = Vec::new();
+        for record in &deviations {
+            greatest.resize(greatest.len().max(record.len()), 0.0);
+            for (most, deviation) in greatest.iter_mut().zip(record) {
+                *most = most.max(*deviation);
+            }
+        }
+        let mut excitations = Vec::with_capacity(flights.len());
+        for record in deviations {
+            let mut shares = Vec::with_capacity(record.len());
+            for (deviation, most) in record.into_iter().zip(&greatest) {
+                shares.push(if *most > 0.0 { deviation / most } else { 0.0 });
+            }
+            excitations.push(Self(shares));
+        }
+        excitations
+    }
+
+    /// Returns whether the record excites an input.
+    pub fn excites(&self, input: usize) -> bool {
+        self.0.get(input).is_some_and(|share| *share >= EXCITED)
+    }
+
+    /// Returns the input in focus if it is excited, otherwise the most excited input; `None` if no
+    /// input moves.
+    pub fn input(&self, focus: usize) -> Option<usize> {
+        if self.excites(focus) {
+            return Some(focus);
+        }
+        let mut most_excited = None;
+        let mut most = 0.0;
+        for (input, share) in self.0.iter().enumerate() {
+            if *share > most {
+                most = *share;
+                most_excited = Some(input);
+            }
+        }
+        most_excited
+    }
+}
+
+/// Returns the standard deviation of each input over its finite samples.
+fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
+    let mut deviations = Vec::with_capacity(flight.inputs.ncols());
+    for column in flight.inputs.column_iter() {
+        let samples: Vec<f64> = column
+            .iter()
+            .copied()
+            .filter(|value| value.is_finite())
+            .collect();
+        let count = samples.len().max(1) as f64;
+        let mean = samples.iter().sum::<f64>() / count;
+        let square = samples
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f64>()
+            / count;
+        deviations.push(square.sqrt());
+    }
+    deviations
+}
+
+impl ConditionRecords {
+    /// Displays a used sweep of an input, unless the engineer has chosen a record; any other used
+    /// record of the input if there is no sweep.
+    pub fn open_on_input(&mut self, input: usize) {
+        let opening = Opening {
+            input,
+            records: self.rows.len(),
+        };
+        if self.is_chosen || self.opening == Some(opening) {
+            return;
+        }
+        self.opening = Some(opening);
+        if let Some(index) = self.row_of_input(input) {
+            self.choose(index);
+        }
+    }
+
+    fn row_of_input(&self, input: usize) -> Option<usize> {
+        let rows: Vec<(usize, &LaidOutRecord)> = self.used_rows().collect();
+        let flights: Vec<Arc<FlightRecord>> = rows
+            .iter()
+            .filter_map(|(_, row)| row.flight.clone())
+            .collect();
+        let mut of_input = Vec::new();
+        let excitations = Excitation::compare_records(&flights);
+        for ((index, row), excitation) in rows.into_iter().zip(excitations) {
+            if excitation.excites(input) && !row.guess.held_out {
+                of_input.push((index, row.guess.kind));
+            }
+        }
+        let sweep = of_input
+            .iter()
+            .find(|(_, kind)| *kind == RecordKind::Sweep)
+            .or_else(|| of_input.first())?;
+        Some(sweep.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+
+    fn record(amplitudes: [f64; 2]) -> Arc<FlightRecord> {
+        let samples = 50;
+        let inputs = DMatrix::from_fn(samples, 2, |sample, input| {
+            100.0 + amplitudes[input] * (0.3 * sample as f64).sin()
+        });
+        Arc::new(FlightRecord {
+            name: "record".to_owned(),
+            time_s: (0..samples).map(|sample| 0.02 * sample as f64).collect(),
+            outputs: DMatrix::zeros(samples, 1),
+            inputs,
+        })
+    }
+
+    #[test]
+    fn the_excited_input_is_found_whatever_the_units() {
+        // The second input has a unit in which it always moves more than the first.
+        let records = [[1.0, 20.0], [0.1, 100.0], [0.0, 0.0], [0.9, 90.0]].map(record);
+        let excitations = Excitation::compare_records(&records);
+        let inputs: Vec<[Option<usize>; 2]> = excitations
+            .iter()
+            .map(|excitation| [0, 1].map(|focus| excitation.input(focus)))
+            .collect();
+        assert_eq!(
+            inputs,
+            [
+                [Some(0), Some(0)],
+                [Some(1), Some(1)],
+                [None, None],
+                [Some(0), Some(1)]
+            ],
+            "the input in focus if both are excited"
+        );
+    }
+}

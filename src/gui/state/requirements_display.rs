@@ -1,0 +1,119 @@
+//! Display options of the requirements: selected cell, details, order of the columns.
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::results::requirement_grid::{Requirement, RequirementGroup};
+use gdcm_study::results::requirement_role::RequirementRole;
+
+/// Details of the selected requirement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RequirementDetail {
+    /// Phase delay over bandwidth in all conditions.
+    #[default]
+    Frequency,
+    /// A flight record with its tolerances, or the responses to a test input.
+    Time,
+    Modes,
+}
+
+impl RequirementDetail {
+    pub const ALL: [Self; 3] = [Self::Frequency, Self::Time, Self::Modes];
+
+    /// Returns the details about the requirements of a group; `None` for summary costs, which have
+    /// none of their own.
+    pub fn of_group(group: RequirementGroup) -> Option<Self> {
+        match group {
+            RequirementGroup::Bandwidth => Some(Self::Frequency),
+            RequirementGroup::InTime => Some(Self::Time),
+            RequirementGroup::Modes => Some(Self::Modes),
+            RequirementGroup::Summary => None,
+        }
+    }
+}
+
+/// Order of the conditions in the grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GridOrder {
+    #[default]
+    Number,
+    Airspeed,
+}
+
+/// A flight record of a condition, by its index among the records of the condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordChoice {
+    pub condition: ConditionId,
+    pub index: usize,
+}
+
+/// Display options of the requirements. The column of the selected cell is the displayed condition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RequirementsDisplay {
+    /// Row of the selected cell; `None` before the first selection.
+    pub selected: Option<Requirement>,
+    /// Details in front where only some fit.
+    pub detail: RequirementDetail,
+    pub are_details_hidden: bool,
+    /// Whether the models corrected by the schedule are judged instead of those with their own
+    /// corrections.
+    pub judges_schedule: bool,
+    pub order: GridOrder,
+    pub is_reversed: bool,
+    /// Record chosen for the details; `None` or another condition: the first held-out record.
+    pub record: Option<RecordChoice>,
+    /// Row whose limit is being edited.
+    pub edited_limit: Option<Requirement>,
+}
+
+impl RequirementsDisplay {
+    /// Returns the role of the judged models.
+    pub fn role(&self) -> RequirementRole {
+        if self.judges_schedule {
+            RequirementRole::Scheduled
+        } else {
+            RequirementRole::Corrected
+        }
+    }
+
+    /// Returns the display after a click on the heading of an order; a second click reverses it.
+    pub fn ordered_by(self, order: GridOrder) -> Self {
+        Self {
+            order,
+            is_reversed: self.order == order && !self.is_reversed,
+            ..self
+        }
+    }
+
+    /// Returns the display with a selected requirement, and its details in front.
+    pub fn with_selected(self, requirement: Requirement) -> Self {
+        Self {
+            selected: Some(requirement),
+            detail: RequirementDetail::of_group(requirement.group()).unwrap_or(self.detail),
+            are_details_hidden: false,
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::requirements::ModeName;
+
+    use super::*;
+
+    #[test]
+    fn a_second_click_on_a_heading_reverses_the_order() {
+        let display = RequirementsDisplay::default().ordered_by(GridOrder::Airspeed);
+        assert!(!display.is_reversed);
+        assert!(display.ordered_by(GridOrder::Airspeed).is_reversed);
+        assert!(!display.ordered_by(GridOrder::Number).is_reversed);
+    }
+
+    #[test]
+    fn a_selection_brings_its_details_to_the_front_and_summary_costs_change_nothing() {
+        let mode = Requirement::ModeFrequency(ModeName::DutchRoll);
+        let display = RequirementsDisplay::default().with_selected(mode);
+        assert_eq!(display.detail, RequirementDetail::Modes);
+        let display = display.with_selected(Requirement::MeanJAll);
+        assert_eq!(display.detail, RequirementDetail::Modes);
+    }
+}

@@ -1,0 +1,20 @@
+//! Command that changes the settings of the requirements.
+
+use std::sync::Arc;
+
+use gdcm_study::Edit;
+use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
+
+use crate::gui::commands::command::Command;
+use crate::gui::state::window_state::State;
+
+/// Returns the command that changes a part of the settings of the requirements.
+pub(super) fn requirement_edit(
+    state: &State,
+    part: RequirementPart,
+    change: impl FnOnce(&mut RequirementSettings),
+) -> Command {
+    let mut settings = RequirementSettings::clone(&state.study.requirements);
+    change(&mut settings);
+    Edit::SetRequirements(part, Arc::new(settings)).into()
+}

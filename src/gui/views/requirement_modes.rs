@@ -1,0 +1,183 @@
+//! Modes of the displayed condition, in the details of a requirement.
+
+use egui::{Align2, Rect, Role, ScrollArea, Sense, Ui, pos2, vec2};
+
+use gdcm_method::requirements::ModeVerdict;
+use gdcm_model::number_format::decimals;
+use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
+use gdcm_study::results::requirement_grid::Requirement;
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_words::missing_results::missing_reason_text;
+use gdcm_words::requirement_grid::NONE;
+use gdcm_words::requirements::mode_verdict_words;
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::named;
+use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, small};
+
+/// Height of a row \[pt\].
+const ROW: f32 = 19.0;
+/// Right edges of the numbers, as a share of the width: modulus and damping ratio of the model, and
+/// of the identified model.
+const NUMBERS: [f32; 4] = [0.41, 0.50, 0.63, 0.72];
+/// Right edge of the names, as a share of the width.
+const NAME: f32 = 0.32;
+
+/// Draws the modes of the displayed condition, without scrolling across: name, modulus and damping
+/// ratio of the judged and of the identified model, verdict. A click shows the poles.
+pub(super) fn modes_detail_ui(
+    ui: &mut Ui,
+    state: &State,
+    requirements: &Requirements,
+    selected: Option<Requirement>,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let condition = state.condition().id();
+    if let Some(why) = requirements.no_modes(condition) {
+        ui.label(palette.dim(missing_reason_text(why)));
+        return;
+    }
+    let role = state.display.judging.requirements.role();
+    let mut modes: Vec<&ModeFinding> = Vec::new();
+    for mode in &requirements.modes {
+        if mode.condition == condition {
+            modes.push(mode);
+        }
+    }
+    let is_coupled = modes.iter().any(|mode| mode.corrected_verdict.is_some());
+    let width = ui.available_width();
+    let (head, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
+    let model = if is_coupled { "corrected" } else { "physics" };
+    paint_headings(ui, head, model, palette);
+    ScrollArea::vertical()
+        .id_salt("modes of the condition")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let width = ui.available_width();
+            for mode in modes {
+                let (area, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
+                let is_selected =
+                    mode.name.map(Requirement::ModeFrequency) == selected && selected.is_some();
+                let row = ModeRow {
+                    mode,
+                    role,
+                    is_selected,
+                    palette,
+                };
+                row.ui(ui, area, commands);
+            }
+            let note = if is_coupled {
+                "Couplings move poles; gains, delays and leads do not"
+            } else {
+                "Unchanged by gains, delays and leads: only couplings or the physics model move poles"
+            };
+            ui.label(palette.small(note));
+        });
+}
+
+fn paint_headings(ui: &Ui, row: Rect, model: &str, palette: &Palette) {
+    let painter = ui.painter();
+    for (edge, text) in [
+        (NUMBERS[1], format!("{model} \u{3c9}, \u{3b6}")),
+        (NUMBERS[3], "identified \u{3c9}, \u{3b6}".to_owned()),
+    ] {
+        let at = pos2(row.left() + edge * row.width(), row.center().y);
+        painter.text(at, Align2::RIGHT_CENTER, text, small(), palette.dim_text);
+    }
+}
+
+/// A mode in the list.
+struct ModeRow<'a> {
+    mode: &'a ModeFinding,
+    role: RequirementRole,
+    /// Whether the mode is that of the selected requirement.
+    is_selected: bool,
+    palette: &'a Palette,
+}
+
+impl ModeRow<'_> {
+    fn ui(&self, ui: &Ui, row: Rect, commands: &mut Vec<Command>) {
+        let palette = self.palette;
+        let id = ui.scope_id().with(("mode", self.mode.number));
+        let response = ui.interact(row, id, Sense::click());
+        let painter = ui.painter();
+        if self.is_selected {
+            painter.rect_filled(row, 3.0, palette.selected);
+        } else if response.hovered() || response.has_focus() {
+            painter.rect_filled(row, 3.0, palette.raised);
+        }
+        let found = self.mode.of_role(self.role);
+        let name = self.name();
+        let left = row.left() + 6.0;
+        let shown = elided(ui, &name, NAME * row.width() - 8.0, BODY_SIZE);
+        let at = pos2(left, row.center().y);
+        painter.text(at, Align2::LEFT_CENTER, shown, body(), palette.text);
+        self.paint_numbers(ui, row, [NUMBERS[0], NUMBERS[1]], found.numbers);
+        let identified = Some(&self.mode.identified);
+        self.paint_numbers(ui, row, [NUMBERS[2], NUMBERS[3]], identified);
+        let color = match found.verdict {
+            ModeVerdict::Outside => palette.warning,
+            _ => palette.dim_text,
+        };
+        let room = (1.0 - NUMBERS[3]) * row.width() - 10.0;
+        let verdict = verdict_words(found.verdict);
+        let shown = elided(ui, verdict, room, SMALL_SIZE);
+        let at = pos2(row.left() + NUMBERS[3] * row.width() + 10.0, row.center().y);
+        painter.text(at, Align2::LEFT_CENTER, shown, small(), color);
+        let words = format!("Mode {name}: {}", mode_verdict_words(found.verdict));
+        let response = named(response, Role::Button, words);
+        if response.clicked() {
+            commands.push(LayoutCommand::ShowView(View::Poles).into());
+        }
+    }
+
+    /// Returns the name of the mode, or its number.
+    fn name(&self) -> String {
+        match self.mode.name {
+            Some(name) => {
+                let name = name.to_string();
+                let mut letters = name.chars();
+                match letters.next() {
+                    Some(first) => first.to_uppercase().chain(letters).collect(),
+                    None => name,
+                }
+            }
+            None => format!("Mode {}", self.mode.number),
+        }
+    }
+
+    /// Draws modulus and damping ratio, right-aligned; a real mode has no damping ratio.
+    fn paint_numbers(&self, ui: &Ui, row: Rect, edges: [f32; 2], numbers: Option<&ModeNumbers>) {
+        let mut texts = [NONE.to_owned(), String::new()];
+        if let Some(numbers) = numbers {
+            texts[0] = decimals(numbers.modulus_rad_s(), 2);
+            if numbers.values.period_s.is_some()
+                && let Some(damping) = numbers.values.damping_ratio
+            {
+                texts[1] = decimals(damping, 2);
+            }
+        }
+        for (edge, text) in edges.into_iter().zip(texts) {
+            let at = pos2(row.left() + edge * row.width(), row.center().y);
+            let color = self.palette.text;
+            ui.painter()
+                .text(at, Align2::RIGHT_CENTER, text, body(), color);
+        }
+    }
+}
+
+/// Returns the verdict, short enough for its column.
+fn verdict_words(verdict: ModeVerdict) -> &'static str {
+    match verdict {
+        ModeVerdict::Within => "met",
+        ModeVerdict::NotDetermined => "not determined",
+        _ => mode_verdict_words(verdict),
+    }
+}

@@ -163,6 +163,18 @@ struct LinePart {
     is_changed: bool,
 }
 
+impl LinePart {
+    /// Creates the part for some settings, and removes these from the `changed` settings.
+    fn new(text: String, settings: &[&Setting], changed: &mut Vec<&'static Setting>) -> Self {
+        let before = changed.len();
+        changed.retain(|setting| !settings.contains(setting));
+        Self {
+            text,
+            is_changed: changed.len() < before,
+        }
+    }
+}
+
 /// Returns the parts "α 1", "0.5–12 rad/s", "delays", "representatives", and the number of other
 /// changed settings.
 fn settings_parts(state: &State) -> Vec<LinePart> {
@@ -179,24 +191,23 @@ fn settings_parts(state: &State) -> Vec<LinePart> {
         PhaseCorrection::Delay => "delays",
         PhaseCorrection::Lead => "leads",
     };
-    let mut listed: Vec<(String, Vec<&'static Setting>)> = vec![
-        (alpha, vec![&setting::ALPHA_GAIN, &setting::ALPHA_DELAY]),
-        (band_words(state), vec![&setting::BAND]),
-        (phase.to_owned(), vec![&setting::PHASE]),
+    let mut changed = state.changed_settings();
+    let mut parts = vec![
+        LinePart::new(
+            alpha,
+            &[&setting::ALPHA_GAIN, &setting::ALPHA_DELAY],
+            &mut changed,
+        ),
+        LinePart::new(band_words(state), &[&setting::BAND], &mut changed),
+        LinePart::new(phase.to_owned(), &[&setting::PHASE], &mut changed),
     ];
     if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
         let source = setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings));
-        listed.push((source, vec![&setting::GAIN_SOURCE]));
-    }
-    let mut changed = state.changed_settings();
-    let mut parts = Vec::new();
-    for (text, settings) in listed {
-        let before = changed.len();
-        changed.retain(|setting| !settings.contains(setting));
-        parts.push(LinePart {
-            text,
-            is_changed: changed.len() < before,
-        });
+        parts.push(LinePart::new(
+            source,
+            &[&setting::GAIN_SOURCE],
+            &mut changed,
+        ));
     }
     if !changed.is_empty() {
         parts.insert(

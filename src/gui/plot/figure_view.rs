@@ -11,9 +11,10 @@ use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Figure, Range};
 
 use super::derivation_menu::QuestionMenu;
-use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, TITLE_HEIGHT, VALUE_AXIS_WIDTH};
+use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, VALUE_AXIS_WIDTH, title_height};
 use super::figure_scene::{FigureEvent, FigureScene};
 use super::nearest_dot::PointedMark;
+use super::panel_axis::LABELLED_HEIGHT;
 use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
 use super::steady_range::{AxisUpdate, steady_range};
@@ -279,20 +280,39 @@ struct FigurePainter<'a> {
 }
 
 impl FigurePainter<'_> {
+    /// Divides the room of a plot among its panels, in proportion to their weights. If only the
+    /// lowest panel has numbers, their height is not divided.
+    fn heights(&self, plot: usize, room: f32) -> Vec<f32> {
+        let panels = &self.scene.figure.plots[plot].panels;
+        let total: f64 = panels.iter().map(|panel| panel.weight).sum();
+        let axis = if self.scene.is_stacked && panels.len() > 1 {
+            LABELLED_HEIGHT.min(0.5 * room)
+        } else {
+            0.0
+        };
+        let mut heights: Vec<f32> = panels
+            .iter()
+            .map(|panel| (room - axis) * (panel.weight / total) as f32)
+            .collect();
+        if let Some(last) = heights.last_mut() {
+            *last += axis;
+        }
+        heights
+    }
+
     /// Draws the stacked panels of a plot into `rect` with the same horizontal range; returns the
     /// response of the first panel.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
-        let total: f64 = panels.iter().map(|panel| panel.weight).sum();
+        let title = title_height(&self.scene.figure.plots[plot].title);
+        let heights = self.heights(plot, rect.height() - title);
         let id = ui.make_persistent_id((self.scene.name, plot));
-        let height =
-            |number: usize| (rect.height() - TITLE_HEIGHT) * (panels[number].weight / total) as f32;
         let mut placed = PlacedPanel {
             scene: self.scene,
             plot,
             number: 0,
             id,
-            rect: rect.with_max_y(rect.top() + TITLE_HEIGHT + height(0)),
+            rect: rect.with_max_y(rect.top() + title + heights[0]),
             emphasized: self.emphasized,
             palette: self.palette,
         };
@@ -303,7 +323,7 @@ impl FigurePainter<'_> {
             let top = placed.rect.bottom();
             placed.number = number;
             placed.id = id.with(number);
-            placed.rect = Rect::from_x_y_ranges(rect.x_range(), top..=top + height(number));
+            placed.rect = Rect::from_x_y_ranges(rect.x_range(), top..=top + heights[number]);
             below.share_places(&panels[number], &view.first);
             placed.ui(ui, below);
             view.first.share_places(&panels[0], below);

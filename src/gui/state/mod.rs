@@ -39,6 +39,7 @@ pub mod records;
 pub mod records_page;
 pub mod requirements_display;
 pub mod selection;
+pub mod settings_changes;
 pub mod settings_session;
 pub mod sheet;
 pub mod shown_results;

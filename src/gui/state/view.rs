@@ -84,7 +84,7 @@ pub enum View {
 
 impl View {
     /// Every view, in menu order.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Bode,
         Self::Error,
         Self::Overview,

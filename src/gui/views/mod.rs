@@ -92,7 +92,9 @@ use net_gain::net_gain_view_ui;
 use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
 use overview::{overview_pages, overview_view_ui};
-use physics::{physics_header_ui, physics_job, physics_pages, physics_view_ui};
+use physics::{
+    physics_evidence_ui, physics_header_ui, physics_job, physics_pages, physics_view_ui,
+};
 use poles::{poles_header_ui, poles_pages, poles_view_ui};
 use records::{
     records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
@@ -250,6 +252,7 @@ const PHYSICS: ViewContent = ViewContent {
     pages: physics_pages,
     tools: physics_header_ui,
     tools_width: 240.0,
+    side: Some(physics_evidence_ui),
     needs: |state| vec![Need::Physics(physics_job(state))],
     ..ViewContent::PLAIN
 };

@@ -84,10 +84,10 @@ pub(super) fn identified_grid_ui(
     let (heading, _) = ui.allocate_exact_size(vec2(width, HEADING), Sense::hover());
     let title = "Identified responses";
     let shown = painted_text(ui, heading, 0.0, title, medium(BODY_SIZE), palette.text);
-    let room = heading.right() - shown.right() - 8.0;
+    let note_room = heading.right() - shown.right() - 8.0;
     let note = NOTES
         .into_iter()
-        .find(|note| text_width(ui, note, small()) <= room);
+        .find(|note| text_width(ui, note, small()) <= note_room);
     if let Some(note) = note {
         painted_text(ui, heading, AT_RIGHT_END, note, small(), palette.dim_text);
     }
@@ -185,7 +185,7 @@ impl Grid<'_> {
         let mut hint = name;
         if let Some(found) = records.identification() {
             let figures = PairFigures::new(found, pair);
-            let is_outdated = records.changed;
+            let is_outdated = self.page.is_outdated();
             self.paint_figures(ui, place, figures, is_outdated);
             hint = format!("{hint}: {}", figures.words());
         }

@@ -257,7 +257,6 @@ const NET_GAIN: ViewFacts = ViewFacts {
     purpose: "Net gain of the selected responses over airspeed, with the schedule",
     group: ViewGroup::Schedule,
     is_docked: true,
-    long_name: Some("Net gain over airspeed"),
     is_of_all_conditions: true,
     figure: Some(FigureKind::NetGain),
     ..ViewFacts::PLAIN

@@ -260,7 +260,6 @@ const NET_GAIN: ViewFacts = ViewFacts {
     name: "Net gain",
     purpose: "Net gain of the selected responses over airspeed, with the schedule",
     group: None,
-    long_name: Some("Net gain over airspeed"),
     is_of_all_conditions: true,
     figure: Some(FigureKind::NetGain),
     ..ViewFacts::PLAIN

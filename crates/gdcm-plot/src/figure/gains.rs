@@ -135,14 +135,20 @@ pub fn add_variant(
 }
 
 /// Adds the optima and the schedule before a change of settings to plots against airspeed, in grey
-/// behind the existing dots. `quantities` lists the quantity of each plot, in order.
+/// behind the existing schedule and dots. `quantities` lists the quantity of each plot, in order.
 pub fn add_previous(figure: &mut Figure, quantities: &[GainQuantity], analysis: &Analysis) {
     let panels = figure
         .plots
         .iter_mut()
         .flat_map(|plot| plot.panels.first_mut());
     for (panel, quantity) in panels.zip(quantities) {
-        put_behind_dots(panel, previous_marks(*quantity, analysis));
+        let marks = previous_marks(*quantity, analysis);
+        let first_curve = panel
+            .marks
+            .iter()
+            .position(|mark| matches!(mark, Mark::Curve(_) | Mark::Dots(_)))
+            .unwrap_or(panel.marks.len());
+        panel.marks.splice(first_curve..first_curve, marks);
     }
 }
 

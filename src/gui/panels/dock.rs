@@ -182,7 +182,7 @@ fn dock_pages_ui(
 ) {
     let views: Vec<View> = View::docked(state.study.settings.phase).collect();
     if let [only] = views[..] {
-        let name = only.facts().long_name.unwrap_or(only.name());
+        let name = only.name();
         ui.label(RichText::new(name).font(medium(BODY_SIZE)));
         return;
     }

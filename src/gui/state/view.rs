@@ -146,8 +146,6 @@ pub struct ViewFacts {
     pub group: Option<ViewGroup>,
     /// Whether the dock is hidden while this view is in front.
     pub takes_dock: bool,
-    /// Heading in the dock, if longer than the tab text.
-    pub long_name: Option<&'static str>,
     /// Kind of exported figure. The variants have none and are saved as tables; for records, the
     /// identified models are saved.
     pub figure: Option<FigureKind>,
@@ -161,7 +159,6 @@ impl ViewFacts {
         is_of_all_conditions: false,
         group: Some(ViewGroup::Response),
         takes_dock: false,
-        long_name: None,
         figure: None,
     };
 }

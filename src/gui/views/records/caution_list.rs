@@ -58,7 +58,7 @@ pub(super) fn caution_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Co
         palette.text,
     );
     let count = match page.records.identification() {
-        Some(_) if page.records.changed => format!("{}, outdated", entries.len()),
+        Some(_) if page.is_outdated() => format!("{}, outdated", entries.len()),
         Some(_) => entries.len().to_string(),
         None => "–".to_owned(),
     };
@@ -159,6 +159,8 @@ fn entry_ui(
                 remedies_ui(ui, &entry.remedies, commands);
             });
         });
+        // The buttons end above the lower edge of the entry.
+        ui.advance_cursor_after_rect(rect);
     }
 }
 

@@ -143,21 +143,15 @@ pub fn export_note_detail(
             format!("{}; {setting}", delayed_channels_text(channels, dataset))
         }
         ExportNote::ConstantDelays { .. } => "their degree over airspeed is 0".to_owned(),
-        ExportNote::SignedDelaysNotScheduled { channels, .. } => {
-            let words: Vec<String> = channels
-                .iter()
-                .take(1)
-                .map(|apart| {
-                    format!(
-                        "{} {} ms there, {} ms elsewhere",
-                        apart.channel.name_in(dataset),
-                        signed(s_to_ms(apart.tau_s), 0),
-                        signed(s_to_ms(apart.elsewhere_s), 0)
-                    )
-                })
-                .collect();
-            words.concat()
-        }
+        ExportNote::SignedDelaysNotScheduled { channels, .. } => match channels.first() {
+            Some(apart) => format!(
+                "{} {} ms there, {} ms elsewhere",
+                apart.channel.name_in(dataset),
+                signed(s_to_ms(apart.tau_s), 0),
+                signed(s_to_ms(apart.elsewhere_s), 0)
+            ),
+            None => String::new(),
+        },
         ExportNote::CouplingsLeftOut { why } => why.words(&dataset.names_of_channels().0),
         ExportNote::GainTableError { .. } | ExportNote::TimeTableError { .. } => {
             "functions are exact".to_owned()

@@ -1009,7 +1009,7 @@ fn units_that_no_file_says_are_the_dataset_s_with_a_caution_and_are_set_once_for
                 .any(|caution| caution.code() == "unit-assumed")
         );
     }
-    click(&mut window, "Confirm");
+    give(&mut window, RecordsCommand::ConfirmUnits);
     assert_eq!(assumed(&window), None);
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
@@ -1025,6 +1025,9 @@ fn units_that_no_file_says_are_the_dataset_s_with_a_caution_and_are_set_once_for
         (state(&window).condition().id(), state(&window).records.page),
         (ConditionId(5), RecordsPage::Columns)
     );
+    click(&mut window, "Confirm the dataset's units");
+    assert_eq!(assumed(&window), None);
+    step(&mut window, UNDO);
     let own = |window: &Window| {
         state(window).records.conditions[&CONDITION_10_ID].rows[0]
             .layout

@@ -39,6 +39,14 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
         let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));
         text += &detail("", &format!("condition {}: {why}", left_out.condition));
     }
+    let are_parameters_moved = analysis
+        .applied_physics()
+        .is_some_and(|applied| !applied.values.is_empty());
+    if are_parameters_moved {
+        let words = "these physics parameters are found in all conditions; for J with values found \
+            without each condition, see Physics";
+        text += &detail("", words);
+    }
     if analysis.fitted_couplings().is_some() {
         let words = "these couplings are fitted to all conditions; for J with couplings fitted \
             without each condition, see Couplings";

@@ -63,7 +63,7 @@ pub enum FigureKind {
 }
 
 impl FigureKind {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Bode,
         Self::Error,
         Self::Overview,

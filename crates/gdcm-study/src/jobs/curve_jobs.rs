@@ -57,6 +57,8 @@ impl Job for ModesJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
+    /// The dataset with the physics models moved by the physics parameters; `dataset` without them.
+    pub moved_dataset: Shared<Dataset>,
     /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
     /// The couplings of the corrected physics models; `None` without couplings.
@@ -77,8 +79,8 @@ pub struct AcrossCurves {
 pub struct AcrossModel {
     pub model: ModelId,
     pub response: Arc<FrequencyResponse>,
-    /// Response of a physics model with the couplings; `None` without couplings, and for an
-    /// identified model.
+    /// Response of a physics model with physics parameters and couplings applied; `None` without
+    /// both, and for an identified model.
     pub coupled: Option<Arc<FrequencyResponse>>,
 }
 
@@ -110,13 +112,13 @@ impl AcrossJob {
             Some(analysis) => analysis.fitted_couplings().cloned(),
             None => None,
         };
-        // Corrections apply to the moved physics models (M18.5).
-        let dataset = match (role, analysis) {
-            (AcrossRole::Corrected, Some(analysis)) => analysis.moved_dataset(),
-            _ => dataset,
+        let moved_dataset = match analysis {
+            Some(analysis) => analysis.moved_dataset(),
+            None => dataset,
         };
         Self {
             dataset: Arc::clone(dataset).into(),
+            moved_dataset: Arc::clone(moved_dataset).into(),
             models,
             couplings,
             grid,
@@ -128,18 +130,39 @@ impl AcrossJob {
         let condition = self.dataset.condition(id.condition)?;
         let model = condition.model(id.bundle, &id.name)?;
         let response = PreparedModel::new(&model.dynamics).response(grid);
-        let mut coupled = None;
-        if let Some(fitted) = &self.couplings
-            && id.bundle == BundleKind::Physics
-        {
-            let airspeed_kt = condition.flight_state().airspeed_kt;
-            coupled = Some(Arc::new(fitted.matrices().response(&response, airspeed_kt)));
-        }
+        let response = Arc::new(response);
         Some(AcrossModel {
+            coupled: self.response_before_gains(id, condition, &response, grid),
             model: id.clone(),
-            response: Arc::new(response),
-            coupled,
+            response,
         })
+    }
+
+    /// Returns the response of a physics model after the physics parameters and the couplings, to
+    /// which gains and delays apply (M18.5); `None` if neither changes it.
+    fn response_before_gains(
+        &self,
+        id: &ModelId,
+        condition: &Condition,
+        response: &Arc<FrequencyResponse>,
+        grid: &FrequencyGrid,
+    ) -> Option<Arc<FrequencyResponse>> {
+        if id.bundle != BundleKind::Physics {
+            return None;
+        }
+        let mut changed = None;
+        if self.moved_dataset != self.dataset {
+            let moved = self.moved_dataset.condition(id.condition)?;
+            let model = moved.model(id.bundle, &id.name)?;
+            let prepared = PreparedModel::new(&model.dynamics);
+            changed = Some(Arc::new(prepared.response(grid)));
+        }
+        if let Some(fitted) = &self.couplings {
+            let airspeed_kt = condition.flight_state().airspeed_kt;
+            let plain = changed.as_ref().unwrap_or(response);
+            changed = Some(Arc::new(fitted.matrices().response(plain, airspeed_kt)));
+        }
+        changed
     }
 }
 

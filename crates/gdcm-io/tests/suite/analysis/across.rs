@@ -18,6 +18,7 @@ fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
     let band = Band::new(0.5, 12.0).unwrap();
     let models = vec![ids[0].clone(), missing, ids[1].clone()];
     let job = AcrossJob {
+        moved_dataset: dataset.clone().into(),
         dataset: dataset.into(),
         models,
         couplings: None,

@@ -227,7 +227,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         state(&window).shown().is_some(),
         "the correction follows the models taken"
     );
-    click(&mut window, "Restore the file's models");
+    click(&mut window, "Restore");
     assert_eq!(identified_models(&window), before);
     window.get_by_label("Use 1 fit");
     give(&mut window, StudyCommand::Undo);
@@ -1181,7 +1181,7 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
         state(window).shown().is_some()
     });
     assert!(window.query_by_label("Identify from records").is_none());
-    click(&mut window, "Restore the file's models");
+    click(&mut window, "Restore");
     wait_until(&mut window, "none again", |window| {
         failure(window) == Some("no-reference")
     });

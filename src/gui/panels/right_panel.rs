@@ -13,6 +13,7 @@ use gdcm_study::decisions::setting_row::Setting;
 use super::advice::export;
 use super::matrix_panel::MatrixSpace;
 use super::reasons::reasons_inspector_ui;
+use super::result_panel::OLDER;
 use super::verdict::{Verdict, band_words};
 use super::verdict_view::{shown_verdict, verdict_ui};
 use super::{matrix_panel, response_card, result_panel};
@@ -39,9 +40,6 @@ const LEAST_WITH_CARD: f32 = 860.0;
 /// Minimum window height that shows the full result; in lower windows the result takes a single
 /// line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
-
-/// Opacity of values that are being computed again.
-const OLDER: f32 = 0.6;
 
 /// Draws verdict, result and matrix above the settings line and the export row.
 pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

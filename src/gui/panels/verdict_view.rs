@@ -8,6 +8,7 @@ use egui::{
 use gdcm_model::number_format::counted;
 
 use super::advice::{Step, export};
+use super::result_panel::OLDER;
 use super::verdict::{Verdict, VerdictRow};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
@@ -31,8 +32,6 @@ const STEPS: f32 = 28.0;
 /// Padding at the left, where the edge is coloured, and at the right \[pt\].
 const PAD_LEFT: f32 = 16.0;
 const PAD_RIGHT: f32 = 12.0;
-/// Opacity of steps on older results.
-const OLDER: f32 = 0.6;
 /// Gap between two steps \[pt\].
 const GAP: f32 = 8.0;
 

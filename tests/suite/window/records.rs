@@ -227,7 +227,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         state(&window).shown().is_some(),
         "the correction follows the models taken"
     );
-    click(&mut window, "Restore the file's models");
+    click(&mut window, "Restore");
     assert_eq!(identified_models(&window), before);
     window.get_by_label("Use 1 fit");
     give(&mut window, StudyCommand::Undo);
@@ -1009,7 +1009,7 @@ fn units_that_no_file_says_are_the_dataset_s_with_a_caution_and_are_set_once_for
                 .any(|caution| caution.code() == "unit-assumed")
         );
     }
-    click(&mut window, "Confirm");
+    give(&mut window, RecordsCommand::ConfirmUnits);
     assert_eq!(assumed(&window), None);
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
@@ -1025,6 +1025,9 @@ fn units_that_no_file_says_are_the_dataset_s_with_a_caution_and_are_set_once_for
         (state(&window).condition().id(), state(&window).records.page),
         (ConditionId(5), RecordsPage::Columns)
     );
+    click(&mut window, "Confirm the dataset's units");
+    assert_eq!(assumed(&window), None);
+    step(&mut window, UNDO);
     let own = |window: &Window| {
         state(window).records.conditions[&CONDITION_10_ID].rows[0]
             .layout
@@ -1178,7 +1181,7 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
         state(window).shown().is_some()
     });
     assert!(window.query_by_label("Identify from records").is_none());
-    click(&mut window, "Restore the file's models");
+    click(&mut window, "Restore");
     wait_until(&mut window, "none again", |window| {
         failure(window) == Some("no-reference")
     });

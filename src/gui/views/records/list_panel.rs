@@ -6,7 +6,7 @@ use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, UiBuilde
 use super::columns_fold::{columns_fold_ui, columns_summary};
 use super::page::Page;
 use super::record_details::record_details_ui;
-use super::record_files::source_ui;
+use super::record_files::{other_channels_ui, source_ui};
 use super::record_list::record_rows_ui;
 use super::search_settings::{search_settings_ui, settings_summary};
 use super::unassigned_records::unassigned_ui;
@@ -124,6 +124,7 @@ fn content_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 4.0;
     source_ui(ui, page, commands);
     unassigned_ui(ui, page, commands);
+    other_channels_ui(ui, page, commands);
     if page.records.rows.is_empty() {
         no_records_ui(ui, page);
         return;

@@ -1,8 +1,9 @@
-//! Commands that add record files, and questions about the added records.
+//! Commands that add record files, and cautions and questions about the added records.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Label, Ui};
 
+use gdcm_model::number_format::counted;
 use gdcm_sysid::records::{LaidOutRecord, LayoutProblem};
 
 use super::page::Page;
@@ -10,7 +11,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::controls::{button_ui, entries_ui};
 
-/// Shows the commands that add records, and questions about the added records.
+/// Shows the commands that add records, and cautions about the added records.
 pub(super) fn source_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page { state, palette, .. } = page;
     ui.horizontal(|ui| {
@@ -23,7 +24,6 @@ pub(super) fn source_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>
         }
     });
     assumed_units_ui(ui, page, commands);
-    other_channels_ui(ui, page, commands);
     for fault in &state.records.faults {
         ui.add(Label::new(palette.small_warning(fault)).wrap());
     }
@@ -55,15 +55,19 @@ fn assumed_units_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Some(units) = page.state.records.assumed_units() else {
         return;
     };
-    let text = format!("⚠ Units of {} missing", units.channels.join(", "));
-    ui.add(Label::new(page.palette.small_warning(text)).wrap());
-    ui.horizontal_wrapped(|ui| {
-        let records = if units.records == 1 {
-            "1 record".to_owned()
-        } else {
-            format!("{} records", units.records)
-        };
-        ui.label(page.palette.small(format!("dataset units used, {records}")));
+    let text = format!(
+        "⚠ {} missing: dataset units used",
+        counted(units.channels.len(), "unit")
+    );
+    let hint = format!(
+        "Units of {} in {} of {}",
+        units.channels.join(", "),
+        counted(units.records, "record"),
+        counted(units.conditions, "condition")
+    );
+    ui.horizontal(|ui| {
+        ui.label(page.palette.small_warning(text))
+            .on_hover_text(hint);
         button_ui(
             ui,
             Button::new("Check").small(),
@@ -72,36 +76,25 @@ fn assumed_units_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             RecordsCommand::CheckUnits,
             commands,
         );
-        button_ui(
-            ui,
-            Button::new("Confirm").small(),
-            "The units of the dataset apply to all these records; one step to undo",
-            RecordsCommand::ConfirmUnits,
-            commands,
-        );
     });
 }
 
 /// Offers to make a dataset from records that lack the open dataset's channels.
-fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+pub(super) fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let has_missing = page.records.rows.iter().any(lacks_channels)
         || page.state.records.unassigned.iter().any(lacks_channels);
     if !has_missing {
         return;
     }
-    ui.horizontal_wrapped(|ui| {
-        ui.label(
-            page.palette
-                .small("Records without the dataset's channels?"),
-        );
-        button_ui(
-            ui,
-            Button::new("Make a dataset from them…"),
-            "Models can be identified from them before a physics model exists",
-            RecordsCommand::AskDataset,
-            commands,
-        );
-    });
+    let text = "Records without the dataset's channels?";
+    ui.add(Label::new(page.palette.small(text)).wrap());
+    button_ui(
+        ui,
+        Button::new("Make a dataset from them…"),
+        "Models can be identified from them before a physics model exists",
+        RecordsCommand::AskDataset,
+        commands,
+    );
 }
 
 fn lacks_channels(row: &LaidOutRecord) -> bool {

@@ -89,10 +89,11 @@ fn common_prefix<'n>(names: &[&'n str]) -> &'n str {
     &first[..end]
 }
 
-/// Returns the name of a record without the common beginning, or "part 4 to 52 s".
+/// Returns the name of a record without the common beginning, or "4 to 52 s" for a
+/// part.
 fn shown_name(row: &LaidOutRecord, prefix: &str) -> String {
     if let Some([from, to]) = row.table.part_s {
-        return format!("part {} to {} s", number(from), number(to));
+        return format!("{} to {} s", number(from), number(to));
     }
     let name = &row.table.name;
     name.strip_prefix(prefix).unwrap_or(name).to_owned()
@@ -119,7 +120,7 @@ fn heads_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
     let upto = row.with_max_x(row.right() - COST_END);
     let is_outdated = page.is_outdated();
     let place = if is_outdated {
-        painted_text(ui, upto, AT_RIGHT_END, "outdated", small(), palette.warning)
+        painted_text(ui, row, AT_RIGHT_END, "outdated", small(), palette.warning)
     } else {
         painted_text(ui, upto, AT_RIGHT_END, "χ²/dof", small(), palette.dim_text)
     };
@@ -176,9 +177,6 @@ impl RecordRow<'_> {
         self.hold_out_ui(ui, rect, commands);
         self.remove_ui(ui, rect, commands);
         response.asks(RecordsCommand::Choose(self.index), commands);
-        if self.shown_name != *name {
-            response.on_hover_text(name);
-        }
     }
 
     fn is_part(&self) -> bool {

@@ -296,7 +296,7 @@ impl Side<'_> {
             } else {
                 self.palette.quiet_text
             },
-            half: half.map(|half| half.scaled(s_to_ms(1.0))),
+            half: half.map(|half| format!("±{:.0}", s_to_ms(half))),
             name: format!("Delay of {name}"),
             exact,
             scalar,

@@ -58,7 +58,8 @@ impl ChipRow {
     /// Starts at the upper left corner of `area`, with samples of this length \[pt\].
     pub fn new(area: Rect, sample_length: f32) -> Self {
         Self {
-            corner,
+            area,
+            corner: area.min,
             sample_length,
         }
     }

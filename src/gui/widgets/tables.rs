@@ -322,7 +322,7 @@ impl DrawnTable<'_> {
         } else if ui.rect_contains_pointer(rect) {
             self.palette.raised
         } else if place % 2 == 1 {
-            ui.visuals().faint_bg_color
+            self.palette.raised.gamma_multiply(0.6)
         } else {
             return;
         };

@@ -159,6 +159,8 @@ fn entry_ui(
                 remedies_ui(ui, &entry.remedies, commands);
             });
         });
+        // The buttons end above the lower edge of the entry.
+        ui.advance_cursor_after_rect(rect);
     }
 }
 

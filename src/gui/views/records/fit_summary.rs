@@ -147,10 +147,10 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
                 hint: format!("CT-PBSID, refined; past window {}", found.past),
             },
             Figure {
-                name: "Laguerre pole",
-                value: format!("{} rad/s", decimals(found.laguerre_pole, 1)),
+                name: "Laguerre, rad/s",
+                value: decimals(found.laguerre_pole, 1),
                 color: palette.text,
-                hint: "Best of the Laguerre poles that were tried".to_owned(),
+                hint: "Best of the Laguerre poles that were tried [rad/s]".to_owned(),
             },
         ],
     ];
@@ -247,6 +247,7 @@ fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             ui.spacing_mut().button_padding.y = 0.0;
             remedy_ui(ui, &study_band_remedy(), commands);
         });
+        ui.advance_cursor_after_rect(line);
     }
 }
 

@@ -110,8 +110,13 @@ impl ChipRow {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
+    /// Returns the place of the next chip, on a new line if the current line has no room.
     fn next_place(&mut self, width: f32) -> Rect {
-        let place = Rect::from_min_size(self.corner, vec2(width, CHIP_HEIGHT));
+        let size = vec2(width, CHIP_HEIGHT);
+        if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
+            self.corner = pos2(self.area.left(), self.corner.y + LINE_HEIGHT);
+        }
+        let place = Rect::from_min_size(self.corner, size);
         self.corner.x = place.right() + GAP;
         place
     }

@@ -53,12 +53,19 @@ pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
         ExportNote::ConstantDelays { .. } => {
             "Delay schedule: constant delay per channel".to_owned()
         }
-        ExportNote::SignedDelayNotScheduled {
-            channel, condition, ..
-        } => format!(
-            "{} delay of condition {condition} not scheduled",
-            channel.name_in(dataset)
-        ),
+        ExportNote::SignedDelaysNotScheduled {
+            condition,
+            channels,
+        } => match channels.as_slice() {
+            [only] => format!(
+                "{} delay of condition {condition} not scheduled",
+                only.channel.name_in(dataset)
+            ),
+            _ => format!(
+                "{} delays of condition {condition} not scheduled",
+                channels.len()
+            ),
+        },
         ExportNote::CouplingsLeftOut { .. } => "Couplings: left out".to_owned(),
         ExportNote::GainTableError {
             channel,
@@ -136,13 +143,21 @@ pub fn export_note_detail(
             format!("{}; {setting}", delayed_channels_text(channels, dataset))
         }
         ExportNote::ConstantDelays { .. } => "their degree over airspeed is 0".to_owned(),
-        ExportNote::SignedDelayNotScheduled {
-            tau_s, elsewhere_s, ..
-        } => format!(
-            "{} ms there, {} ms elsewhere",
-            signed(s_to_ms(*tau_s), 0),
-            signed(s_to_ms(*elsewhere_s), 0)
-        ),
+        ExportNote::SignedDelaysNotScheduled { channels, .. } => {
+            let words: Vec<String> = channels
+                .iter()
+                .take(1)
+                .map(|apart| {
+                    format!(
+                        "{} {} ms there, {} ms elsewhere",
+                        apart.channel.name_in(dataset),
+                        signed(s_to_ms(apart.tau_s), 0),
+                        signed(s_to_ms(apart.elsewhere_s), 0)
+                    )
+                })
+                .collect();
+            words.concat()
+        }
         ExportNote::CouplingsLeftOut { why } => why.words(&dataset.names_of_channels().0),
         ExportNote::GainTableError { .. } | ExportNote::TimeTableError { .. } => {
             "functions are exact".to_owned()
@@ -157,10 +172,7 @@ pub fn export_note_detail(
             format!("at {} rad/s, by Tustin's rule", number(*band_top_rad_s))
         }
         ExportNote::NotValidAbove { price } => {
-            format!(
-                "at {} rad/s; stated in every file",
-                number(price.above_rad_s())
-            )
+            format!("at {} rad/s", number(price.above_rad_s()))
         }
         ExportNote::ConditionsNotChosen { conditions }
         | ExportNote::ConditionsNotScheduled { conditions }

@@ -140,14 +140,16 @@ pub fn value_text(requirement: Requirement, cell: &RoleCell) -> String {
     }
 }
 
-/// Formats the value of a cell with its unit: "−12 %".
+/// Formats the value of a cell with its unit: "−12 %", "201 % of the tolerance".
 pub fn value_with_unit_text(requirement: Requirement, cell: &RoleCell) -> String {
     let value = value_text(requirement, cell);
     let unit = unit_text(requirement.unit());
     if cell.value.is_none() || unit.is_empty() {
-        value
-    } else {
-        format!("{value} {unit}")
+        return value;
+    }
+    match requirement {
+        Requirement::PeakError(_) => format!("{value} {unit} of the tolerance"),
+        _ => format!("{value} {unit}"),
     }
 }
 
@@ -244,8 +246,9 @@ pub fn verdict_text(requirement: Requirement, limit: &RequirementLimit, cell: &R
             RequirementLimit::AtMost(_) | RequirementLimit::AtLeast(_) => {
                 format!("not {}", limit_description(requirement, limit))
             }
-            RequirementLimit::Tolerance(_) => "of the tolerance, outside".to_owned(),
-            RequirementLimit::Mode(_) | RequirementLimit::None => "outside".to_owned(),
+            RequirementLimit::Tolerance(_) | RequirementLimit::Mode(_) | RequirementLimit::None => {
+                "outside".to_owned()
+            }
         },
         CellVerdict::NoTolerance => "no tolerance".to_owned(),
         CellVerdict::NotDetermined(why) => {

@@ -4,6 +4,7 @@ use super::GdcmApp;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::view::View;
+use crate::gui::state::view_pages::ViewPage;
 
 impl GdcmApp {
     pub(super) fn carry_out_display(&mut self, command: DisplayCommand) {
@@ -45,6 +46,15 @@ impl GdcmApp {
                 }
                 display.judging.requirements = requirements;
             }
+            DisplayCommand::ShowPage(page) => match page {
+                ViewPage::Overview(has_phases) => {
+                    display.frequency.overview.show_phase = has_phases;
+                }
+                ViewPage::Poles(page) => display.pages.poles = page,
+                ViewPage::Couplings(page) => display.pages.couplings = page,
+                ViewPage::Evidence(page) => display.pages.evidence = page,
+                ViewPage::Compare(page) => display.pages.compare = page,
+            },
             DisplayCommand::SetFrequencyUnit(unit) => display.curves.unit = unit,
             DisplayCommand::SetLooks(looks) => display.curves.looks = looks,
             DisplayCommand::FitPlots => {

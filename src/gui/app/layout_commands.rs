@@ -30,6 +30,9 @@ impl GdcmApp {
             LayoutCommand::ShowBeside(view) => display.layout.arrangement.show_beside(view),
             LayoutCommand::ShowInDock(view) => display.layout.arrangement.dock_view(view),
             LayoutCommand::OpenDock(is_open) => display.layout.arrangement.open_dock(is_open),
+            LayoutCommand::EnlargeDock(is_enlarged) => {
+                display.layout.arrangement.enlarge_dock(is_enlarged);
+            }
             LayoutCommand::ResetLayout => {
                 display.layout.arrangement = Arrangement::default();
                 display.layout.left_open = None;

@@ -45,6 +45,5 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
         display.selection.isolated = None;
         display.curves.selected.clear();
         display.curves.crossings.clear();
-        display.frequency.refit();
     }
 }

@@ -28,6 +28,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::panels::{forms, tour};
+use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
 use crate::gui::state::view::View;
@@ -126,7 +127,8 @@ impl GdcmApp {
             && self.state.display.layout.opens_with == OpensWith::StartPage
             && trouble.is_none();
         if let Some(trouble) = trouble {
-            self.notify_error(trouble);
+            let remedy = Some(NoticeAction::OpenAnother);
+            self.notify_error_of(Activity::Opening, trouble, remedy);
         }
         if offers_tour
             && let Some(directory) = &self.files.directory

@@ -12,8 +12,8 @@ use crate::gui::panels::menu_bar::menu_bar_ui;
 use crate::gui::panels::message_bars::message_bars_ui;
 use crate::gui::panels::sheet_frame::sheet_ui;
 use crate::gui::panels::{
-    centre, conditions_panel, derivation_sheet, models_panel, rail, reasons, record_conditions,
-    right_panel, settings_panel, start_page, status_bar,
+    centre, conditions_panel, derivation_sheet, models_panel, rail, record_conditions, right_panel,
+    settings_panel, start_page, status_bar,
 };
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
@@ -67,6 +67,10 @@ pub(super) fn panels_ui(
     sheets_ui(ui, centre, state, palette, commands);
 }
 
+/// Maximum height of the conditions, as a share of the left panel's height. Their height depends on
+/// the dataset alone, so that they look the same beside every view.
+const CONDITIONS_PART: f32 = 0.365;
+
 /// Draws the left panel with conditions and models, or their records, in full or as a narrow rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
@@ -109,7 +113,7 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             frame.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let has_records = state.display.layout.arrangement.view() == View::Records;
-                let most = 0.45 * ui.available_height();
+                let most = CONDITIONS_PART * ui.available_height();
                 ScrollArea::vertical()
                     .id_salt("conditions")
                     .max_height(most)
@@ -187,15 +191,18 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let sheet = if state.display.selection.explained.is_some() {
         Sheet::Derivation
-    } else if let Some(sheet) = state.display.layout.sheet {
+    } else if let Some(sheet) = state.display.layout.sheet
+        && sheet != Sheet::Reasons
+    {
         sheet
     } else {
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
         Sheet::Derivation => derivation_sheet::derivation_sheet_ui(ui, state, palette, commands),
+        // Drawn below the verdict.
+        Sheet::Reasons => {}
         Sheet::Records => records_sheet_ui(ui, state, palette, commands),
-        Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
         Sheet::Models => {
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)
         }

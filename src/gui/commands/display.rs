@@ -11,6 +11,7 @@ use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::physics_display::PhysicsPage;
 use crate::gui::state::requirements_display::RequirementsDisplay;
+use crate::gui::state::view_pages::ViewPage;
 use crate::gui::widgets::palette::PlotStyle;
 
 /// Changes the content of a view; no result depends on it.
@@ -50,6 +51,8 @@ pub enum DisplayCommand {
     ShowRequirements(RequirementsDisplay),
     /// Selects time responses to a test input (`true`) or to the inputs of the records.
     ShowTest(bool),
+    /// Shows a page of a view.
+    ShowPage(ViewPage),
     SetFrequencyUnit(FrequencyUnit),
     SetLooks(PlotStyle),
     /// Fits the plots to their curves.

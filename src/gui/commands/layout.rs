@@ -12,16 +12,17 @@ pub enum LayoutCommand {
     /// Brings a view to the front.
     ShowView(View),
     /// Shows the next page of the view in front, or the previous one.
-    TurnPage {
-        forward: bool,
-    },
+    TurnPage { forward: bool },
     /// Brings a group of views to the front and shows the view that was last open in it.
     ShowGroup(ViewGroup),
     /// Shows a second view beside the view in front; `None` shows the view in front alone.
     ShowBeside(Option<View>),
+    /// Shows a page of the dock, and unfolds the dock.
     ShowInDock(View),
     /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
+    /// Doubles the height of the dock (`true`), or restores its usual height.
+    EnlargeDock(bool),
     /// Restores the default layout of panels and views.
     ResetLayout,
     /// Shows the left panel in full (`true`) or as a narrow rail.
@@ -43,9 +44,7 @@ pub enum LayoutCommand {
     /// Focuses the field with this accessible name.
     FocusField(&'static str),
     /// Moves the focus to the next or to the previous window region.
-    LeaveRegion {
-        forward: bool,
-    },
+    LeaveRegion { forward: bool },
     /// Shows the first step in the guided tour.
     StartTour,
     /// Shows another step in the guided tour, or ends it.

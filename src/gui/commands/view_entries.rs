@@ -34,13 +34,7 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
             DisplayCommand::SetFrequencyUnit(unit),
         ),
     ];
-    let show = View::ALL.map(|view| {
-        Entry::new(
-            format!("Show {}", view.name()),
-            view.facts().purpose,
-            LayoutCommand::ShowView(view),
-        )
-    });
+    let show = View::ALL.map(|view| show_entry(view, state));
     group(Menu::View, 0, plots)
         .chain(group(Menu::View, 1, steps(state)))
         .chain(show)
@@ -49,6 +43,23 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
         .chain(group(Menu::View, 5, theme_entries()))
         .collect()
 }
+
+/// Returns the entry that shows a view, or a page of the dock. Without leads, their page is disabled
+/// and the entry says how to get them.
+fn show_entry(view: View, state: &State) -> Entry {
+    let name = format!("Show {}", view.name());
+    let purpose = view.facts().purpose;
+    if !view.is_dock_page() {
+        return Entry::new(name, purpose, LayoutCommand::ShowView(view));
+    }
+    let is_page = View::docked(state.study.settings.phase).any(|page| page == view);
+    let meaning = if is_page { purpose } else { NO_LEADS };
+    Entry::new(name, meaning, LayoutCommand::ShowInDock(view)).enabled(is_page)
+}
+
+/// Tooltip of the disabled entry that shows the leads.
+const NO_LEADS: &str = "The study has no leads: choose \"Use leads\" in the verdict, or Settings, phase, \
+    \"delay or lead\"";
 
 /// Tooltip of the entries that move the focus between regions of the window.
 const PARTS: &str = "Moves between plots, dock, verdict, result, matrix, settings, conditions and models; each \
@@ -154,10 +165,11 @@ fn neighbour_entries(state: &State) -> [Entry; 2] {
 }
 
 /// Returns the entries for the left side, the settings, the dock, the reasons and the layout.
-fn fold_entries(state: &State) -> [Entry; 5] {
+fn fold_entries(state: &State) -> [Entry; 6] {
     let display = &state.display;
     let is_left_open = display.layout.left_open.unwrap_or(display.layout.is_wide);
     let is_dock_open = display.layout.arrangement.is_dock_open(true);
+    let is_dock_enlarged = display.layout.arrangement.is_dock_enlarged();
     [
         Entry::new(
             if is_left_open {
@@ -187,6 +199,15 @@ fn fold_entries(state: &State) -> [Entry; 5] {
             },
             "The plots below the view in front",
             LayoutCommand::OpenDock(!is_dock_open),
+        ),
+        Entry::new(
+            if is_dock_enlarged {
+                "Restore the height of the dock"
+            } else {
+                "Enlarge the dock"
+            },
+            "Twice the usual height; as a double click on its bar",
+            LayoutCommand::EnlargeDock(!is_dock_enlarged),
         ),
         Entry::new(
             "Show the reasons for the result",

@@ -20,6 +20,22 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::{offered_couplings, used_couplings};
 
+/// Text of the step that uses the offered couplings.
+pub(super) const USE_COUPLINGS: &str = "Use couplings";
+/// Text of the step that shows the couplings.
+pub(super) const INSPECT: &str = "Inspect";
+/// Text of the step that opens the reasons for the result.
+const REASONS: &str = "Find the cause";
+
+/// Returns the text of the step that corrects the phase in this way.
+pub(super) fn phase_step_label(phase: PhaseCorrection) -> &'static str {
+    match phase {
+        PhaseCorrection::None => "Leave the phase",
+        PhaseCorrection::Delay => "Use delays",
+        PhaseCorrection::Lead => "Use leads",
+    }
+}
+
 /// Recommended or alternative action, drawn as a button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
@@ -37,9 +53,9 @@ impl Step {
     }
 
     /// Returns the step that opens the reasons for the result.
-    fn reasons(label: &str) -> Self {
+    fn reasons() -> Self {
         Self::new(
-            label,
+            REASONS,
             Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
         )
     }
@@ -94,7 +110,7 @@ impl Advice {
         }
         let mut steps = vec![Step::new("Export corrections…", export())];
         if phase == PhaseCorrection::Lead {
-            steps.push(Step::reasons("Find the cause"));
+            steps.push(Step::reasons());
         }
         Self::without_note(steps)
     }
@@ -102,7 +118,7 @@ impl Advice {
     fn reverse_channel(state: &State, channel: Channel) -> Self {
         let (label, command) = sign_reversal_entry(state, channel, Some(SignRole::Identified));
         Self {
-            steps: vec![Step::new(label, command), Step::reasons("Why?")],
+            steps: vec![Step::new(label, command), Step::reasons()],
             note: "its sign seems reversed".to_owned(),
         }
     }
@@ -122,11 +138,11 @@ impl Advice {
     /// Recommends using worthwhile couplings, or removing couplings that are not worthwhile.
     fn on_couplings(state: &State) -> Option<Self> {
         let look = Step::new(
-            "Inspect",
+            INSPECT,
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
         if let Some((assessment, cost)) = offered_couplings(state) {
-            let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
+            let use_them = Step::new(USE_COUPLINGS, setting::COUPLINGS.to(assessment.couplings));
             return Some(Self {
                 steps: vec![use_them, look],
                 note: off_axis_note(cost),
@@ -187,7 +203,7 @@ fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
             steps.push(release_step(state, *pair));
         }
     }
-    steps.push(Step::reasons("Why?"));
+    steps.push(Step::reasons());
     steps
 }
 
@@ -202,17 +218,15 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     Some(Value::Range([lower, bounds.upper]))
 }
 
+fn phase_step(phase: PhaseCorrection) -> Step {
+    Step::new(phase_step_label(phase), setting::PHASE.to(phase))
+}
+
 /// Returns the steps to take while the phase is uncorrected or not matched.
 fn phase_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     match state.study.settings.phase {
-        PhaseCorrection::None => vec![Step::new(
-            "Use delays",
-            setting::PHASE.to(PhaseCorrection::Delay),
-        )],
-        PhaseCorrection::Delay => vec![
-            Step::new("Use leads", setting::PHASE.to(PhaseCorrection::Lead)),
-            Step::reasons("Find the cause first"),
-        ],
+        PhaseCorrection::None => vec![phase_step(PhaseCorrection::Delay)],
+        PhaseCorrection::Delay => vec![phase_step(PhaseCorrection::Lead), Step::reasons()],
         PhaseCorrection::Lead => {
             let mut steps = Vec::new();
             if let Some(remedy) = &shown.delays.remedy
@@ -220,7 +234,7 @@ fn phase_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
             {
                 steps.push(release_step(state, *pair));
             }
-            steps.push(Step::reasons("Why?"));
+            steps.push(Step::reasons());
             steps
         }
     }

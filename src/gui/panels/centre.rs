@@ -1,12 +1,11 @@
 //! Middle of the window: the bar of views, the front view, perhaps a second view beside it, and the
 //! dock below.
 
-use egui::{Frame, Margin, Stroke, Ui};
+use egui::{Stroke, Ui};
 
 use super::dock::dock_ui;
-use super::start_page::example_line_ui;
 use super::view_bar::view_bar_ui;
-use super::view_frame::{PADDING, view_frame_ui};
+use super::view_frame::view_frame_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
@@ -14,15 +13,6 @@ use crate::gui::widgets::palette::Palette;
 /// Draws everything between the side panels.
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     view_bar_ui(ui, state, palette, commands);
-    if let Some(example) = state.example {
-        let frame = Frame::new().inner_margin(Margin {
-            left: PADDING,
-            right: PADDING,
-            top: 2,
-            bottom: 0,
-        });
-        frame.show(ui, |ui| example_line_ui(ui, example, palette, commands));
-    }
     if let Some(dock) = state.display.layout.arrangement.dock() {
         dock_ui(ui, state, dock, palette, commands);
     }

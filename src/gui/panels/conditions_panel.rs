@@ -37,9 +37,13 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     });
 }
 
+/// Height of the key, with the space below it \[pt\].
+const KEY_HEIGHT: f32 = 38.0;
+
 /// Draws the key of the shades, below the list.
 fn key_ui(ui: &mut Ui, mapped: MappedCost, palette: &Palette) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), KEY_HEIGHT), Sense::hover());
+    let rect = rect.with_max_y(rect.bottom() - 6.0);
     let lines = [
         rect.with_max_y(rect.center().y),
         rect.with_min_y(rect.center().y),

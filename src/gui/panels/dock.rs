@@ -1,6 +1,7 @@
-//! Dock below the views: a further view, which can be folded to its head.
+//! Dock below the views: net gains and leads. It can be folded to its bar, and enlarged.
 
-use egui::{Align, Button, Frame, Layout, Margin, Panel, RichText, Role, Sense, Ui, vec2};
+use egui::containers::panel::PanelState;
+use egui::{Align, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Ui, vec2};
 
 use super::view_frame::{PADDING, clipped_ui, title_ui, tools_ui};
 use crate::gui::commands::command::Command;
@@ -8,13 +9,16 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::view_content;
+use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
 use crate::gui::widgets::painted_text::chevron;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws the view in the dock, which is folded to its bar in a low window.
+/// Draws the page of the dock, which is folded to its bar in a low window. A double click on the bar
+/// doubles its height.
 pub(super) fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -23,20 +27,23 @@ pub(super) fn dock_ui(
     commands: &mut Vec<Command>,
 ) {
     let window = ui.ctx().content_rect().height();
-    let is_open = state
-        .display
-        .layout
-        .arrangement
-        .is_dock_open(window >= LEAST_WITH_DOCK);
-    let dock = Dock { view, is_open };
+    let arrangement = &state.display.layout.arrangement;
+    let dock = Dock {
+        view: present_page(state, view),
+        is_open: arrangement.is_dock_open(window >= LEAST_WITH_DOCK),
+        is_enlarged: arrangement.is_dock_enlarged(),
+    };
     let frame = Frame::new().fill(palette.background);
     restore_panel_size(ui, "dock");
-    let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
-    let panel = if is_open {
+    let usual = usual_height(ui, window);
+    let panel = Panel::bottom(dock.panel_name()).frame(frame);
+    let panel = if dock.is_open && dock.is_enlarged {
+        panel.exact_size((2.0 * usual).min(MOST_PART * window).round())
+    } else if dock.is_open {
         panel
             .resizable(true)
-            .default_size((DOCK_PART * window).round())
-            .size_range(140.0..=0.6 * window)
+            .default_size(usual)
+            .size_range(LEAST_OPEN..=0.6 * window)
     } else {
         panel.exact_size(FOLDED)
     };
@@ -50,8 +57,8 @@ pub(super) fn dock_ui(
         };
         clipped_ui(ui, "dock content", area, padding, |ui| {
             dock_head_ui(ui, state, dock, palette, commands);
-            if is_open {
-                let draw = view_content(view).draw;
+            if dock.is_open {
+                let draw = view_content(dock.view).draw;
                 region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
             }
         });
@@ -64,15 +71,60 @@ const FOLDED: f32 = 34.0;
 const LEAST_WITH_DOCK: f32 = 680.0;
 /// Height of the dock, as a share of the window's height.
 const DOCK_PART: f32 = 0.252;
+/// Maximum height of the enlarged dock, as a share of the window's height.
+const MOST_PART: f32 = 0.66;
+/// Minimum height of the unfolded dock \[pt\].
+const LEAST_OPEN: f32 = 140.0;
+/// Height of the window without the dock that gives the Bode plots five ticks on each axis \[pt\]. In
+/// low windows the dock shrinks first.
+const REST_OF_WINDOW: f32 = 568.0;
 
-/// View in the dock, and whether the dock is unfolded.
+/// Returns the usual height of the unfolded dock, or the height to which it was dragged \[pt\].
+fn usual_height(ui: &Ui, window: f32) -> f32 {
+    match PanelState::load(ui.ctx(), ui.scope_id().with("dock")) {
+        Some(dragged) => dragged.size().y,
+        None => default_height(window),
+    }
+}
+
+/// Returns the height of the unfolded dock in a window of this height \[pt\].
+fn default_height(window: f32) -> f32 {
+    (DOCK_PART * window)
+        .min(window - REST_OF_WINDOW)
+        .max(LEAST_OPEN)
+        .round()
+}
+
+/// Returns the page, or the first page if the study has no content for it.
+fn present_page(state: &State, page: View) -> View {
+    let mut pages = View::docked(state.study.settings.phase);
+    if pages.any(|present| present == page) {
+        page
+    } else {
+        View::NetGain
+    }
+}
+
+/// Page of the dock, whether the dock is unfolded, and whether its height is doubled.
 #[derive(Clone, Copy)]
 struct Dock {
     view: View,
     is_open: bool,
+    is_enlarged: bool,
 }
 
-/// Draws the dock's head: an arrow that folds it, the views it can show, and the tools.
+impl Dock {
+    /// Returns the name under which the panel keeps its height.
+    fn panel_name(self) -> &'static str {
+        match (self.is_open, self.is_enlarged) {
+            (true, true) => "enlarged dock",
+            (true, false) => "dock",
+            (false, _) => "folded dock",
+        }
+    }
+}
+
+/// Draws the dock's head: an arrow that folds it, the pages, and the tools.
 fn dock_head_ui(
     ui: &mut Ui,
     state: &State,
@@ -81,6 +133,13 @@ fn dock_head_ui(
     commands: &mut Vec<Command>,
 ) {
     let width = ui.available_width();
+    let bar = Rect::from_min_size(ui.cursor().min, vec2(width, FOLDED));
+    let bar = ui.interact(bar, ui.scope_id().with("dock bar"), Sense::click());
+    if bar.double_clicked() {
+        let is_enlarged = dock.is_open && dock.is_enlarged;
+        commands.push(LayoutCommand::EnlargeDock(!is_enlarged).into());
+    }
+    named_switch(bar, Role::Button, dock.is_enlarged, "Bar of the dock");
     ui.allocate_ui_with_layout(
         vec2(width, FOLDED),
         Layout::right_to_left(Align::Center),
@@ -92,7 +151,7 @@ fn dock_head_ui(
             let rest = ui.available_rect_before_wrap();
             in_line_ui(ui, rest, false, |ui| {
                 fold_ui(ui, dock.is_open, palette, commands);
-                dock_tabs_ui(ui, state, dock.view, commands);
+                dock_pages_ui(ui, state, dock.view, palette, commands);
                 ui.add_space(4.0);
                 title_ui(ui, state, view_content(dock.view).title, palette);
             });
@@ -104,7 +163,7 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
     let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
     chevron(ui, place.center(), is_open, palette);
     let hint = if is_open {
-        "Fold the plots below"
+        "Fold the plots below; a double click on the bar doubles their height"
     } else {
         "Unfold the plots below"
     };
@@ -113,20 +172,44 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
         .asks(LayoutCommand::OpenDock(!is_open), commands);
 }
 
-/// Draws a tab for each view that the dock can show, or a plain name if it can show only one.
-fn dock_tabs_ui(ui: &mut Ui, state: &State, front: View, commands: &mut Vec<Command>) {
+/// Draws the switch between the pages of the dock, or a plain name if there is only one.
+fn dock_pages_ui(
+    ui: &mut Ui,
+    state: &State,
+    front: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let views: Vec<View> = View::docked(state.study.settings.phase).collect();
+    if let [only] = views[..] {
+        let name = only.facts().long_name.unwrap_or(only.name());
+        ui.label(RichText::new(name).font(medium(BODY_SIZE)));
+        return;
+    }
+    let mut tabs = Vec::new();
     for view in &views {
-        let name = view.facts().long_name.unwrap_or(view.name());
-        let text = RichText::new(name).font(medium(BODY_SIZE));
-        if views.len() == 1 {
-            ui.label(text);
-            continue;
-        }
-        let is_front = *view == front;
-        let button = ui.add(Button::selectable(is_front, text));
-        let name = format!("{} in the dock", view.name());
-        named_switch(button, Role::Tab, is_front, name)
-            .asks(LayoutCommand::ShowInDock(*view), commands);
+        tabs.push(PageTab {
+            words: PageWords {
+                name: view.name(),
+                short_name: view.name(),
+                purpose: view.facts().purpose,
+            },
+            is_shown: *view == front,
+        });
+    }
+    if let Some(clicked) = page_switch_ui(ui, &tabs, palette) {
+        commands.push(LayoutCommand::ShowInDock(views[clicked]).into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dock_shrinks_before_the_plots_above() {
+        assert_eq!(default_height(900.0), 227.0);
+        assert_eq!(default_height(720.0), 152.0);
+        assert_eq!(default_height(600.0), LEAST_OPEN);
     }
 }

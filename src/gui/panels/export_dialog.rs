@@ -23,7 +23,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, named};
-use crate::gui::widgets::elision::end_elided;
+use crate::gui::widgets::elision::{end_elided, text_width};
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 use crate::gui::widgets::panel_layout::in_line_ui;
@@ -250,6 +250,7 @@ fn labelled_ui(
     let width = ui.available_width();
     let (line, _) = ui.allocate_exact_size(vec2(width, height), egui::Sense::hover());
     painted_text(ui, line, 0.0, label, body(), palette.dim_text);
-    let rest = Rect::from_min_max(pos2(line.left() + 70.0, line.top()), line.max);
+    let label_width = text_width(ui, label, body());
+    let rest = Rect::from_min_max(pos2(line.left() + label_width + 8.0, line.top()), line.max);
     in_line_ui(ui, rest, true, add);
 }

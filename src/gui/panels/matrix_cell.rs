@@ -26,7 +26,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::value_uncertainty::ValueUncertainty;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
-use crate::gui::widgets::controls::{entries_ui, named_switch};
+use crate::gui::widgets::controls::{entries_ui, named_switch, tooltip_left_of};
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
@@ -35,6 +35,14 @@ const HOLD_BOX_SIZE: f32 = 13.0;
 
 /// J at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
+
+/// Place of the matrix in the panel.
+#[derive(Clone, Copy)]
+pub(super) struct MatrixPlace {
+    pub(super) visible: Rect,
+    /// Whether the card of the focused response is below the matrix.
+    pub(super) has_card: bool,
+}
 
 /// Cell of a response.
 pub(super) struct Cell<'a> {
@@ -50,11 +58,22 @@ pub(super) struct Cell<'a> {
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
     value_uncertainty: ValueUncertainty<'a>,
+    /// Whether the card of the focused response is visible.
+    has_card: bool,
+    /// Place of the matrix, which the tooltip does not cover.
+    matrix: Rect,
 }
 
 impl<'a> Cell<'a> {
-    pub(super) fn new(state: &'a State, pair: Pair, in_conflict: bool) -> Self {
+    pub(super) fn new(
+        state: &'a State,
+        pair: Pair,
+        in_conflict: bool,
+        matrix: MatrixPlace,
+    ) -> Self {
         Self {
+            has_card: matrix.has_card,
+            matrix: matrix.visible,
             pair,
             name: state.dataset().pair_name(pair),
             focused: state.display.selection.pair == pair,
@@ -105,7 +124,10 @@ impl<'a> Cell<'a> {
             commands.push(SelectionCommand::FocusPair(self.pair).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
-        response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
+        // The card below the matrix shows the same rows of the focused response.
+        if !(self.focused && self.has_card) {
+            tooltip_left_of(&response, self.matrix, |ui| self.tooltip_ui(ui, palette));
+        }
     }
 
     /// Draws the box that constrains or releases the response, at the end of the G line; visible

@@ -9,7 +9,7 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::Pair;
 use gdcm_study::ConditionAnalysis;
 
-use super::matrix_cell::Cell;
+use super::matrix_cell::{Cell, MatrixPlace};
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::state::panel_tables::TableKind;
@@ -33,16 +33,26 @@ const ROW_LABEL_WIDTH: f32 = 28.0;
 /// Height of the input names above the columns \[pt\].
 const HEADER_HEIGHT: f32 = 20.0;
 
-/// Draws every response as a cell, within a height of `room` points. A click on the cell shows the
+/// Space for the matrix with its title.
+#[derive(Clone, Copy)]
+pub struct MatrixSpace {
+    /// Height \[pt\].
+    pub height: f32,
+    /// Whether the card of the focused response is below the matrix.
+    pub has_card: bool,
+}
+
+/// Draws every response as a cell within `space`. A click on the cell shows the
 /// response in the large plot; a click on its box, a double click or the space bar constrains or
 /// releases it; a right-click opens a menu.
 pub fn matrix_ui(
     ui: &mut Ui,
     state: &State,
-    room: f32,
+    space: MatrixSpace,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    let room = space.height;
     let (rect, heading) =
         ui.allocate_exact_size(vec2(ui.available_width(), TITLE_HEIGHT), Sense::hover());
     painted_text(
@@ -59,6 +69,7 @@ pub fn matrix_ui(
     let pitch = (room - TITLE_HEIGHT - HEADER_HEIGHT) / outputs as f32;
     let grid = CellGrid {
         room: room - TITLE_HEIGHT,
+        has_card: space.has_card,
         cell_height: (pitch - GAP).clamp(LEAST_CELL_HEIGHT, MOST_CELL_HEIGHT),
     };
     region_ui(ui, Region::Matrix, |ui| {
@@ -96,6 +107,8 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
 struct CellGrid {
     /// Visible height.
     room: f32,
+    /// Whether the card of the focused response is below the matrix.
+    has_card: bool,
     cell_height: f32,
 }
 
@@ -119,6 +132,10 @@ impl CellGrid {
             .max_height(self.room)
             .show(ui, |ui| {
                 let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+                let matrix = MatrixPlace {
+                    visible: area.intersect(ui.clip_rect()),
+                    has_card: self.has_card,
+                };
                 let places = CellPlaces {
                     area,
                     column_pitch,
@@ -146,7 +163,7 @@ impl CellGrid {
                     .paint(ui, palette);
                     for input in 0..inputs.len() {
                         let pair = Pair { output, input };
-                        Cell::new(state, pair, in_conflict.contains(&pair)).ui(
+                        Cell::new(state, pair, in_conflict.contains(&pair), matrix).ui(
                             ui,
                             places.cell(pair),
                             palette,

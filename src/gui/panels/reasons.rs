@@ -1,9 +1,12 @@
-//! Sheet with reasons for the displayed result: remarks, possible causes of a lag, leads, proof.
+//! Reasons for the displayed result, below the verdict: remarks, possible causes of a lag, leads,
+//! proof.
 
-use egui::{Button, CollapsingHeader, Rect, RichText, Role, Ui, vec2};
+use egui::{Align, Button, CollapsingHeader, Layout, Rect, RichText, Role, ScrollArea, Ui, vec2};
 
 use gdcm_method::correction::sensitivity::kkt_residual;
 use gdcm_method::correction::{GainObjective, Outcome, Quantity};
+use gdcm_model::statistics::median;
+use gdcm_model::units::{s_to_ms, telling};
 use gdcm_study::decisions::setting;
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::coupling_remark::CouplingRemark;
@@ -17,14 +20,17 @@ use gdcm_words::leads::lead_words;
 use gdcm_words::remark::remark_text;
 use gdcm_words::solution_details::details;
 
+use super::advice::{INSPECT, USE_COUPLINGS, phase_step_label};
 use super::derivation_sheet::value_label_ui;
 use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::{offered_couplings, used_couplings};
 use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::widgets::escape_key::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Returns the remarks on the displayed result, on the schedule, and on the couplings in use.
@@ -57,42 +63,73 @@ pub fn coupling_remarks(state: &State) -> Vec<CouplingRemark> {
 struct Cause {
     title: &'static str,
     symptom: &'static str,
-    /// Button text.
-    look: &'static str,
+    /// Channels whose median lags tell the cause from others.
+    compares: Option<ChannelKind>,
+    /// View that shows the symptom.
     view: View,
+}
+
+/// Inputs or outputs.
+#[derive(Clone, Copy)]
+enum ChannelKind {
+    Inputs,
+    Outputs,
 }
 
 const CAUSES: [Cause; 4] = [
     Cause {
         title: "Record clock",
         symptom: "Outputs with late time stamps lag by the same time in every response.",
-        look: "Look at the records",
+        compares: None,
         view: View::Records,
     },
     Cause {
         title: "Integration and sampling",
         symptom: "Outputs that are passed on one step late lag by that step in every response.",
-        look: "Look at the differences",
+        compares: None,
         view: View::Error,
     },
     Cause {
         title: "Servos",
-        symptom: "A slow servo lags in every response to its input, and in no other: compare the \
-                  columns of the matrix.",
-        look: "Look at the inputs",
+        symptom: "A slow servo lags in every response to its input, and in no other.",
+        compares: Some(ChannelKind::Inputs),
         view: View::Channels,
     },
     Cause {
         title: "Sensors and their filters",
-        symptom: "A slow sensor lags in every response at its output: compare the rows of the \
-                  matrix.",
-        look: "Look at the outputs",
+        symptom: "A slow sensor lags in every response at its output, and in no other.",
+        compares: Some(ChannelKind::Outputs),
         view: View::Channels,
     },
 ];
 
-/// Draws the sheet with the reasons for the displayed result.
-pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+/// Draws the reasons below the verdict, in place of result and matrix, so that no plot to which they
+/// point is covered. Escape closes them.
+pub fn reasons_inspector_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(Sheet::Reasons.title()).font(medium(BODY_SIZE)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let close = named(ui.small_button("×"), Role::Button, "Close the sheet");
+            if close.clicked() || take_escape(ui.ctx()) {
+                commands.push(LayoutCommand::ShowSheet(None).into());
+            }
+        });
+    });
+    ui.add_space(4.0);
+    ui.spacing_mut().item_spacing.y = 4.0;
+    ScrollArea::vertical()
+        .id_salt("reasons")
+        .auto_shrink([false, false])
+        .show(ui, |ui| reasons_ui(ui, state, palette, commands));
+}
+
+/// Draws the reasons for the displayed result.
+fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(Ok(shown)) = state.outcome() else {
         let words = match state.outcome() {
             Some(Err(failure)) => failure_text(failure, state.dataset()),
@@ -104,7 +141,7 @@ pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     remarks_ui(ui, state, &remarks_shown(state, shown), palette, commands);
     couplings_offer_ui(ui, state, palette, commands);
     if !shown.delays.matched || shown.compensated.is_some() {
-        causes_ui(ui, palette, commands);
+        causes_ui(ui, state, shown, palette, commands);
     }
     lead_ui(ui, state, shown, palette);
     section_ui(ui, "Proof");
@@ -120,15 +157,59 @@ fn section_ui(ui: &mut Ui, title: &str) {
     ui.label(RichText::new(title).font(medium(BODY_SIZE)));
 }
 
-fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+fn causes_ui(
+    ui: &mut Ui,
+    state: &State,
+    shown: &ConditionAnalysis,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     section_ui(ui, "Possible sources of a lag");
     for cause in CAUSES {
         ui.label(cause.title);
         ui.label(palette.small(cause.symptom));
+        if let Some(kind) = cause.compares {
+            let lags = channel_lags(state, shown, kind);
+            ui.label(palette.small(format!("Median lag [ms]: {}", lags.join(", "))));
+        }
         let show = Command::Layout(LayoutCommand::ShowView(cause.view));
-        entries_ui(ui, [(cause.look, show)], commands);
+        entries_ui(
+            ui,
+            [(format!("Show {}", cause.view.name()), show)],
+            commands,
+        );
         ui.add_space(4.0);
     }
+}
+
+/// Returns "LON 66": each input or output with the median lag of the physics representative in its
+/// responses, in whole milliseconds; channels without a defined lag are omitted.
+fn channel_lags(state: &State, shown: &ConditionAnalysis, kind: ChannelKind) -> Vec<String> {
+    let dataset = state.dataset();
+    let channels = match kind {
+        ChannelKind::Inputs => dataset.inputs(),
+        ChannelKind::Outputs => dataset.outputs(),
+    };
+    let mut lags = Vec::new();
+    for (index, channel) in channels.iter().enumerate() {
+        let mut lags_ms = Vec::new();
+        for pair in dataset.on_axis().pairs() {
+            let place = match kind {
+                ChannelKind::Inputs => pair.input,
+                ChannelKind::Outputs => pair.output,
+            };
+            if place == index
+                && let Some(delay_s) = shown.wanted_delay_s(pair)
+            {
+                lags_ms.push(-s_to_ms(delay_s));
+            }
+        }
+        if !lags_ms.is_empty() {
+            let lag = telling(median(&mut lags_ms), 0).replace('-', "\u{2212}");
+            lags.push(format!("{} {lag}", channel.name));
+        }
+    }
+    lags
 }
 
 /// Draws whether the gains are proven optimal, and the optimality gap.
@@ -167,8 +248,7 @@ fn remarks_ui(
             button_ui(ui, button, EVERYWHERE, turn, commands);
         }
         if let Some(phase) = remark.suggested_phase() {
-            let label = format!("Correct the phase by {}", setting::PHASE.text(phase.into()));
-            let button = Button::new(label).small();
+            let button = Button::new(phase_step_label(phase)).small();
             button_ui(ui, button, EVERYWHERE, setting::PHASE.to(phase), commands);
         }
     }
@@ -247,11 +327,13 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     if let Some(offer) = coupling_offer(assessment) {
         remark_ui(ui, state, palette, &Remark::Coupling(offer));
     }
-    let button = Button::new(format!("Use {}", couplings.name())).small();
-    let use_them = setting::COUPLINGS.to(couplings);
-    button_ui(ui, button, EVERYWHERE, use_them, commands);
-    let show = Command::Layout(LayoutCommand::ShowView(View::Couplings));
-    entries_ui(ui, [("Look at the couplings", show)], commands);
+    ui.horizontal(|ui| {
+        let button = Button::new(USE_COUPLINGS).small();
+        let use_them = setting::COUPLINGS.to(couplings);
+        button_ui(ui, button, EVERYWHERE, use_them, commands);
+        let show = Command::Layout(LayoutCommand::ShowView(View::Couplings));
+        entries_ui(ui, [(INSPECT, show)], commands);
+    });
 }
 
 fn remark_ui(ui: &mut Ui, state: &State, palette: &Palette, remark: &Remark) {

@@ -47,9 +47,9 @@ const LIST: Columns = Columns {
 };
 
 const RAIL: Columns = Columns {
-    number_end: 18.0,
+    number_end: 17.0,
     mark_center: None,
-    airspeed_end: 45.0,
+    airspeed_end: 48.0,
     records_end: None,
     cost_end: None,
     held_out_end: 77.0,

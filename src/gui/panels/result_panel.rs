@@ -52,6 +52,9 @@ pub fn result_ui(
             state.results.absence()
         };
         painted_text(ui, rect, AT_RIGHT_END, words, small(), palette.dim_text);
+        if !is_folded {
+            ui.add_space(rows_height(state));
+        }
         return;
     };
     proof_ui(ui, rect, state, shown, palette, commands);
@@ -66,10 +69,8 @@ pub fn result_ui(
         painted_text(ui, rect, 56.0, &words, body(), palette.dim_text);
         return;
     }
-    let dataset = state.dataset();
-    let rows = dataset.inputs().len().max(dataset.outputs().len());
     let (area, _) = ui.allocate_exact_size(
-        vec2(ui.available_width(), ROW * (rows + 1) as f32),
+        vec2(ui.available_width(), rows_height(state)),
         Sense::hover(),
     );
     let width = 0.5 * (area.width() - 12.0);
@@ -90,6 +91,14 @@ pub fn result_ui(
     };
     inputs.ui(ui, commands);
     outputs.ui(ui, commands);
+}
+
+/// Returns the height of the heading and of the rows of all channels, reserved without a result too
+/// \[pt\].
+fn rows_height(state: &State) -> f32 {
+    let dataset = state.dataset();
+    let rows = dataset.inputs().len().max(dataset.outputs().len());
+    ROW * (rows + 1) as f32
 }
 
 /// Draws whether the gains are proven optimal, in small text because they usually are; a click
@@ -287,7 +296,7 @@ impl Side<'_> {
             } else {
                 self.palette.quiet_text
             },
-            half: half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            half: half.map(|half| half.scaled(s_to_ms(1.0))),
             name: format!("Delay of {name}"),
             exact,
             scalar,

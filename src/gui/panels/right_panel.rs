@@ -11,11 +11,14 @@ use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting_row::Setting;
 
 use super::advice::export;
+use super::matrix_panel::MatrixSpace;
+use super::reasons::reasons_inspector_ui;
 use super::verdict::{Verdict, band_words};
-use super::verdict_view::verdict_ui;
+use super::verdict_view::{shown_verdict, verdict_ui};
 use super::{matrix_panel, response_card, result_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
 use crate::gui::views::view_content;
 use crate::gui::widgets::controls::{Asks, named_switch};
@@ -37,9 +40,12 @@ const LEAST_WITH_CARD: f32 = 860.0;
 /// line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
+/// Opacity of values that are being computed again.
+const OLDER: f32 = 0.6;
+
 /// Draws verdict, result and matrix above the settings line and the export row.
 pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let verdict = Verdict::new(state);
+    let shown = shown_verdict(ui, state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
     Panel::bottom("export")
         .frame(foot)
@@ -48,7 +54,7 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
             region_ui(ui, Region::Settings, |ui| {
                 settings_line_ui(ui, state, palette, commands)
             });
-            export_ui(ui, state, &verdict, palette, commands);
+            export_ui(ui, state, &shown.verdict, palette, commands);
         });
     let window = ui.ctx().content_rect().height();
     let frame = Frame::new().inner_margin(Margin {
@@ -61,14 +67,21 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
         ui.spacing_mut().item_spacing.y = 0.0;
         // The width is fixed here, so that wide content of one part does not widen the next part.
         let width = ui.available_width();
+        let is_wide = state.display.layout.is_wide;
         region_ui(ui, Region::Verdict, |ui| {
-            verdict_ui(ui, &verdict, palette, commands)
+            verdict_ui(ui, &shown, is_wide, palette, commands)
         });
         ui.add_space(8.0);
         ui.set_max_width(width);
+        if state.display.layout.sheet == Some(Sheet::Reasons) {
+            return reasons_inspector_ui(ui, state, palette, commands);
+        }
         let view = state.display.layout.arrangement.view();
         if let Some(side_ui) = view_content(view).side {
             return side_ui(ui, state, palette, commands);
+        }
+        if shown.is_older {
+            ui.multiply_opacity(OLDER);
         }
         let is_folded = window < LEAST_WITH_RESULT;
         region_ui(ui, Region::Result, |ui| {
@@ -80,7 +93,11 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
         } else {
             0.0
         };
-        matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
+        let space = MatrixSpace {
+            height: ui.available_height() - card,
+            has_card: card > 0.0,
+        };
+        matrix_panel::matrix_ui(ui, state, space, palette, commands);
         if card > 0.0 {
             ui.add_space(12.0);
             response_card::card_ui(ui, state, palette);
@@ -148,6 +165,18 @@ struct LinePart {
     is_changed: bool,
 }
 
+impl LinePart {
+    /// Creates the part for some settings, and removes these from the `changed` settings.
+    fn new(text: String, settings: &[&Setting], changed: &mut Vec<&'static Setting>) -> Self {
+        let before = changed.len();
+        changed.retain(|setting| !settings.contains(setting));
+        Self {
+            text,
+            is_changed: changed.len() < before,
+        }
+    }
+}
+
 /// Returns the parts "α 1", "0.5–12 rad/s", "delays", "representatives", and the number of other
 /// changed settings.
 fn settings_parts(state: &State) -> Vec<LinePart> {
@@ -164,24 +193,23 @@ fn settings_parts(state: &State) -> Vec<LinePart> {
         PhaseCorrection::Delay => "delays",
         PhaseCorrection::Lead => "leads",
     };
-    let mut listed: Vec<(String, Vec<&'static Setting>)> = vec![
-        (alpha, vec![&setting::ALPHA_GAIN, &setting::ALPHA_DELAY]),
-        (band_words(state), vec![&setting::BAND]),
-        (phase.to_owned(), vec![&setting::PHASE]),
+    let mut changed = state.changed_settings();
+    let mut parts = vec![
+        LinePart::new(
+            alpha,
+            &[&setting::ALPHA_GAIN, &setting::ALPHA_DELAY],
+            &mut changed,
+        ),
+        LinePart::new(band_words(state), &[&setting::BAND], &mut changed),
+        LinePart::new(phase.to_owned(), &[&setting::PHASE], &mut changed),
     ];
     if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
         let source = setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings));
-        listed.push((source, vec![&setting::GAIN_SOURCE]));
-    }
-    let mut changed = state.changed_settings();
-    let mut parts = Vec::new();
-    for (text, settings) in listed {
-        let before = changed.len();
-        changed.retain(|setting| !settings.contains(setting));
-        parts.push(LinePart {
-            text,
-            is_changed: changed.len() < before,
-        });
+        parts.push(LinePart::new(
+            source,
+            &[&setting::GAIN_SOURCE],
+            &mut changed,
+        ));
     }
     if !changed.is_empty() {
         parts.insert(

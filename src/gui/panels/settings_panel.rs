@@ -102,9 +102,9 @@ fn rank(line: &Line) -> usize {
     }
 }
 
-/// Returns whether the line is a single choice of at most three words.
+/// Returns whether the line is a single choice of at most four words.
 fn is_segmented(line: &Line) -> bool {
-    line.len() == 1 && matches!(line[0].kind, Kind::Choice { words, .. } if words.len() <= 3)
+    line.len() == 1 && matches!(line[0].kind, Kind::Choice { words, .. } if words.len() <= 4)
 }
 
 fn body_ui(

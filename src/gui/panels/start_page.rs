@@ -6,8 +6,6 @@ use egui::{
     StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
-use gdcm_io::Example;
-
 use super::open_study_card::open_study_card_ui;
 use super::start_icons::{folder_icon, sheet_icon, wave_icon};
 use crate::gui::commands::assembling::AssemblingCommand;
@@ -15,7 +13,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, button_ui, named};
+use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{
@@ -69,41 +67,6 @@ fn ways() -> [Way; 3] {
             icon: wave_icon,
         },
     ]
-}
-
-/// Draws the three ways to begin as links above the example's plots.
-pub fn example_line_ui(
-    ui: &mut Ui,
-    example: Example,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let words = match example {
-        Example::Simulated => "Simulated example. Your own data:",
-        Example::RealAircraft => "Real aircraft, two flights of 2011. Your own data:",
-    };
-    let size = vec2(ui.available_width(), 18.0);
-    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        ui.spacing_mut().button_padding = egui::Vec2::ZERO;
-        ui.spacing_mut().interact_size.y = 16.0;
-        ui.label(palette.small(words));
-        for (place, way) in ways().into_iter().enumerate() {
-            if place > 0 {
-                ui.label(palette.small("·"));
-            }
-            let text = RichText::new(way.button)
-                .size(SMALL_SIZE)
-                .color(palette.accent);
-            button_ui(
-                ui,
-                Button::new(text).frame(false),
-                way.words,
-                way.command,
-                commands,
-            );
-        }
-    });
 }
 
 /// Draws the start page: on the left the ways to begin, with the recent files or the steps of work;

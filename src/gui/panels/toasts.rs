@@ -16,7 +16,7 @@ use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::notices::{Notice, NoticeAction, NoticeKind, Notices};
 use crate::gui::widgets::controls::{Asks, named};
-use crate::gui::widgets::elision::end_elided;
+use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body};
 use crate::gui::widgets::panel_layout::in_line_ui;
@@ -98,7 +98,7 @@ impl ToastBar<'_> {
             }
         });
         let text_place = inner.with_max_x(buttons.inner - 8.0);
-        let shown = end_elided(ui, &notice.text, text_place.width(), BODY_SIZE);
+        let shown = elided(ui, &notice.text, text_place.width(), BODY_SIZE);
         painted_text(ui, text_place, 0.0, &shown, body(), palette.text);
         let id = ui.scope_id().with(("toast", notice.number));
         let label = ui.interact(text_place, id, Sense::hover());

@@ -1,6 +1,9 @@
-//! Drawing of the verdict: counts and words for gain and phase, a caution, and the next steps.
+//! Drawing of the verdict: counts and words for gain and phase, a caution, and the next steps. Every
+//! line has a reserved place.
 
-use egui::{Align, Button, CornerRadius, Frame, Layout, Margin, RichText, Role, Sense, Ui, vec2};
+use egui::{
+    Button, CornerRadius, Id, Rect, RichText, Role, Sense, Spinner, Ui, UiBuilder, pos2, vec2,
+};
 
 use gdcm_model::number_format::counted;
 
@@ -9,18 +12,79 @@ use super::verdict::{Verdict, VerdictRow};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
-use crate::gui::widgets::controls::{Asks, named};
-use crate::gui::widgets::elision::{elided, text_width};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{Asks, hint_left_of, named};
+use crate::gui::widgets::elision::{elided, leading_parts, text_width};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium, small};
+use crate::gui::widgets::palette::{
+    BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
+};
+
+/// Height of the verdict in wide and in narrow windows \[pt\], reserved whatever it contains, so that
+/// nothing below moves when a step is taken.
+const HEIGHT_WIDE: f32 = 128.0;
+const HEIGHT_NARROW: f32 = 112.0;
+/// Height of the line with the headings \[pt\].
+const HEADS: f32 = 16.0;
+/// Height of the line with the steps \[pt\].
+const STEPS: f32 = 28.0;
+/// Padding at the left, where the edge is coloured, and at the right \[pt\].
+const PAD_LEFT: f32 = 16.0;
+const PAD_RIGHT: f32 = 12.0;
+/// Opacity of steps on older results.
+const OLDER: f32 = 0.6;
+/// Gap between two steps \[pt\].
+const GAP: f32 = 8.0;
+
+/// Verdict in the window, with its age.
+pub(super) struct ShownVerdict {
+    pub(super) verdict: Verdict,
+    /// Whether the verdict belongs to older settings. Its steps are dimmed and have no effect.
+    pub(super) is_older: bool,
+    /// Whether the spinner in the heading turns.
+    pub(super) spins: bool,
+}
+
+/// Returns the verdict to be displayed. While results are being computed, the verdict on the
+/// previous results of the condition stays, so that its steps do not change twice.
+pub(super) fn shown_verdict(ui: &Ui, state: &State) -> ShownVerdict {
+    let id = Id::unique("verdict");
+    let now = ui.input(|input| input.time);
+    let results = &state.results;
+    let condition = state.condition().id();
+    if results.is_waiting() && state.outcome().is_some() {
+        let kept: Option<Verdict> = ui.ctx().data(|data| data.get_temp(id));
+        if let Some(verdict) = kept
+            && verdict.condition == condition
+        {
+            return ShownVerdict {
+                verdict,
+                is_older: results.is_stale(now),
+                spins: results.spins(now),
+            };
+        }
+    }
+    let verdict = Verdict::new(state);
+    if !results.is_behind() {
+        ui.ctx()
+            .data_mut(|data| data.insert_temp(id, verdict.clone()));
+    }
+    ShownVerdict {
+        verdict,
+        is_older: results.is_stale(now),
+        spins: results.spins(now),
+    }
+}
 
 /// Draws both verdict rows and the steps.
 pub(super) fn verdict_ui(
     ui: &mut Ui,
-    verdict: &Verdict,
+    shown: &ShownVerdict,
+    is_wide: bool,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    let verdict = &shown.verdict;
     let is_empty = verdict.rows[0].here.is_none() && verdict.caution.is_none();
     let (ground, mark) = if verdict.is_met() {
         (palette.good_ground, palette.good)
@@ -29,38 +93,67 @@ pub(super) fn verdict_ui(
     } else {
         (palette.warning_ground, palette.warning)
     };
-    let frame = Frame::new()
-        .fill(ground)
-        .corner_radius(CornerRadius::same(8))
-        .inner_margin(Margin {
-            left: 16,
-            right: 12,
-            top: 6,
-            bottom: 8,
-        });
-    let shown = frame.show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        heads_ui(ui, verdict, palette);
-        for row in &verdict.rows {
-            row_ui(ui, row, verdict.is_met(), palette);
+    let height = if is_wide { HEIGHT_WIDE } else { HEIGHT_NARROW };
+    let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    ui.painter()
+        .rect_filled(area, CornerRadius::same(8), ground);
+    let edge_radius = CornerRadius {
+        nw: 8,
+        sw: 8,
+        ne: 0,
+        se: 0,
+    };
+    ui.painter()
+        .rect_filled(area.with_max_x(area.left() + 4.0), edge_radius, mark);
+    let places = VerdictPlaces::new(area);
+    heads_ui(ui, places.heads, shown, palette);
+    for (row, place) in verdict.rows.iter().zip(places.rows) {
+        row_ui(ui, place, row, verdict.is_met(), palette);
+    }
+    ui.scope(|ui| {
+        let line = StepsLine::new(verdict);
+        if shown.is_older {
+            // The steps keep the focus but have no effect: others may be recommended in a moment.
+            ui.multiply_opacity(OLDER);
+            line.ui(ui, places.steps, palette, &mut Vec::new());
+        } else {
+            line.ui(ui, places.steps, palette, commands);
         }
-        ui.add_space(4.0);
-        steps_ui(ui, verdict, palette, commands);
     });
-    let edge = shown
-        .response
-        .rect
-        .with_max_x(shown.response.rect.left() + 4.0);
-    ui.painter().rect_filled(
-        edge,
-        CornerRadius {
-            nw: 8,
-            sw: 8,
-            ne: 0,
-            se: 0,
-        },
-        mark,
-    );
+}
+
+/// Places of the lines of the verdict.
+struct VerdictPlaces {
+    heads: Rect,
+    rows: [Rect; 2],
+    steps: Rect,
+}
+
+impl VerdictPlaces {
+    /// Divides the area of the verdict; the spaces between the lines share the rest of the height.
+    fn new(area: Rect) -> Self {
+        let row = if area.height() >= HEIGHT_WIDE {
+            24.0
+        } else {
+            22.0
+        };
+        let inner = Rect::from_min_max(
+            pos2(area.left() + PAD_LEFT, area.top()),
+            pos2(area.right() - PAD_RIGHT, area.bottom()),
+        );
+        let space = (area.height() - HEADS - 2.0 * row - STEPS) / 3.0;
+        let line =
+            |top: f32, height: f32| Rect::from_x_y_ranges(inner.x_range(), top..=top + height);
+        let heads = line(area.top() + 0.75 * space, HEADS);
+        let first = line(heads.bottom(), row);
+        let second = line(first.bottom(), row);
+        let steps = line(second.bottom() + space, STEPS);
+        Self {
+            heads,
+            rows: [first, second],
+            steps,
+        }
+    }
 }
 
 /// Left edge of the count in a verdict row \[pt from the row's left edge\].
@@ -68,16 +161,21 @@ const COUNT_LEFT: f32 = 46.0;
 /// Left edge of the words in a verdict row \[pt from the row's left edge\].
 const WORDS_LEFT: f32 = 106.0;
 
-fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
-    let here = format!("condition {}", verdict.condition);
+/// Draws the headings of the columns; the spinner has its place at the left.
+fn heads_ui(ui: &mut Ui, rect: Rect, shown: &ShownVerdict, palette: &Palette) {
+    let here = format!("condition {}", shown.verdict.condition);
     painted_text(ui, rect, COUNT_LEFT, &here, small(), palette.dim_text);
     painted_text(ui, rect, AT_RIGHT_END, "all", small(), palette.dim_text);
+    if shown.spins {
+        let place = Rect::from_min_size(rect.left_top() + vec2(0.0, 2.0), vec2(12.0, 12.0));
+        ui.put(place, Spinner::new().size(12.0).color(palette.dim_text));
+    }
 }
 
-fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
-    named(response.clone(), Role::Label, row.sentence());
+fn row_ui(ui: &Ui, rect: Rect, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
+    let id = ui.scope_id().with(("verdict", row.name));
+    let response = ui.interact(rect, id, Sense::hover());
+    named(response, Role::Label, row.sentence());
     painted_text(ui, rect, 0.0, row.name, body(), palette.dim_text);
     let is_missed = row
         .here
@@ -108,161 +206,194 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     );
     let room = all.left() - rect.left() - WORDS_LEFT - 6.0;
     // If the band does not fit, only "matched" is shown.
-    let fits = text_width(ui, &row.message.text, body()) <= room;
-    let words = if fits {
-        row.message.text.as_str()
-    } else {
-        row.message.text.split(", ").next().unwrap_or_default()
-    };
+    let words = leading_parts(ui, &row.message.text, room, BODY_SIZE);
     let words = elided(ui, words, room, BODY_SIZE);
     painted_text(ui, rect, WORDS_LEFT, &words, body(), palette.text);
-    response.on_hover_text(row.sentence());
 }
 
-fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
-    // Skip the export step: the primary button at the foot of the panel already exports.
-    let primary = verdict
-        .steps
-        .first()
-        .filter(|step| step.command != export());
-    let links: Vec<&Step> = verdict.steps.iter().skip(1).collect();
-    let remarks = remarks_step(verdict);
-    if verdict.caution.is_none() || primary.is_none() {
-        let line = StepsLine {
-            caution: verdict.caution_text(),
-            primary,
-            links,
-            remarks: remarks.as_ref(),
-            note: &verdict.note,
-        };
-        line.ui(ui, palette, commands);
-        return;
-    }
-    // A caution and a pending decision each get their own line. The reasons explain the caution.
-    let (reasons, others) = links.into_iter().partition(|step| shows_reasons(step));
-    let caution_line = StepsLine {
-        caution: verdict.caution_text(),
-        primary: None,
-        links: reasons,
-        remarks: remarks.as_ref(),
-        note: "",
-    };
-    caution_line.ui(ui, palette, commands);
-    let decision_line = StepsLine {
-        caution: None,
-        primary,
-        links: others,
-        remarks: None,
-        note: &verdict.note,
-    };
-    decision_line.ui(ui, palette, commands);
-}
-
-/// Line with, from left to right: a caution, a primary button, links, a note in the remaining width,
-/// and the link to the remarks.
+/// Line of the steps, from left to right: the primary step, its alternatives, the caution or the
+/// note, and at the right end the link to the reasons. Each has the same place in every verdict.
 struct StepsLine<'a> {
-    caution: Option<&'a str>,
     primary: Option<&'a Step>,
-    links: Vec<&'a Step>,
-    /// Link to the remarks.
-    remarks: Option<&'a Step>,
+    alternatives: Vec<&'a Step>,
+    caution: Option<&'a str>,
     note: &'a str,
+    /// Opens the reasons, or lists the notes.
+    reasons: Option<Step>,
 }
 
-impl StepsLine<'_> {
-    fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
-        ui.horizontal(|ui| {
-            let has_buttons = self.primary.is_some() || self.caution.is_none();
-            ui.set_min_height(if has_buttons { 28.0 } else { 22.0 });
-            if let Some(caution) = self.caution {
-                self.caution_ui(ui, caution, palette);
+impl<'a> StepsLine<'a> {
+    fn new(verdict: &'a Verdict) -> Self {
+        // Skip the export step: the primary button at the foot of the panel already exports.
+        let primary = verdict
+            .steps
+            .first()
+            .filter(|step| step.command != export() && !shows_reasons(step));
+        let mut alternatives = Vec::new();
+        for step in verdict.steps.iter().skip(1) {
+            if !shows_reasons(step) {
+                alternatives.push(step);
             }
-            if let Some(step) = self.primary {
-                step_ui(ui, step, true, palette, commands);
-            }
-            for step in &self.links {
-                step_ui(ui, step, false, palette, commands);
-            }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if let Some(remarks) = self.remarks {
-                    step_ui(ui, remarks, false, palette, commands);
-                }
-                if !self.note.is_empty() {
-                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                        self.note_ui(ui, palette);
-                    });
-                }
-            });
-        });
+        }
+        let mut reasons = verdict
+            .steps
+            .iter()
+            .find(|step| shows_reasons(step))
+            .cloned();
+        if reasons.is_none() && verdict.reasons > 0 {
+            reasons = Some(Step::new(
+                counted(verdict.reasons, "note"),
+                LayoutCommand::ShowSheet(Some(Sheet::Reasons)),
+            ));
+        }
+        Self {
+            primary,
+            alternatives,
+            caution: verdict.caution_text(),
+            note: &verdict.note,
+            reasons,
+        }
     }
 
-    /// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " in a narrow panel.
-    fn caution_ui(&self, ui: &mut Ui, caution: &str, palette: &Palette) {
-        let width: f32 = self
-            .primary
-            .into_iter()
-            .chain(self.links.iter().copied())
-            .chain(self.remarks)
-            .map(|step| text_width(ui, &step.label, body()) + 24.0)
-            .sum();
-        let room = ui.available_width() - width;
-        let whole = format!("⚠ {caution}");
-        let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
-        let fits = text_width(ui, &whole, body()) <= room;
-        let text = palette
-            .small_warning(if fits { whole } else { short })
-            .size(BODY_SIZE);
-        ui.scope(|ui| {
-            ui.set_max_width(room);
-            ui.add(egui::Label::new(text).truncate())
-                .on_hover_text(caution);
-        });
-    }
-
-    /// Draws "of 19 models, as a first step", or only "of 19 models" in a narrow panel.
-    fn note_ui(&self, ui: &mut Ui, palette: &Palette) {
-        let fits = text_width(ui, self.note, small()) <= ui.available_width();
-        let shown = if fits {
-            self.note
-        } else {
-            self.note.split(", ").next().unwrap_or(self.note)
+    fn ui(&self, ui: &mut Ui, line: Rect, palette: &Palette, commands: &mut Vec<Command>) {
+        let mut left = line.left();
+        let mut right = line.right();
+        if let Some(step) = &self.reasons {
+            let width = text_width(ui, &step.label, body());
+            let place = line.with_min_x(right - width);
+            link_ui(ui, place, step, palette, commands);
+            right = place.left() - GAP;
+        }
+        if let Some(step) = self.primary {
+            let width = text_width(ui, &step.label, medium(BODY_SIZE)) + 24.0;
+            let place = Rect::from_min_size(pos2(left, line.top()), vec2(width, STEPS));
+            primary_ui(ui, place, step, palette, commands);
+            left = place.right() + GAP;
+        }
+        // An alternative that leaves no room for the caution is omitted: the sheet of reasons and
+        // the palette offer it too.
+        let needed = match self.caution {
+            Some(caution) => text_width(ui, &short_caution(caution), body()),
+            None => 0.0,
         };
-        ui.add(egui::Label::new(palette.small(shown)).truncate())
-            .on_hover_text(self.note);
+        for step in &self.alternatives {
+            let width = text_width(ui, &step.label, body());
+            if left + width + needed > right {
+                break;
+            }
+            let place = Rect::from_min_size(pos2(left, line.top()), vec2(width, STEPS));
+            link_ui(ui, place, step, palette, commands);
+            left = place.right() + GAP;
+        }
+        let rest = line.with_min_x(left).with_max_x(right);
+        if let Some(caution) = self.caution {
+            caution_ui(ui, rest, caution, palette);
+        } else if !self.note.is_empty() {
+            note_ui(ui, rest, self.note, palette);
+        }
     }
 }
 
-/// Draws a step as a link, or as the only primary button in the window.
-fn step_ui(
+/// Returns "⚠ +21 dB above 12 rad/s": a caution without the words before its colon.
+fn short_caution(caution: &str) -> String {
+    let short = match caution.split_once(": ") {
+        Some((_, short)) => short,
+        None => caution,
+    };
+    format!("⚠ {short}")
+}
+
+/// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " if there is no room.
+fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
+    let subject = ui.max_rect();
+    let whole = format!("⚠ {caution}");
+    let shown = if text_width(ui, &whole, body()) <= place.width() {
+        whole
+    } else {
+        elided(ui, &short_caution(caution), place.width(), BODY_SIZE)
+    };
+    painted_text(ui, place, 0.0, &shown, body(), palette.warning);
+    let id = ui.scope_id().with("caution");
+    let response = named(ui.interact(place, id, Sense::hover()), Role::Label, caution);
+    if !shown.ends_with(caution) {
+        hint_left_of(response, subject, caution);
+    }
+}
+
+/// Draws "of 19 models, as a first step", or only "of 19 models" in a narrow panel.
+fn note_ui(ui: &Ui, place: Rect, note: &str, palette: &Palette) {
+    let subject = ui.max_rect();
+    let words = leading_parts(ui, note, place.width(), SMALL_SIZE);
+    let shown = elided(ui, words, place.width(), SMALL_SIZE);
+    painted_text(ui, place, 0.0, &shown, small(), palette.dim_text);
+    let id = ui.scope_id().with("note");
+    let response = named(ui.interact(place, id, Sense::hover()), Role::Label, note);
+    if shown != note {
+        hint_left_of(response, subject, note);
+    }
+}
+
+/// Draws the recommended step, the only primary button in the window.
+fn primary_ui(
     ui: &mut Ui,
+    place: Rect,
     step: &Step,
-    is_primary: bool,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let label = RichText::new(&step.label);
-    let button = if is_primary {
-        Button::new(label.font(medium(BODY_SIZE)).color(palette.on_accent())).fill(palette.accent)
-    } else {
-        Button::new(label.color(palette.accent)).frame(false)
-    };
-    ui.add(button.min_size(vec2(0.0, 28.0)))
-        .asks(step.command.clone(), commands);
+    let label = RichText::new(&step.label)
+        .font(medium(BODY_SIZE))
+        .color(palette.on_accent());
+    // The identifier does not depend on the step, so that the next step inherits the focus.
+    let builder = UiBuilder::new().id_salt("primary").max_rect(place);
+    ui.scope_builder(builder, |ui| {
+        let button = Button::new(label).fill(palette.accent);
+        ui.put(place, button.min_size(place.size()))
+            .asks(step.command.clone(), commands);
+    });
 }
 
-/// Returns the link to the remarks in the sheet of reasons; `None` if there are none, or if another
-/// step opens the sheet.
-fn remarks_step(verdict: &Verdict) -> Option<Step> {
-    if verdict.reasons == 0 || verdict.steps.iter().any(shows_reasons) {
-        return None;
-    }
-    Some(Step {
-        label: counted(verdict.reasons, "note"),
-        command: Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
-    })
+/// Draws a step as a link.
+fn link_ui(ui: &mut Ui, place: Rect, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
+    let label = RichText::new(&step.label).color(palette.accent);
+    let builder = UiBuilder::new().id_salt(&step.label).max_rect(place);
+    ui.scope_builder(builder, |ui| {
+        ui.spacing_mut().button_padding.x = 0.0;
+        let button = Button::new(label).frame(false).min_size(place.size());
+        ui.put(place, button).asks(step.command.clone(), commands);
+    });
 }
 
 /// Returns whether the step opens the sheet of reasons.
 fn shows_reasons(step: &Step) -> bool {
     step.command == Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lines_fit_into_the_reserved_height_in_order() {
+        for height in [HEIGHT_WIDE, HEIGHT_NARROW] {
+            let area = Rect::from_min_size(pos2(0.0, 0.0), vec2(320.0, height));
+            let places = VerdictPlaces::new(area);
+            let lines = [places.heads, places.rows[0], places.rows[1], places.steps];
+            for pair in lines.windows(2) {
+                assert!(pair[0].bottom() <= pair[1].top() + 0.01, "{pair:?}");
+            }
+            assert!(area.contains_rect(places.heads));
+            assert!(area.bottom() - places.steps.bottom() >= 6.0);
+            assert_eq!(places.steps.height(), STEPS);
+        }
+    }
+
+    #[test]
+    fn a_short_caution_keeps_its_number() {
+        assert_eq!(
+            short_caution("Price: +21 dB above 12 rad/s"),
+            "⚠ +21 dB above 12 rad/s"
+        );
+        assert_eq!(short_caution("No couplings"), "⚠ No couplings");
+    }
 }

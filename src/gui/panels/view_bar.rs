@@ -10,7 +10,7 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 use crate::gui::views::figure_button::figure_button_ui;
-use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named, named_switch};
+use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, hint_above, named, named_switch};
 use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium};
 use crate::gui::widgets::panel_layout::in_line_ui;
@@ -102,9 +102,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             format!("Views: {}", group.name()),
         );
         let names: Vec<&str> = group.views().map(View::name).collect();
-        response
-            .on_hover_text(names.join(", "))
-            .asks(LayoutCommand::ShowGroup(group), commands);
+        hint_above(response, &names.join(", ")).asks(LayoutCommand::ShowGroup(group), commands);
     }
 }
 
@@ -171,9 +169,7 @@ fn tab_ui(
         ui.painter().rect_filled(line, 1.0, line_color);
     }
     let response = named_switch(response, Role::Tab, is_front, view.name());
-    response
-        .on_hover_text(view.facts().purpose)
-        .asks(LayoutCommand::ShowView(view), commands);
+    hint_above(response, view.facts().purpose).asks(LayoutCommand::ShowView(view), commands);
 }
 
 /// Draws the button that shows a second view beside the view in front, or hides it.
@@ -182,7 +178,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
         let others = View::ALL
             .into_iter()
-            .filter(|view| *view != arrangement.view())
+            .filter(|view| *view != arrangement.view() && !view.is_dock_page())
             .map(|view| {
                 (
                     format!("Show {} beside", view.name()),

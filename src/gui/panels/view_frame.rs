@@ -1,6 +1,6 @@
 //! Frame of a view: the page bar with title, pages and tools, above the clipped content.
 
-use egui::{Align, AsIdSalt, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, AsIdSalt, Frame, Layout, Margin, Rect, RichText, Ui, UiBuilder, vec2};
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::view::View;
@@ -8,8 +8,9 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::across::across_context;
 use crate::gui::views::figure_button::figure_button_ui;
 use crate::gui::views::{PageEntry, ViewTitle, view_content};
+use crate::gui::widgets::elision::{leading_parts, text_width};
 use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
-use crate::gui::widgets::palette::{Palette, TITLE_SIZE, medium};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 use crate::gui::widgets::panel_layout::in_line_ui;
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
@@ -56,7 +57,7 @@ pub(super) fn clipped_ui(
 }
 
 /// Draws the page bar: title, page switch and context at the left, tools at the right; if they do
-/// not fit, the tools move to a line below.
+/// not fit beside one another, as in half of a narrow window, the tools move to a line below.
 fn page_bar_ui(
     ui: &mut Ui,
     state: &State,
@@ -64,43 +65,52 @@ fn page_bar_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    /// Minimum width of title and pages \[pt\].
-    const LEAST: f32 = 200.0;
     let content = view_content(view);
     let width = ui.available_width();
-    let pages = (content.pages)(state);
-    let is_titled = !matches!(content.title, ViewTitle::None) || pages.len() > 1;
-    if is_titled && width - content.tools_width < LEAST && content.tools_width > 0.0 {
-        row_ui(ui, width, |ui| {
-            titled_pages_ui(ui, state, content.title, &pages, palette, commands);
-        });
+    let bar = PageBar {
+        title: title_words(state, content.title).or_named(view),
+        pages: (content.pages)(state),
+    };
+    if bar.least_width(ui) + content.tools_width > width && content.tools_width > 0.0 {
+        row_ui(ui, width, |ui| bar.ui(ui, palette, commands));
         row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
-    } else if is_titled || content.tools_width > 0.0 {
-        row_ui(ui, width, |ui| {
-            tools_ui(ui, state, view, palette, commands);
-            titled_pages_ui(ui, state, content.title, &pages, palette, commands);
-        });
+        return;
     }
+    row_ui(ui, width, |ui| {
+        tools_ui(ui, state, view, palette, commands);
+        bar.ui(ui, palette, commands);
+    });
 }
 
-/// Draws the title, the page switch and the context, in this order, in the rest of a row.
-fn titled_pages_ui(
-    ui: &mut Ui,
-    state: &State,
-    title: ViewTitle,
-    pages: &[PageEntry],
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let rest = ui.available_rect_before_wrap();
-    in_line_ui(ui, rest, false, |ui| {
-        let words = title_words(state, title);
-        if !words.heading.is_empty() {
-            heading_ui(ui, &words.heading);
+/// Left part of a page bar.
+struct PageBar {
+    title: TitleWords,
+    pages: Vec<PageEntry>,
+}
+
+impl PageBar {
+    /// Returns the width of title and page switch, without the context \[pt\].
+    fn least_width(&self, ui: &Ui) -> f32 {
+        /// Padding of a segment, and the gap beside the title \[pt\].
+        const PAD: f32 = 24.0;
+        let mut width = text_width(ui, &self.title.heading, medium(TITLE_SIZE)) + PAD;
+        if self.pages.len() > 1 {
+            for page in &self.pages {
+                width += text_width(ui, page.words.short_name, medium(BODY_SIZE)) + PAD;
+            }
         }
-        pages_ui(ui, pages, palette, commands);
-        context_ui(ui, palette, words.context);
-    });
+        width
+    }
+
+    /// Draws the title, the page switch and the context, in this order, in the rest of a row.
+    fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        let rest = ui.available_rect_before_wrap();
+        in_line_ui(ui, rest, false, |ui| {
+            heading_ui(ui, &self.title.heading);
+            pages_ui(ui, &self.pages, palette, commands);
+            context_ui(ui, palette, &self.title.context);
+        });
+    }
 }
 
 /// Draws the page switch of a view; a click shows the page.
@@ -147,22 +157,32 @@ pub(super) fn tools_ui(
     }
 }
 
-/// Draws a title such as "LON → Q  condition 10: 60 kt, low altitude, high weight"; some views omit
-/// the response or the condition.
+/// Draws the title of a page of the dock, such as "LON → Q  condition 10: 60 kt, low altitude, high
+/// weight"; some omit the response or the condition.
 pub(super) fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let words = title_words(state, title);
     if !words.heading.is_empty() {
         heading_ui(ui, &words.heading);
     }
-    context_ui(ui, palette, words.context);
+    context_ui(ui, palette, &words.context);
 }
 
 /// Title of a view in two parts, each empty if the view has none.
 struct TitleWords {
     /// What the view shows, such as the response.
     heading: String,
-    /// Further words, which are cut first in a narrow window.
+    /// Further words, of which the last parts are omitted in a narrow window.
     context: String,
+}
+
+impl TitleWords {
+    /// Returns the words with the name of the view as their heading, if they have none.
+    fn or_named(mut self, view: View) -> Self {
+        if self.heading.is_empty() {
+            view.name().clone_into(&mut self.heading);
+        }
+        self
+    }
 }
 
 fn title_words(state: &State, title: ViewTitle) -> TitleWords {
@@ -180,8 +200,8 @@ fn title_words(state: &State, title: ViewTitle) -> TitleWords {
             context: across_context(state),
         },
         ViewTitle::Condition => TitleWords {
-            heading: format!("Condition {id}"),
-            context: flight_state.clone(),
+            heading: String::new(),
+            context: format!("condition {id}: {flight_state}"),
         },
         ViewTitle::NameAndCondition(name) => TitleWords {
             heading: name.to_owned(),
@@ -206,8 +226,11 @@ fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
 }
 
-fn context_ui(ui: &mut Ui, palette: &Palette, text: String) {
-    if !text.is_empty() {
-        ui.add(Label::new(palette.dim(text)).truncate());
+/// Draws as many leading parts of the context as fit; nothing if not even the first part fits.
+fn context_ui(ui: &mut Ui, palette: &Palette, text: &str) {
+    let room = ui.available_width() - ui.spacing().item_spacing.x;
+    let shown = leading_parts(ui, text, room, BODY_SIZE);
+    if !shown.is_empty() && text_width(ui, shown, body()) <= room {
+        ui.label(palette.dim(shown));
     }
 }

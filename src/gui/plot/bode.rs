@@ -22,6 +22,7 @@ use super::nearest_curve::curves_in;
 use super::pane_scene::PaneScene;
 use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
+use super::steady_range::AxisUpdate;
 use super::thinning::is_finite;
 use crate::gui::widgets::palette::Palette;
 
@@ -61,6 +62,14 @@ pub fn bode_ui(
         view.follow_curves(scene.curves);
     }
     view.fit_if_requested(&visible);
+    let update = if scene.stale {
+        AxisUpdate::Pending
+    } else if ui.input(|input| input.pointer.any_down()) {
+        AxisUpdate::Dragging
+    } else {
+        AxisUpdate::Complete
+    };
+    view.follow_values(scene, &visible, update);
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
         use_frame_colors(ui, palette);

@@ -26,6 +26,8 @@ use crate::gui::widgets::palette::Palette;
 
 /// Maximum deviation of a drawn line from its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
+/// Minimum number of labels on a value axis, where they fit.
+const LEAST_LABELS: usize = 5;
 /// Height of the strip along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
 /// Opacity of the shade of the comparison band, in the dark and in the light theme.
@@ -58,7 +60,10 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
             is_drawn: pane.pane == Pane::Phase,
             ..PanelAxis::new(Ticks::Frequency(scene.unit), TICKS_HEIGHT)
         },
-        values: PanelAxis::new(values, VALUE_AXIS_WIDTH),
+        values: PanelAxis {
+            least_labels: LEAST_LABELS,
+            ..PanelAxis::new(values, VALUE_AXIS_WIDTH)
+        },
         gestures: Gestures::Reported,
         is_transparent: true,
         palette: pane.palette,

@@ -11,6 +11,7 @@ use super::bode_scene::BodeScene;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::drawn_pane::DrawnPane;
 use super::limits_form::LimitsForm;
+use super::steady_range::{AxisUpdate, changed_range, labelled_range};
 use super::value_unit::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
@@ -29,8 +30,8 @@ const FIT_MARGIN: f64 = 0.04;
 
 /// State of a Bode plot between frames.
 ///
-/// The view moves only at the engineer's request, not when curves are recomputed. For another
-/// response or condition, value ranges that have not been zoomed are fitted once.
+/// Value axes that have not been zoomed follow recomputed curves and other conditions with
+/// hysteresis, so that they seldom move. For another response they are fitted once.
 ///
 /// Two kinds of state control the visible ranges: a `ViewedRange` records whether the engineer
 /// chose it, and `must_fit_frequencies`, `must_fit_values` request a fit in the next frame that has
@@ -57,6 +58,8 @@ pub struct BodeView {
     must_fit_values: bool,
     /// Range of `log10 omega` of the curves when the view last followed them.
     followed: Option<Range>,
+    /// Fitted values of all curves, including hidden ones, when the axes last followed them.
+    followed_values: [Option<Range>; 2],
     /// Panes as last drawn.
     pub(super) drawn: [DrawnPane; 2],
 }
@@ -117,6 +120,7 @@ impl Default for BodeView {
             must_fit_frequencies: true,
             must_fit_values: true,
             followed: None,
+            followed_values: [None; 2],
             drawn: Default::default(),
         }
     }
@@ -155,6 +159,42 @@ impl BodeView {
             let follows = !is_first && !self.log_omega.is_chosen();
             self.must_fit_frequencies |= follows;
             self.must_fit_values |= follows;
+        }
+    }
+
+    /// Adapts the value axes that have not been zoomed to new curves, if they no longer fit. The
+    /// pointer, selections and chips leave the curves as they are, and therefore the axes.
+    pub(super) fn follow_values(
+        &mut self,
+        all: &BodeScene<'_>,
+        visible: &BodeScene<'_>,
+        update: AxisUpdate,
+    ) {
+        if update == AxisUpdate::Pending {
+            return;
+        }
+        let band = fitted_band(all);
+        for pane in PANES {
+            let index = pane as usize;
+            let found = fitted_values(all.curves, pane, band);
+            if found.is_none() || found == self.followed_values[index] {
+                continue;
+            }
+            let is_first = self.followed_values[index].is_none();
+            // While something is dragged, the last change is still to be followed on release.
+            if update == AxisUpdate::Complete {
+                self.followed_values[index] = found;
+            }
+            if let Some(values) = fitted_values(visible.curves, pane, band)
+                && !is_first
+            {
+                let wanted = values.with_margin(FIT_MARGIN, all.quantity.least_height(pane));
+                let shown = self.values[index].range();
+                if let Some(changed) = changed_range(shown, wanted, update) {
+                    let scale = all.quantity.unit(pane).scale();
+                    self.values[index].fit(labelled_range(changed, scale));
+                }
+            }
         }
     }
 
@@ -297,20 +337,28 @@ impl BodeView {
 
     /// Fits the values in both panes, unless the engineer chose their ranges.
     fn fit_values(&mut self, scene: &BodeScene<'_>) {
-        let upper = match scene.invalid {
-            Some(invalid) => invalid.up_to,
-            None => scene.band.1,
-        };
-        let band = Range {
-            min: scene.band.0,
-            max: upper,
-        };
+        let band = fitted_band(scene);
         for pane in PANES {
             if let Some(values) = fitted_values(scene.curves, pane, band) {
                 let least = scene.quantity.least_height(pane);
-                self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, least));
+                let scale = scene.quantity.unit(pane).scale();
+                let fitted = labelled_range(values.with_margin(FIT_MARGIN, least), scale);
+                self.values[pane as usize].fit(fitted);
             }
         }
+    }
+}
+
+/// Returns the frequencies whose values are fitted: the band, and the frequencies beyond up to which
+/// leads are drawn.
+fn fitted_band(scene: &BodeScene<'_>) -> Range {
+    let max = match scene.invalid {
+        Some(invalid) => invalid.up_to,
+        None => scene.band.1,
+    };
+    Range {
+        min: scene.band.0,
+        max,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Lines of chips: places, appearance and accessible names of the single chips.
+//! Line of chips: places, appearance and accessible names of the single chips.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 const CHIP_HEIGHT: f32 = 22.0;
 /// Line height, including the gap below \[pt\].
-const LINE_HEIGHT: f32 = 27.0;
+pub(super) const LINE_HEIGHT: f32 = 28.0;
 /// Gap between two chips \[pt\].
 pub const GAP: f32 = 5.0;
 pub const SAMPLE_GAP: f32 = 6.0;
@@ -58,8 +58,7 @@ impl ChipRow {
     /// Starts at the upper left corner of `area`, with samples of this length \[pt\].
     pub fn new(area: Rect, sample_length: f32) -> Self {
         Self {
-            area,
-            corner: area.min,
+            corner,
             sample_length,
         }
     }
@@ -110,13 +109,8 @@ impl ChipRow {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Returns the place of the next chip, on a new line if the current line has no room.
     fn next_place(&mut self, width: f32) -> Rect {
-        let size = vec2(width, CHIP_HEIGHT);
-        if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
-            self.corner = pos2(self.area.left(), self.corner.y + LINE_HEIGHT);
-        }
-        let place = Rect::from_min_size(self.corner, size);
+        let place = Rect::from_min_size(self.corner, vec2(width, CHIP_HEIGHT));
         self.corner.x = place.right() + GAP;
         place
     }

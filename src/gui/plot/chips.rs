@@ -3,15 +3,16 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Rect, Ui};
+use egui::{Popup, PopupCloseBehavior, Rect, Role as WidgetRole, Ui};
 
 use gdcm_plot::figure::drawing::Dash;
 
 use super::bode_event::BodeEvent;
-use super::chip_row::{ChipFace, ChipRow, GAP, SAMPLE_GAP, Sample, chip_width};
+use super::chip_row::{ChipFace, ChipRow, GAP, LINE_HEIGHT, SAMPLE_GAP, Sample, chip_width};
 use super::curve_command::CurveCommand;
 use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
+use crate::gui::widgets::controls::{hint_above, named_switch};
 use crate::gui::widgets::palette::Palette;
 
 /// Length of a curve sample \[pt\].
@@ -107,7 +108,7 @@ pub struct Chip {
     pub hint: String,
 }
 
-/// Chips of a plot, in lines from the upper left corner.
+/// Chips of a plot, in a line from the upper left corner.
 pub(super) struct Chips<'a> {
     /// Suffix that distinguishes these chips from the chips of other plots.
     pub(super) plot: &'a str,
@@ -121,7 +122,7 @@ pub(super) struct Chips<'a> {
 
 /// Height and event of the drawn chips.
 pub(super) struct ChipsResponse {
-    /// Height of all lines \[pt\].
+    /// Height of the line, 0 without chips \[pt\].
     pub(super) height: f32,
     /// Event of the clicked chip.
     pub(super) event: Option<BodeEvent>,
@@ -148,19 +149,37 @@ impl Chips<'_> {
         switches.chain(states).sum::<f32>() - GAP
     }
 
-    /// Draws the chips in lines, starting at the upper left corner.
-    pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> ChipsResponse {
+    /// Draws the chips in a single line, starting at the upper left corner of `area`. Switches that
+    /// do not fit are in the menu of a last chip, "+2"; restrictions are always visible.
+    pub(super) fn ui(&self, ui: &mut Ui, area: Rect, palette: &Palette) -> ChipsResponse {
+        if self.roles.is_empty() && self.states.is_empty() {
+            return ChipsResponse {
+                height: 0.0,
+                event: None,
+            };
+        }
         let mut row = ChipRow::new(area, self.sample());
         let mut event = None;
-        for chip in &self.roles {
-            if let Some(request) = self.role_chip_ui(ui, &mut row, chip, palette) {
-                event = Some(BodeEvent::Display(request));
+        let switches = self.switches();
+        let fitting = self.fitting(ui, &switches, area.width());
+        for switch in &switches[..fitting] {
+            let face = ChipFace {
+                text: switch.text,
+                name: &switch.name,
+                sample: Some(Sample {
+                    style: switch.style(palette),
+                    is_shown: switch.is_shown,
+                }),
+                is_lit: switch.is_lit,
+            };
+            let response = hint_above(row.chip_ui(ui, &face, palette), &switch.hint());
+            if response.clicked() {
+                event = Some(switch.event(ui));
             }
         }
-        if let Some(shown) = self.bands
-            && self.bands_chip_ui(ui, &mut row, shown, palette)
-        {
-            event = Some(BodeEvent::Display(CurveCommand::ShowBands(!shown)));
+        let rest = &switches[fitting..];
+        if !rest.is_empty() {
+            event = self.rest_ui(ui, &mut row, rest, palette).or(event);
         }
         for (index, chip) in self.states.iter().enumerate() {
             let face = ChipFace {
@@ -170,65 +189,97 @@ impl Chips<'_> {
                 is_lit: false,
             };
             let response = row.chip_ui(ui, &face, palette);
-            if response.on_hover_text(&chip.hint).clicked() {
+            if hint_above(response, &chip.hint).clicked() {
                 event = Some(BodeEvent::ChipClicked(index));
             }
         }
-        let is_empty = self.roles.is_empty() && self.states.is_empty();
-        let height = if is_empty { 0.0 } else { row.height() };
-        ChipsResponse { height, event }
-    }
-
-    fn role_chip_ui(
-        &self,
-        ui: &Ui,
-        row: &mut ChipRow,
-        chip: &RoleChip,
-        palette: &Palette,
-    ) -> Option<CurveCommand> {
-        let face = ChipFace {
-            text: &chip.text,
-            name: &format!("Show {}{}", chip.role.name(), self.plot),
-            sample: Some(Sample {
-                style: chip.look,
-                is_shown: chip.shown,
-            }),
-            is_lit: chip.lit,
-        };
-        let response = row.chip_ui(ui, &face, palette);
-        let effect = if chip.shown { "hide" } else { "show" };
-        let hint = format!("Click: {effect} · Alt+click: alone · Shift+click: in front");
-        if !response.on_hover_text(hint).clicked() {
-            return None;
+        ChipsResponse {
+            height: LINE_HEIGHT,
+            event,
         }
-        let modifiers = ui.input(|input| input.modifiers);
-        Some(if modifiers.alt {
-            CurveCommand::ShowRoleAlone(chip.role)
-        } else if modifiers.shift {
-            CurveCommand::RaiseRole(chip.role)
-        } else {
-            CurveCommand::ToggleRole(chip.role)
-        })
     }
 
-    /// Draws the chip of the uncertainty bands; returns whether it was clicked.
-    fn bands_chip_ui(&self, ui: &Ui, row: &mut ChipRow, is_shown: bool, palette: &Palette) -> bool {
-        let style = CurveStyle {
-            color: palette.identified.gamma_multiply(0.45),
-            width: BAND_SAMPLE_WIDTH,
-            dash: Dash::Solid,
-            length: 0.0,
-        };
+    /// Returns the switches of all roles, and of the uncertainty bands.
+    fn switches(&self) -> Vec<Switch<'_>> {
+        let mut switches = Vec::new();
+        for chip in &self.roles {
+            switches.push(Switch {
+                subject: SwitchSubject::Role(chip),
+                text: &chip.text,
+                name: format!("Show {}{}", chip.role.name(), self.plot),
+                is_shown: chip.shown,
+                is_lit: chip.lit,
+            });
+        }
+        if let Some(is_shown) = self.bands {
+            switches.push(Switch {
+                subject: SwitchSubject::Bands,
+                text: self.bands_text(),
+                name: format!("Show the band of 95 %{}", self.plot),
+                is_shown,
+                is_lit: false,
+            });
+        }
+        switches
+    }
+
+    /// Returns the number of switches that fit beside the restrictions; if not all do, also beside
+    /// the chip with the number of the others.
+    fn fitting(&self, ui: &Ui, switches: &[Switch<'_>], width: f32) -> usize {
+        let states: f32 = self
+            .states
+            .iter()
+            .map(|chip| chip_width(ui, &chip.text))
+            .sum();
+        let room = width - states + GAP;
+        let before = self.sample() + SAMPLE_GAP;
+        let widths: Vec<f32> = switches
+            .iter()
+            .map(|switch| chip_width(ui, switch.text) + before)
+            .collect();
+        if widths.iter().sum::<f32>() <= room {
+            return switches.len();
+        }
+        let mut used = chip_width(ui, "+10");
+        for (count, width) in widths.iter().enumerate() {
+            used += width;
+            if used > room {
+                return count;
+            }
+        }
+        switches.len()
+    }
+
+    /// Draws the chip with the number of the switches that do not fit, and its menu.
+    fn rest_ui(
+        &self,
+        ui: &mut Ui,
+        row: &mut ChipRow,
+        rest: &[Switch<'_>],
+        palette: &Palette,
+    ) -> Option<BodeEvent> {
         let face = ChipFace {
-            text: self.bands_text(),
-            name: &format!("Show the band of 95 %{}", self.plot),
-            sample: Some(Sample { style, is_shown }),
+            text: &format!("+{}", rest.len()),
+            name: &format!("Further curves{}", self.plot),
+            sample: None,
             is_lit: false,
         };
         let response = row.chip_ui(ui, &face, palette);
-        response
-            .on_hover_text("Confidence interval for each identified response")
-            .clicked()
+        let shown = Popup::menu(&response)
+            .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+            .show(|ui| {
+                let mut event = None;
+                for switch in rest {
+                    let mut is_on = switch.is_shown;
+                    let check = ui.checkbox(&mut is_on, switch.text);
+                    let check = named_switch(check, WidgetRole::CheckBox, is_on, &switch.name);
+                    if check.clicked() {
+                        event = Some(switch.event(ui));
+                    }
+                }
+                event
+            });
+        shown?.inner
     }
 
     fn bands_text(&self) -> &'static str {
@@ -242,5 +293,55 @@ impl Chips<'_> {
     /// Returns the sample length \[pt\].
     fn sample(&self) -> f32 {
         if self.is_tight { TIGHT_SAMPLE } else { SAMPLE }
+    }
+}
+
+/// Switch of the curves of a role, or of the uncertainty bands.
+struct Switch<'a> {
+    subject: SwitchSubject<'a>,
+    text: &'a str,
+    /// Accessible name.
+    name: String,
+    is_shown: bool,
+    is_lit: bool,
+}
+
+enum SwitchSubject<'a> {
+    Role(&'a RoleChip),
+    Bands,
+}
+
+impl Switch<'_> {
+    fn style(&self, palette: &Palette) -> CurveStyle {
+        match self.subject {
+            SwitchSubject::Role(chip) => chip.look,
+            SwitchSubject::Bands => CurveStyle {
+                color: palette.identified.gamma_multiply(0.45),
+                width: BAND_SAMPLE_WIDTH,
+                dash: Dash::Solid,
+                length: 0.0,
+            },
+        }
+    }
+
+    fn hint(&self) -> String {
+        match self.subject {
+            SwitchSubject::Role(_) => {
+                let effect = if self.is_shown { "hide" } else { "show" };
+                format!("Click: {effect} · Alt+click: alone · Shift+click: in front")
+            }
+            SwitchSubject::Bands => "Confidence interval for each identified response".to_owned(),
+        }
+    }
+
+    /// Returns the event of a click, which depends on the keys held.
+    fn event(&self, ui: &Ui) -> BodeEvent {
+        let modifiers = ui.input(|input| input.modifiers);
+        BodeEvent::Display(match self.subject {
+            SwitchSubject::Role(chip) if modifiers.alt => CurveCommand::ShowRoleAlone(chip.role),
+            SwitchSubject::Role(chip) if modifiers.shift => CurveCommand::RaiseRole(chip.role),
+            SwitchSubject::Role(chip) => CurveCommand::ToggleRole(chip.role),
+            SwitchSubject::Bands => CurveCommand::ShowBands(!self.is_shown),
+        })
     }
 }

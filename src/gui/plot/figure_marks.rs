@@ -80,6 +80,8 @@ pub(super) struct MarkScene<'a> {
     pub(super) emphasized: Option<&'a MarkId>,
     /// Axis coordinates of the mark under the pointer.
     pub(super) pointed_at: Option<[f64; 2]>,
+    /// Opacity of error bars and bands, which fade in when they have been computed.
+    pub(super) bars_opacity: f32,
     pub(super) palette: &'a Palette,
 }
 
@@ -97,7 +99,19 @@ impl MarkScene<'_> {
         };
         let [x, y] = ranges_of(self.transform.bounds());
         let ranges = [values_at(self.panel, x), y];
-        canvas.paint(drawn.shapes(self.panel, area(frame), ranges));
+        if self.bars_opacity < 1.0 {
+            let bare = without_bars(self.panel);
+            canvas.paint(&bare.shapes(area(frame), ranges, LETTERS_PT).shapes);
+            let mut fading = painter.clone();
+            fading.set_opacity(self.bars_opacity * painter.opacity());
+            let canvas = Canvas {
+                painter: &fading,
+                ..canvas
+            };
+            canvas.paint(drawn.shapes(self.panel, area(frame), ranges));
+        } else {
+            canvas.paint(drawn.shapes(self.panel, area(frame), ranges));
+        }
         for mark in &self.panel.marks {
             if let Mark::Dots(dots) = mark {
                 self.paint_emphasis(&canvas, dots);
@@ -158,6 +172,25 @@ impl MarkScene<'_> {
         self.transform
             .position_from_point(&PlotPoint::new(dot.x, dot.y))
     }
+}
+
+/// Returns whether a mark appears with the error bars.
+fn is_bar(mark: &Mark) -> bool {
+    matches!(
+        mark,
+        Mark::Intervals(_) | Mark::Envelope(_) | Mark::Brackets(_)
+    )
+}
+
+/// Returns whether a panel has error bars.
+pub(super) fn has_bars(panel: &Panel) -> bool {
+    panel.marks.iter().any(is_bar)
+}
+
+fn without_bars(panel: &Panel) -> Panel {
+    let mut bare = panel.clone();
+    bare.marks.retain(|mark| !is_bar(mark));
+    bare
 }
 
 /// Converts a range of axis coordinates to values: on the screen, the coordinates of a logarithmic

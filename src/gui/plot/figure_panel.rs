@@ -8,7 +8,7 @@ use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Panel, Range};
 
-use super::figure_marks::{DrawnMarks, MarkScene, RING};
+use super::figure_marks::{DrawnMarks, MarkScene, RING, has_bars};
 use super::figure_scene::FigureScene;
 use super::figure_zoom::{navigated_ranges, whole_ranges};
 use super::nearest_dot::{PointedMark, nearest_dot};
@@ -20,9 +20,12 @@ use super::viewed_range::bounds_of;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 
 /// Height of the title above the first panel \[pt\].
-pub(super) const TITLE_HEIGHT: f32 = 18.0;
+const TITLE_HEIGHT: f32 = 18.0;
 /// Width of the vertical axis \[pt\].
 pub(super) const VALUE_AXIS_WIDTH: f32 = 38.0;
+/// Width of the vertical axes of stacked panels, wide enough for any label, so that the panels have
+/// the same edges \[pt\].
+const STACKED_AXIS_WIDTH: f32 = 52.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between panels \[pt\].
 const PANEL_GAP: f32 = 4.0;
@@ -30,6 +33,15 @@ const PANEL_GAP: f32 = 4.0;
 const TICK_GAP: f64 = 26.0;
 /// Minimum distance between ticks in a compact figure, which has as many tick labels as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
+
+/// Returns the height above the first panel of a plot: little without a title.
+pub(super) fn title_height(title: &str) -> f32 {
+    if title.is_empty() {
+        PANEL_GAP
+    } else {
+        TITLE_HEIGHT
+    }
+}
 
 /// State of a panel between frames.
 #[derive(Clone, Debug, Default)]
@@ -117,6 +129,7 @@ impl PlacedPanel<'_> {
             selected: self.scene.selected.as_ref(),
             emphasized: self.emphasized,
             pointed_at: pointed.as_ref().map(|pointed| pointed.at),
+            bars_opacity: self.bars_opacity(ui),
             palette: self.palette,
         };
         marks.paint(ui, &mut view.marks);
@@ -131,6 +144,19 @@ impl PlacedPanel<'_> {
             }
         }
         PlacedResponse { response, pointed }
+    }
+
+    /// Returns the opacity of the error bars, which grows after they have been computed.
+    fn bars_opacity(&self, ui: &Ui) -> f32 {
+        /// Duration of the fade \[s\].
+        const FADE_S: f32 = 0.25;
+        if !has_bars(self.panel()) {
+            ui.ctx()
+                .animate_bool_with_time(self.id.with("bars"), false, 0.0);
+            return 1.0;
+        }
+        ui.ctx()
+            .animate_bool_with_time(self.id.with("bars"), true, FADE_S)
     }
 
     fn panel(&self) -> &Panel {
@@ -160,7 +186,7 @@ impl PlacedPanel<'_> {
     /// Returns the area of the frame with its axes.
     fn frame_with_axes(&self, has_values: bool) -> Rect {
         let above = if self.number == 0 {
-            TITLE_HEIGHT
+            title_height(&self.scene.figure.plots[self.plot].title)
         } else {
             PANEL_GAP
         };
@@ -187,6 +213,10 @@ impl PlacedPanel<'_> {
             axis.thickness = LABELLED_HEIGHT;
             axis.label.clone_from(&panel.x.label);
         }
+        if !is_last && self.scene.is_stacked {
+            axis.is_drawn = false;
+            axis.thickness = 0.0;
+        }
         axis
     }
 
@@ -197,7 +227,12 @@ impl PlacedPanel<'_> {
         } else {
             TICK_GAP
         };
-        let mut axis = PanelAxis::new(Ticks::Decimal(gap), VALUE_AXIS_WIDTH);
+        let width = if self.scene.is_stacked {
+            STACKED_AXIS_WIDTH
+        } else {
+            VALUE_AXIS_WIDTH
+        };
+        let mut axis = PanelAxis::new(Ticks::Decimal(gap), width);
         axis.is_drawn = has_values;
         if !self.scene.figure.shared.y {
             axis.label = label_within(ui, &self.panel().y.label, room, self.palette);

@@ -57,6 +57,8 @@ pub struct FigureScene<'a> {
     /// Whether the axis texts are reduced: the vertical label only at the left of each row, and
     /// only the unit of the horizontal axis, at its end.
     pub is_compact: bool,
+    /// Whether, of stacked panels, only the lowest has numbers along the common horizontal axis.
+    pub is_stacked: bool,
     /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
     pub words: &'a dyn FigureWords,
@@ -83,6 +85,7 @@ impl<'a> FigureScene<'a> {
             least_plot_size,
             message,
             is_compact: false,
+            is_stacked: false,
             accented: None,
             words,
             first_plot: 0,

@@ -1,17 +1,23 @@
 //! Figure on the screen: its plots side by side, the mark under the pointer, and clicks.
 
+use std::collections::BTreeMap;
+
 use egui::{CursorIcon, FontId, Pos2, Rect, Response, Ui, UiBuilder, Vec2, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
 
+use gdcm_plot::figure::axis::Scale;
+use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Figure, Range};
 
 use super::derivation_menu::QuestionMenu;
-use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, TITLE_HEIGHT, VALUE_AXIS_WIDTH};
+use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, VALUE_AXIS_WIDTH, title_height};
 use super::figure_scene::{FigureEvent, FigureScene};
 use super::nearest_dot::PointedMark;
+use super::panel_axis::LABELLED_HEIGHT;
 use super::panel_painter::use_frame_colors;
 use super::panel_text::message_ui;
+use super::steady_range::{AxisUpdate, steady_range};
 use super::tiles::{TiledArea, Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
@@ -29,7 +35,19 @@ pub struct FigureView {
     /// Subject of the figure; a change of subject fits all plots.
     subject: String,
     plots: Vec<PlotView>,
+    /// Ranges of the axes that are fitted to the marks.
+    held: BTreeMap<HeldAxis, Range>,
     question_menu: QuestionMenu,
+}
+
+/// Axis whose range is held between frames.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct HeldAxis {
+    /// Title of the plot; empty for an axis that all plots share.
+    plot: String,
+    /// Index of the panel in the plot, 0 for a shared axis.
+    panel: usize,
+    is_vertical: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -42,8 +60,52 @@ struct PlotView {
 impl FigureView {
     /// Requests that all plots be fitted in the next frame.
     pub fn request_fit(&mut self) {
+        self.held.clear();
         for plot in &mut self.plots {
             plot.first.ranges = None;
+        }
+    }
+
+    /// Replaces the fitted ranges of a figure by those shown before, as long as the marks fit into
+    /// them. Logarithmic axes and axes with names keep their own ranges.
+    pub fn hold_axes(&mut self, figure: &mut Figure, update: AxisUpdate) {
+        let shared = figure.shared;
+        let mut held = BTreeMap::new();
+        for plot in &mut figure.plots {
+            for (number, panel) in plot.panels.iter_mut().enumerate() {
+                for along in [Along::X, Along::Y] {
+                    let is_vertical = along == Along::Y;
+                    let is_shared = if is_vertical { shared.y } else { shared.x };
+                    let wanted = panel.shown(along);
+                    let axis = if is_vertical {
+                        &mut panel.y
+                    } else {
+                        &mut panel.x
+                    };
+                    if axis.scale == Scale::Logarithmic || axis.names.is_some() {
+                        continue;
+                    }
+                    let key = HeldAxis {
+                        plot: if is_shared {
+                            String::new()
+                        } else {
+                            plot.title.clone()
+                        },
+                        panel: if is_shared { 0 } else { number },
+                        is_vertical,
+                    };
+                    let range = match self.held.get(&key) {
+                        Some(shown) => steady_range(*shown, wanted, update),
+                        None => wanted,
+                    };
+                    axis.range = Some(range);
+                    held.insert(key, range);
+                }
+            }
+        }
+        // Without plots, results are being computed for the first time or anew: the ranges stay.
+        if !figure.plots.is_empty() {
+            self.held = held;
         }
     }
 
@@ -218,20 +280,39 @@ struct FigurePainter<'a> {
 }
 
 impl FigurePainter<'_> {
+    /// Divides the room of a plot among its panels, in proportion to their weights. If only the
+    /// lowest panel has numbers, their height is not divided.
+    fn heights(&self, plot: usize, room: f32) -> Vec<f32> {
+        let panels = &self.scene.figure.plots[plot].panels;
+        let total: f64 = panels.iter().map(|panel| panel.weight).sum();
+        let axis = if self.scene.is_stacked && panels.len() > 1 {
+            LABELLED_HEIGHT.min(0.5 * room)
+        } else {
+            0.0
+        };
+        let mut heights: Vec<f32> = panels
+            .iter()
+            .map(|panel| (room - axis) * (panel.weight / total) as f32)
+            .collect();
+        if let Some(last) = heights.last_mut() {
+            *last += axis;
+        }
+        heights
+    }
+
     /// Draws the stacked panels of a plot into `rect` with the same horizontal range; returns the
     /// response of the first panel.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
-        let total: f64 = panels.iter().map(|panel| panel.weight).sum();
+        let title = title_height(&self.scene.figure.plots[plot].title);
+        let heights = self.heights(plot, rect.height() - title);
         let id = ui.make_persistent_id((self.scene.name, plot));
-        let height =
-            |number: usize| (rect.height() - TITLE_HEIGHT) * (panels[number].weight / total) as f32;
         let mut placed = PlacedPanel {
             scene: self.scene,
             plot,
             number: 0,
             id,
-            rect: rect.with_max_y(rect.top() + TITLE_HEIGHT + height(0)),
+            rect: rect.with_max_y(rect.top() + title + heights[0]),
             emphasized: self.emphasized,
             palette: self.palette,
         };
@@ -242,7 +323,7 @@ impl FigurePainter<'_> {
             let top = placed.rect.bottom();
             placed.number = number;
             placed.id = id.with(number);
-            placed.rect = Rect::from_x_y_ranges(rect.x_range(), top..=top + height(number));
+            placed.rect = Rect::from_x_y_ranges(rect.x_range(), top..=top + heights[number]);
             below.share_places(&panels[number], &view.first);
             placed.ui(ui, below);
             view.first.share_places(&panels[0], below);

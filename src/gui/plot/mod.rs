@@ -71,6 +71,7 @@ pub mod quantity;
 pub mod readout_strip;
 mod reference_lines;
 mod sketch;
+pub mod steady_range;
 mod thinning;
 mod ticks;
 mod tiles;

@@ -1,6 +1,6 @@
 //! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns.
 
-use egui::{Align2, Button, Rect, RichText, Ui, UiBuilder, Vec2, pos2, vec2};
+use egui::{Align2, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::Range;
@@ -8,7 +8,7 @@ use gdcm_plot::figure::Range;
 use super::overview_cell::PlacedCell;
 use super::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
 use super::panel_text::{caption_font, message_ui};
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::palette::Palette;
 
 /// Width of the row names and height of the column names \[pt\].
 const HEADER: Vec2 = vec2(52.0, 22.0);
@@ -36,7 +36,6 @@ pub fn overview_ui(
     };
     let mut events = Vec::new();
     ui.scope_builder(UiBuilder::new().id_salt("overview").max_rect(rect), |ui| {
-        phase_switch_ui(ui, &table, view);
         table.paint_names(ui, scene, palette);
         for cell in scene.cells {
             let placed = PlacedCell {
@@ -112,19 +111,5 @@ impl Table {
             ui.painter()
                 .text(place, Align2::CENTER_CENTER, name, font, palette.dim_text);
         }
-    }
-}
-
-/// Draws the phase switch in the corner of the table.
-fn phase_switch_ui(ui: &mut Ui, table: &Table, view: &mut OverviewView) {
-    let place = Rect::from_min_size(table.rect.min, HEADER - vec2(4.0, 4.0));
-    let switch = Button::selectable(view.show_phase, RichText::new("phase").size(SMALL_SIZE))
-        .wrap_mode(egui::TextWrapMode::Extend);
-    let response = ui.put(place, switch);
-    if response
-        .on_hover_text("Show phases below magnitudes")
-        .clicked()
-    {
-        view.show_phase = !view.show_phase;
     }
 }

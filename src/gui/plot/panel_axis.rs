@@ -30,6 +30,8 @@ pub(super) struct PanelAxis {
     /// Whether tick labels and axis label are drawn; otherwise the axis takes no room and only its
     /// grid lines are drawn.
     pub(super) is_drawn: bool,
+    /// Number of labels up to which those of a low plot move together.
+    pub(super) least_labels: usize,
 }
 
 /// Spacing of the tick labels of an axis.
@@ -52,6 +54,7 @@ impl PanelAxis {
             label: String::new(),
             thickness,
             is_drawn: true,
+            least_labels: 2,
         }
     }
 
@@ -71,8 +74,11 @@ impl PanelAxis {
     pub(super) fn spacer(&self) -> impl Fn(GridInput) -> Vec<GridMark> + use<> {
         let ticks = self.ticks;
         let spacing = self.spacing.clone();
+        let least = self.least_labels;
         move |input| match &spacing {
-            TickSpacing::Usual => ticks.marks(input.bounds, input.base_step_size),
+            TickSpacing::Usual => {
+                ticks.marks_with_labels(input.bounds, input.base_step_size, least)
+            }
             TickSpacing::WidestNumber { digit_pt } => {
                 ticks.horizontal_marks(input.bounds, input.base_step_size, *digit_pt)
             }

@@ -40,7 +40,9 @@ const DECADE_LABEL_GAP: f64 = 34.0;
 const DECADE_LINE_GAP: f64 = 5.0;
 /// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
 const LEAST_LABEL_GAP: f64 = 13.0;
-/// Factor by which the labels of a low plot move together until it has two.
+/// Minimum distance between labels that move together until there are more than two \[pt\].
+const LOW_LABEL_GAP: f64 = 15.0;
+/// Factor by which the labels of a low plot move together until it has enough.
 const CLOSER: f64 = 0.8;
 /// Space between two labels along a horizontal axis \[digit widths\].
 const LABEL_SPACE: f64 = 0.6;
@@ -82,6 +84,17 @@ impl Ticks {
     /// Returns the ticks and grid lines between two axis coordinates; the step size of a mark
     /// determines whether egui_plot labels it.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
+        self.marks_with_labels(bounds, units_per_point, 2)
+    }
+
+    /// Like [`Self::marks`], with the labels of a low plot moved together until there are at least
+    /// `least` of them or no more fit.
+    pub(super) fn marks_with_labels(
+        self,
+        bounds: (f64, f64),
+        units_per_point: f64,
+        least: usize,
+    ) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
             .all(f64::is_finite);
@@ -92,8 +105,13 @@ impl Ticks {
         let mut found = self.ticks_between(bounds, units_per_point, gap);
         // A single label does not show the scale, so the labels of a low plot may be closer
         // together.
-        while count_labels(&found) < 2 && gap > LEAST_LABEL_GAP {
-            gap = (CLOSER * gap).max(LEAST_LABEL_GAP);
+        let floor = if least > 2 {
+            LOW_LABEL_GAP
+        } else {
+            LEAST_LABEL_GAP
+        };
+        while count_labels(&found) < least && gap > floor {
+            gap = (CLOSER * gap).max(floor);
             found = self.ticks_between(bounds, units_per_point, gap);
         }
         let mut marks = Vec::with_capacity(found.len());
@@ -188,6 +206,7 @@ pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Ve
 
 #[cfg(test)]
 mod tests {
+    use super::super::steady_range::labelled_range;
     use super::*;
 
     /// Returns whether a mark has a label on an axis with `units_per_point`.
@@ -212,6 +231,28 @@ mod tests {
                 -80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0
             ]
         );
+    }
+
+    #[test]
+    fn a_low_bode_pane_has_five_labels_at_any_range_that_was_fitted() {
+        for height in [137.0, 160.0, 200.0] {
+            for width in 3..400 {
+                for lower in [-361.0, -53.0, -47.0, -1.0] {
+                    for (ticks, scale) in [
+                        (Ticks::Decimal(VERTICAL_TICK_GAP), Scale::Linear),
+                        (Ticks::Degrees, Scale::Degrees),
+                    ] {
+                        let range = Range::new(lower, lower + f64::from(width));
+                        let range = labelled_range(range, scale);
+                        let per_point = range.width() / height;
+                        let bounds = (range.min, range.max);
+                        let marks = ticks.marks_with_labels(bounds, per_point, 5);
+                        let labels = marks.iter().filter(|mark| is_labelled(**mark, per_point));
+                        assert!(labels.count() >= 5, "{range:?} {scale:?} in {height} pt");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::db_to_ratio;
 use gdcm_plot::figure::Range;
+use gdcm_plot::figure::axis::Scale;
 
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 
@@ -47,6 +48,15 @@ impl ValueUnit {
                 min: 1e-2,
                 max: 1e5,
             },
+        }
+    }
+
+    /// Returns the scale whose steps separate the tick labels.
+    pub(super) fn scale(self) -> Scale {
+        match self {
+            Self::Decibel | Self::Millisecond => Scale::Linear,
+            Self::Degree => Scale::Degrees,
+            Self::Ratio => Scale::Logarithmic,
         }
     }
 

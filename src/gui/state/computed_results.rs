@@ -37,6 +37,8 @@ use super::background::{Background, error_bar_progress};
 
 /// Age \[s\] from which results for older settings are marked as stale.
 const STALE_AFTER_S: f64 = 0.15;
+/// Waiting time \[s\] after which a spinner is displayed.
+const SPINS_AFTER_S: f64 = 0.3;
 /// Duration \[s\] after which background work is displayed: most jobs end before a display could be
 /// read.
 const BACKGROUND_AFTER_S: f64 = 0.5;
@@ -159,6 +161,14 @@ impl Results {
         }
     }
 
+    /// Returns whether a spinner is displayed at `now` \[s, window clock\].
+    pub fn spins(&self, now: f64) -> bool {
+        match self.waiting_since {
+            Some(since) => self.is_waiting() && now - since > SPINS_AFTER_S,
+            None => false,
+        }
+    }
+
     /// Returns whether the displayed results should be marked as stale at `now` \[s, window
     /// clock\].
     pub fn is_stale(&self, now: f64) -> bool {
@@ -167,5 +177,24 @@ impl Results {
             None => false,
         };
         self.stopped || is_late
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spinner_appears_only_after_a_while_and_not_after_a_stop() {
+        let mut results = Results {
+            requested: 1,
+            waiting_since: Some(10.0),
+            ..Results::default()
+        };
+        assert!(!results.spins(10.29) && results.spins(10.31));
+        results.stopped = true;
+        assert!(!results.spins(11.0));
+        results = Results::default();
+        assert!(!results.spins(11.0), "nothing is awaited");
     }
 }

@@ -11,6 +11,7 @@ use super::physics_display::PhysicsDisplay;
 use super::poles_display::PolesDisplay;
 use super::selection::Selection;
 use super::view::View;
+use super::view_pages::ViewPages;
 use crate::gui::plot::FigureView;
 
 /// Display state; none of it changes a result.
@@ -24,6 +25,7 @@ pub struct Display {
     pub physics: PhysicsDisplay,
     pub poles: PolesDisplay,
     pub judging: JudgingDisplay,
+    pub pages: ViewPages,
     /// Figures of the views, kept between frames.
     pub figures: BTreeMap<View, FigureView>,
 }

@@ -114,18 +114,18 @@ impl ConditionRecords {
             .iter()
             .filter_map(|(_, row)| row.flight.clone())
             .collect();
-        let mut of_input = Vec::new();
         let excitations = Excitation::compare_records(&flights);
+        let mut first = None;
         for ((index, row), excitation) in rows.into_iter().zip(excitations) {
-            if excitation.excites(input) && !row.guess.held_out {
-                of_input.push((index, row.guess.kind));
+            if row.guess.held_out || !excitation.excites(input) {
+                continue;
             }
+            if row.guess.kind == RecordKind::Sweep {
+                return Some(index);
+            }
+            first = first.or(Some(index));
         }
-        let sweep = of_input
-            .iter()
-            .find(|(_, kind)| *kind == RecordKind::Sweep)
-            .or_else(|| of_input.first())?;
-        Some(sweep.0)
+        first
     }
 }
 

@@ -3,12 +3,8 @@
 
 use std::sync::Arc;
 
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Setting, Value};
+use gdcm_study::Analysis;
 use gdcm_study::decisions::settings::Settings;
-use gdcm_study::{Analysis, ConditionAnalysis, Edit};
-
-use super::window_state::State;
 
 /// Settings and results at the opening of the settings panel.
 #[derive(Clone, Debug)]
@@ -18,86 +14,4 @@ pub struct SettingsSession {
     pub analysis: Option<Arc<Analysis>>,
     /// Whether a setting is being dragged; long computations wait until it rests.
     pub is_dragged: bool,
-}
-
-impl State {
-    /// Begins a session with the present settings and, if they are up to date, the present results.
-    pub fn begin_settings_session(&mut self) {
-        let analysis = if self.results.is_behind() {
-            None
-        } else {
-            self.results.analysis.clone()
-        };
-        self.settings_session = Some(SettingsSession {
-            settings: self.study.settings.clone(),
-            analysis,
-            is_dragged: false,
-        });
-        self.history.begin_session();
-    }
-
-    /// Ends the session; its changes of settings become one undo step.
-    pub fn end_settings_session(&mut self) {
-        self.settings_session = None;
-        self.history.end_session(&self.study);
-    }
-
-    /// Returns whether a setting is being dragged.
-    pub fn is_setting_dragged(&self) -> bool {
-        match &self.settings_session {
-            Some(session) => session.is_dragged,
-            None => false,
-        }
-    }
-
-    /// Returns the settings of the table that have changed in the session, in its order.
-    pub fn changed_settings(&self) -> Vec<&'static Setting> {
-        let Some(session) = &self.settings_session else {
-            return Vec::new();
-        };
-        SETTINGS
-            .into_iter()
-            .filter(|setting| {
-                setting.value(&session.settings) != setting.value(&self.study.settings)
-            })
-            .collect()
-    }
-
-    /// Returns the value of a setting at the opening of the panel, if it has changed since.
-    pub fn previous_setting(&self, setting: &Setting) -> Option<Value> {
-        let session = self.settings_session.as_ref()?;
-        let previous = setting.value(&session.settings);
-        if previous == setting.value(&self.study.settings) {
-            None
-        } else {
-            Some(previous)
-        }
-    }
-
-    /// Returns the decisions that restore all settings of the session.
-    pub fn reverting_edits(&self) -> Vec<Edit> {
-        let mut edits = Vec::new();
-        for setting in self.changed_settings() {
-            if let Some(previous) = self.previous_setting(setting) {
-                edits.push(setting.to(previous));
-            }
-        }
-        edits
-    }
-
-    /// Returns the analysis at the opening of the panel, once a setting has changed.
-    pub fn previous_analysis(&self) -> Option<&Analysis> {
-        let analysis = self.settings_session.as_ref()?.analysis.as_deref()?;
-        let is_of_dataset = Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset);
-        if !is_of_dataset || self.changed_settings().is_empty() {
-            return None;
-        }
-        Some(analysis)
-    }
-
-    /// Returns the result of the displayed condition at the opening of the panel, once a setting
-    /// has changed.
-    pub fn previous_result(&self) -> Option<&ConditionAnalysis> {
-        self.previous_analysis()?.condition(self.condition().id())
-    }
 }

@@ -5,7 +5,7 @@ use crate::gui::plot::derivation_menu::QUESTION;
 /// Content shown by a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sheet {
-    /// Reasons for the result.
+    /// Reasons for the result, below the verdict.
     Reasons,
     /// Physics models, beside the narrow form of the left panel.
     Models,

@@ -38,7 +38,7 @@ impl ViewGroup {
     pub fn views(self) -> impl Iterator<Item = View> {
         View::ALL
             .into_iter()
-            .filter(move |view| view.facts().group == self)
+            .filter(move |view| view.facts().group == Some(self))
     }
 }
 
@@ -103,12 +103,17 @@ impl View {
         Self::Requirements,
     ];
 
-    /// Returns the views that the dock can show; the leads only if the study requests them.
+    /// Returns the pages of the dock; the leads only if the study requests them.
     pub fn docked(phase: PhaseCorrection) -> impl Iterator<Item = Self> {
         let has_leads = phase == PhaseCorrection::Lead;
         Self::ALL
             .into_iter()
-            .filter(move |view| view.facts().is_docked && (*view != Self::Leads || has_leads))
+            .filter(move |view| view.is_dock_page() && (*view != Self::Leads || has_leads))
+    }
+
+    /// Returns whether the view is a page of the dock, and therefore absent from the view bar.
+    pub fn is_dock_page(self) -> bool {
+        self.facts().group.is_none()
     }
 
     /// Returns the tab text.
@@ -137,8 +142,8 @@ pub struct ViewFacts {
     /// Whether the view shows results of every condition. Such a view displays a notice while its
     /// results belong to older settings.
     pub is_of_all_conditions: bool,
-    pub group: ViewGroup,
-    pub is_docked: bool,
+    /// Group in the view bar; `None` for the pages of the dock.
+    pub group: Option<ViewGroup>,
     /// Whether the dock is hidden while this view is in front.
     pub takes_dock: bool,
     /// Heading in the dock, if longer than the tab text.
@@ -154,8 +159,7 @@ impl ViewFacts {
         name: "",
         purpose: "",
         is_of_all_conditions: false,
-        group: ViewGroup::Response,
-        is_docked: false,
+        group: Some(ViewGroup::Response),
         takes_dock: false,
         long_name: None,
         figure: None,
@@ -218,7 +222,7 @@ const ACROSS: ViewFacts = ViewFacts {
 const POLES: ViewFacts = ViewFacts {
     name: "Poles",
     purpose: "Poles of every model of the condition in the s-plane, and the modes in a table",
-    group: ViewGroup::Models,
+    group: Some(ViewGroup::Models),
     figure: Some(FigureKind::Poles),
     ..ViewFacts::PLAIN
 };
@@ -227,7 +231,7 @@ const PHYSICS: ViewFacts = ViewFacts {
     name: "Physics",
     purpose: "Named physics parameters: which would have to move so that the physics models meet \
                     flight, and by how much",
-    group: ViewGroup::Models,
+    group: Some(ViewGroup::Models),
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Physics),
@@ -237,7 +241,7 @@ const PHYSICS: ViewFacts = ViewFacts {
 const COUPLINGS: ViewFacts = ViewFacts {
     name: "Couplings",
     purpose: "Input mixing and output feedback, their benefit, and their effect on the loop",
-    group: ViewGroup::Models,
+    group: Some(ViewGroup::Models),
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Couplings),
@@ -247,7 +251,7 @@ const COUPLINGS: ViewFacts = ViewFacts {
 const RECORDS: ViewFacts = ViewFacts {
     name: "Records",
     purpose: "Flight records of the condition, and models identified from them",
-    group: ViewGroup::Models,
+    group: Some(ViewGroup::Models),
     takes_dock: true,
     ..ViewFacts::PLAIN
 };
@@ -255,8 +259,7 @@ const RECORDS: ViewFacts = ViewFacts {
 const NET_GAIN: ViewFacts = ViewFacts {
     name: "Net gain",
     purpose: "Net gain of the selected responses over airspeed, with the schedule",
-    group: ViewGroup::Schedule,
-    is_docked: true,
+    group: None,
     long_name: Some("Net gain over airspeed"),
     is_of_all_conditions: true,
     figure: Some(FigureKind::NetGain),
@@ -267,8 +270,7 @@ const SCHEDULE_COST: ViewFacts = ViewFacts {
     name: "Schedule cost",
     purpose: "Net gain of the response in focus over airspeed, and its J before the correction, \
               at the optimum of each condition and under the schedule",
-    group: ViewGroup::Schedule,
-    is_docked: true,
+    group: None,
     is_of_all_conditions: true,
     figure: Some(FigureKind::ScheduleCost),
     ..ViewFacts::PLAIN
@@ -277,7 +279,8 @@ const SCHEDULE_COST: ViewFacts = ViewFacts {
 const CHANNELS: ViewFacts = ViewFacts {
     name: "Channels",
     purpose: "Gain or delay of every channel over airspeed",
-    group: ViewGroup::Schedule,
+    group: Some(ViewGroup::Schedule),
+    takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Channels),
     ..ViewFacts::PLAIN
@@ -287,8 +290,7 @@ const LEADS: ViewFacts = ViewFacts {
     name: "Leads",
     purpose: "Effect of the leads in each channel, and the gain that they add above \
                     the band",
-    group: ViewGroup::Schedule,
-    is_docked: true,
+    group: None,
     figure: Some(FigureKind::Leads),
     ..ViewFacts::PLAIN
 };
@@ -296,7 +298,7 @@ const LEADS: ViewFacts = ViewFacts {
 const EVIDENCE: ViewFacts = ViewFacts {
     name: "Evidence",
     purpose: "Net gains: sources of their scatter, significant differences between airspeeds, and variables that the schedule needs",
-    group: ViewGroup::Schedule,
+    group: Some(ViewGroup::Schedule),
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Evidence),
@@ -306,7 +308,7 @@ const EVIDENCE: ViewFacts = ViewFacts {
 const ASSESSMENT: ViewFacts = ViewFacts {
     name: "Assessment",
     purpose: "Benefit of the correction, condition by condition",
-    group: ViewGroup::Judge,
+    group: Some(ViewGroup::Judge),
     is_of_all_conditions: true,
     figure: Some(FigureKind::Assessment),
     ..ViewFacts::PLAIN
@@ -315,7 +317,7 @@ const ASSESSMENT: ViewFacts = ViewFacts {
 const COMPARE: ViewFacts = ViewFacts {
     name: "Compare",
     purpose: "Variants (named sets of decisions) compared with the current decisions",
-    group: ViewGroup::Judge,
+    group: Some(ViewGroup::Judge),
     ..ViewFacts::PLAIN
 };
 
@@ -323,7 +325,7 @@ const REQUIREMENTS: ViewFacts = ViewFacts {
     name: "Requirements",
     purpose: "Requirements as in a qualification: bandwidth, phase delay and modes, \
                     with a summary of J",
-    group: ViewGroup::Judge,
+    group: Some(ViewGroup::Judge),
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Requirements),

@@ -20,16 +20,22 @@ pub struct Arrangement {
     dock: View,
     /// Whether the dock is unfolded; `None` follows the window height.
     dock_open: Option<bool>,
+    /// Whether the dock has twice its usual height.
+    is_dock_enlarged: bool,
 }
+
+/// Views that the groups show first, indexed by `ViewGroup as usize`.
+const FIRST_VIEWS: [View; 4] = [View::Bode, View::Poles, View::Channels, View::Assessment];
 
 impl Default for Arrangement {
     fn default() -> Self {
         Self {
             group: ViewGroup::Response,
-            of_groups: [View::Bode, View::Poles, View::Channels, View::Assessment],
+            of_groups: FIRST_VIEWS,
             beside: None,
             dock: View::NetGain,
             dock_open: None,
+            is_dock_enlarged: false,
         }
     }
 }
@@ -50,11 +56,9 @@ impl Arrangement {
         self.beside.filter(|beside| *beside != self.view())
     }
 
-    /// Returns the view in the dock; `None` if the view in front takes the space of the dock, or if
-    /// the docked view is shown above.
+    /// Returns the page of the dock; `None` if the view in front takes the space of the dock.
     pub fn dock(&self) -> Option<View> {
-        let is_shown_above = self.view() == self.dock || self.beside() == Some(self.dock);
-        if self.view().facts().takes_dock || is_shown_above {
+        if self.view().facts().takes_dock {
             return None;
         }
         Some(self.dock)
@@ -70,14 +74,31 @@ impl Arrangement {
         self.dock_open = Some(is_open);
     }
 
+    /// Returns whether the dock has twice its usual height.
+    pub fn is_dock_enlarged(&self) -> bool {
+        self.is_dock_enlarged
+    }
+
+    /// Doubles the height of the dock and unfolds it, or restores its usual height.
+    pub fn enlarge_dock(&mut self, is_enlarged: bool) {
+        self.is_dock_enlarged = is_enlarged;
+        if is_enlarged {
+            self.dock_open = Some(true);
+        }
+    }
+
     /// Brings a group to the front, with the view that it showed last.
     pub fn show_group(&mut self, group: ViewGroup) {
         self.group = group;
     }
 
-    /// Brings a view and its group to the front; the view is then no longer shown beside.
+    /// Brings a view and its group to the front; the view is then no longer shown beside. A page of
+    /// the dock is shown in the dock.
     pub fn show(&mut self, view: View) {
-        let group = view.facts().group;
+        let Some(group) = view.facts().group else {
+            self.dock_view(view);
+            return;
+        };
         self.group = group;
         self.of_groups[group as usize] = view;
         if self.beside == Some(view) {
@@ -85,16 +106,24 @@ impl Arrangement {
         }
     }
 
-    /// Shows a view in the dock, and unfolds the dock.
+    /// Shows a page of the dock, and unfolds the dock. If the view in front takes its space, the
+    /// Bode view comes to the front.
     pub fn dock_view(&mut self, view: View) {
         self.dock = view;
         self.dock_open = Some(true);
+        if self.view().facts().takes_dock {
+            self.show(View::Bode);
+        }
     }
 
     /// Shows a view beside the view in front; with `None`, or with the view in front itself, shows
-    /// none.
+    /// none. A page of the dock is shown in the dock.
     pub fn show_beside(&mut self, view: Option<View>) {
-        self.beside = view.filter(|view| *view != self.view());
+        match view {
+            Some(page) if page.is_dock_page() => self.dock_view(page),
+            Some(view) if view == self.view() => self.beside = None,
+            _ => self.beside = view,
+        }
     }
 
     /// Returns the view `by` places further in the group in front, wrapping around.
@@ -112,13 +141,31 @@ impl Arrangement {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement; `None` unless every group shows one of its own views, which
-    /// may have changed between versions.
-    pub fn if_valid(self) -> Option<Self> {
+    /// Returns this stored arrangement, which an older version may have written: views that have
+    /// become pages of the dock are shown there. `None` unless every group shows one of its own
+    /// views, which may have changed between versions.
+    pub fn if_valid(mut self) -> Option<Self> {
+        if let Some(page) = self.beside
+            && page.is_dock_page()
+        {
+            self.beside = None;
+            self.dock = page;
+        }
         for group in ViewGroup::ALL {
-            if self.of_groups[group as usize].facts().group != group {
+            let index = group as usize;
+            let view = self.of_groups[index];
+            if view.is_dock_page() {
+                self.of_groups[index] = FIRST_VIEWS[index];
+                if self.group == group {
+                    self.dock = view;
+                    self.group = ViewGroup::Response;
+                }
+            } else if view.facts().group != Some(group) {
                 return None;
             }
+        }
+        if !self.dock.is_dock_page() {
+            self.dock = View::NetGain;
         }
         Some(self)
     }
@@ -126,15 +173,18 @@ impl Arrangement {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_study::PhaseCorrection;
+
     use super::*;
 
     #[test]
-    fn every_view_belongs_to_one_group_and_every_group_has_views() {
+    fn every_view_belongs_to_a_group_or_to_the_dock() {
         let views: Vec<View> = ViewGroup::ALL
             .into_iter()
             .flat_map(ViewGroup::views)
             .collect();
-        assert_eq!(views.len(), View::ALL.len());
+        let pages = View::docked(PhaseCorrection::Lead);
+        assert_eq!(views.len() + pages.count(), View::ALL.len());
         assert!(
             ViewGroup::ALL
                 .into_iter()
@@ -160,19 +210,54 @@ mod tests {
     fn a_view_is_never_shown_twice() {
         let mut arrangement = Arrangement::default();
         assert_eq!(arrangement.dock(), Some(View::NetGain));
-        arrangement.show(View::NetGain);
-        assert_eq!(arrangement.dock(), None);
-        arrangement.show(View::Bode);
+        arrangement.show(View::Leads);
+        assert_eq!(
+            (arrangement.view(), arrangement.dock()),
+            (View::Bode, Some(View::Leads))
+        );
         arrangement.show_beside(Some(View::NetGain));
         assert_eq!(
             (arrangement.dock(), arrangement.beside()),
-            (None, Some(View::NetGain))
+            (Some(View::NetGain), None)
         );
         arrangement.show_beside(Some(View::Poles));
         arrangement.show(View::Poles);
         assert_eq!(arrangement.beside(), None);
         arrangement.show(View::Records);
         assert_eq!(arrangement.dock(), None, "it takes the room of the dock");
+        arrangement.show(View::Channels);
+        assert_eq!(arrangement.dock(), None, "its plots contain the net gains");
+        arrangement.show(View::NetGain);
+        assert_eq!(
+            (arrangement.view(), arrangement.dock()),
+            (View::Bode, Some(View::NetGain))
+        );
+    }
+
+    #[test]
+    fn an_enlarged_dock_is_unfolded() {
+        let mut arrangement = Arrangement::default();
+        arrangement.open_dock(false);
+        arrangement.enlarge_dock(true);
+        assert!(arrangement.is_dock_enlarged() && arrangement.is_dock_open(false));
+        arrangement.enlarge_dock(false);
+        assert!(!arrangement.is_dock_enlarged() && arrangement.is_dock_open(false));
+    }
+
+    #[test]
+    fn an_arrangement_of_an_older_version_shows_its_views_in_the_dock() {
+        let text = r#"{"group": "Schedule", "of_groups": ["Bode", "Records", "Leads", "Compare"],
+            "beside": "NetGain", "dock": "NetGain", "dock_open": false}"#;
+        let stored: Arrangement = serde_json::from_str(text).unwrap();
+        let read = stored.if_valid().expect("each view has its place");
+        assert_eq!((read.view(), read.beside()), (View::Bode, None));
+        assert_eq!(read.dock(), Some(View::Leads));
+        let text = r#"{"group": "Judge", "of_groups": ["Error", "Poles", "NetGain", "Compare"]}"#;
+        let stored: Arrangement = serde_json::from_str(text).unwrap();
+        let mut read = stored.if_valid().expect("each view has its place");
+        assert_eq!(read.view(), View::Compare);
+        read.show_group(ViewGroup::Schedule);
+        assert_eq!(read.view(), View::Channels);
     }
 
     #[test]

@@ -6,7 +6,6 @@ use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::responses::{AirspeedCurves, AirspeedResponse};
-use gdcm_study::AcrossRole;
 use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::stages::condition_curves::display_band;
 
@@ -378,9 +377,4 @@ pub fn across_context(state: &State) -> String {
             format!("{} of {all} conditions", shown.of_study(&state.study).len())
         }
     }
-}
-
-/// Returns whether the models of a role are drawn.
-pub(super) fn is_role_shown(state: &State, role: AcrossRole) -> bool {
-    state.display.frequency.across_display.roles.contains(&role)
 }

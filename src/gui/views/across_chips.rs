@@ -5,7 +5,6 @@ use egui::{Align2, FontId, Pos2, Rect, Ui, pos2, vec2};
 use gdcm_plot::figure::responses::line_of;
 use gdcm_study::AcrossRole;
 
-use super::across::is_role_shown;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::Role;
@@ -37,7 +36,7 @@ pub(super) fn across_chips_ui(
 ) -> f32 {
     let mut row = ChipRow::new(area, SAMPLE);
     for role in AcrossRole::ALL {
-        let is_shown = is_role_shown(state, role);
+        let is_shown = state.display.frequency.across_display.roles.contains(&role);
         let face = ChipFace {
             text: role.name(),
             name: &format!("Show {}, plot of airspeeds", role.name()),

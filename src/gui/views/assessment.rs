@@ -10,6 +10,7 @@ use gdcm_study::AssessmentTable;
 
 use super::assessment_content::{assessed_pairs, assessment_sentences, assessment_text_table};
 use super::assessment_plots::{AssessmentPlots, PHASE_PERCENT};
+use super::axis_updates::axis_update;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::{FigureEvent, FigureScene, figure_ui};
@@ -19,7 +20,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Minimum plot size \[pt\].
-const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
+const LEAST_PLOT: Vec2 = vec2(130.0, 90.0);
 /// Smallest rise of J that the table, with one decimal, does not round to zero.
 const LEAST_SHOWN_RISE: f64 = 0.05;
 
@@ -80,11 +81,14 @@ fn bars_ui(
         .iter()
         .map(|condition| MarkId::Condition(condition.id()))
         .collect();
+    let range = plots.common_range();
     let panels = plots
         .pairs
         .iter()
-        .map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
-    let figure = Figure::default().plots(panels);
+        .map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair, range)));
+    let mut figure = Figure::default().plots(panels).shared_y().with_ranges();
+    view.set_subject(&format!("{:?}", state.display.judging.assessed));
+    view.hold_axes(&mut figure, axis_update(ui, state));
     let message = "No response of this kind: choose another kind above";
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),

@@ -99,9 +99,24 @@ impl AssessmentPlots<'_> {
         self.table.change(condition, pair)
     }
 
-    /// Builds the panel of a response: in each condition a bar with magnitude and phase part, and a
+    /// Returns the value range that all plots share.
+    pub(super) fn common_range(&self) -> Range {
+        let mut ends = Vec::new();
+        for &pair in &self.pairs {
+            for condition in self.state.dataset().conditions() {
+                if let Some(change) = self.change(condition.id(), pair) {
+                    ends.extend(PlacedChange { at: 0.0, change }.ends());
+                }
+            }
+        }
+        Range::spanning(ends)
+            .unwrap_or(Range::new(-1.0, 1.0))
+            .with_margin(MARGIN, 1.0)
+    }
+
+    /// Builds the panel of a response with a value range: in each condition a bar with magnitude and phase part, and a
     /// line across the bar at their sum.
-    pub(super) fn panel(&self, pair: Pair) -> Panel {
+    pub(super) fn panel(&self, pair: Pair, range: Range) -> Panel {
         let mut found = Vec::new();
         let mut left_out = Vec::new();
         let mut names = Vec::new();
@@ -113,7 +128,6 @@ impl AssessmentPlots<'_> {
                 None => left_out.push(at),
             }
         }
-        let range = visible_range(&found);
         let value_axis = Axis::linear("").showing(Some(range));
         Panel::new(Axis::named("Condition", names), value_axis)
             .with(left_out_ground(&left_out, range))
@@ -147,12 +161,6 @@ impl AssessmentPlots<'_> {
         }
         numbers
     }
-}
-
-fn visible_range(found: &[PlacedChange]) -> Range {
-    Range::spanning(found.iter().flat_map(PlacedChange::ends))
-        .unwrap_or(Range::new(-1.0, 1.0))
-        .with_margin(MARGIN, 1.0)
 }
 
 /// Returns the bars of both parts: improvements, then deteriorations.
@@ -205,6 +213,8 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
 }
 
 fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
+    // The visible range may exceed the range of the data.
+    let range = range.with_margin(1.0, 0.0);
     Spans {
         name: String::new(),
         color: Color::new(Hue::Rejected).tint(13),

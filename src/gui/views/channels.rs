@@ -5,10 +5,13 @@ use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
 use gdcm_plot::figure::gains::{
     Across, GainAxes, GainQuantity, Measure, add_previous, channels_figure, quieten,
+    reserve_room_for_bars,
 };
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Figure, all_channels};
 
+use super::PageEntry;
+use super::axis_updates::axis_update;
 use super::error_bars::{dim_older_bars, error_bars_switch_ui, painted_uncertainty};
 use super::gain_plots::{GainPlots, LEAST_PLOT, gain_command};
 use crate::gui::commands::command::Command;
@@ -16,7 +19,7 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::figure_view::{figure_within_ui, rows};
 use crate::gui::plot::{FigureScene, FigureView, figure_ui};
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::choices::{PageOption, PageWords};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Height of the headings "Input channels" and "Output channels" \[pt\].
@@ -24,29 +27,55 @@ const HEADING_HEIGHT: f32 = 20.0;
 /// Gap below each half of the view \[pt\].
 const GAP: f32 = 8.0;
 
-/// Draws the selectors between gains and delays, and between airspeed and conditions, from right to
-/// left.
-pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.gains.channel_values;
-    let (mut measure, mut across) = shown;
-    let axes = [
-        (Across::Airspeed, "over airspeed", "With the schedule"),
-        (Across::Conditions, "over conditions", "In file order"),
-    ];
-    choice_ui(ui, "Horizontal axis of the channels", &mut across, &axes);
-    let figures = [
+/// Returns the pages: gains or delays.
+pub fn channels_pages(state: &State) -> Vec<PageEntry> {
+    let (shown, across) = state.display.gains.channel_values;
+    let pages = [
         (
             Measure::Gain,
-            "gains",
+            "Gains",
             "Gain k with its bounds; 1: no correction",
         ),
         (
             Measure::Delay,
-            "delays",
+            "Delays",
             "Delay τ [ms] with its bounds; 0: no correction",
         ),
     ];
-    choice_ui(ui, "Figure of the channels", &mut measure, &figures);
+    let mut entries = Vec::new();
+    for (measure, name, purpose) in pages {
+        entries.push(PageEntry {
+            words: PageWords {
+                name,
+                short_name: name,
+                purpose,
+            },
+            is_shown: measure == shown,
+            command: DisplayCommand::ShowChannels(measure, across).into(),
+        });
+    }
+    entries
+}
+
+/// Draws the selector between airspeed and conditions, and the switch of the error bars, from right
+/// to left.
+pub fn channels_header_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let shown = state.display.gains.channel_values;
+    let (measure, mut across) = shown;
+    let axes = [
+        (Across::Airspeed, "airspeed", "With the schedule"),
+        (Across::Conditions, "conditions", "In file order"),
+    ];
+    let option = PageOption {
+        name: "Horizontal axis of the channels",
+        label: "over",
+    };
+    option.ui(ui, &mut across, &axes, palette);
     error_bars_switch_ui(ui, state, "bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
@@ -62,7 +91,11 @@ pub fn channels_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let mut view = std::mem::take(&mut state.display.gains.channels);
-    let plots = channel_plots(state);
+    let mut plots = channel_plots(state);
+    let update = axis_update(ui, state);
+    let (measure, across) = state.display.gains.channel_values;
+    view.inputs.set_subject(&format!("{measure:?} {across:?}"));
+    view.inputs.hold_axes(&mut plots.figure, update);
     let mut inputs = plots.figure.clone();
     let mut outputs = plots.figure.clone();
     inputs.plots.truncate(state.dataset().inputs().len());
@@ -171,6 +204,7 @@ pub fn channel_plots(state: &State) -> GainPlots<'_> {
             add_previous(&mut figure, &quantities, previous);
         }
     }
+    reserve_room_for_bars(&mut figure);
     GainPlots {
         state,
         figure: figure.with_ranges(),

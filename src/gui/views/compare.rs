@@ -8,9 +8,11 @@ use gdcm_study::decisions::study::Variant;
 use gdcm_words::Table;
 use gdcm_words::decision_differences::decision_differences;
 
+use super::PageEntry;
 use super::variant_effects::effect_table;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
+use crate::gui::state::view_pages::{ComparePage, ViewPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::Toggle;
 use crate::gui::widgets::controls::named;
@@ -18,7 +20,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
-/// Draws all variants, their differences from the current decisions, and the effects.
+/// Draws all variants, and their differences from the current decisions or the effects of these.
 pub fn compare_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -37,20 +39,21 @@ pub fn compare_view_ui(
         variant_ui(ui, &variant, is_overlaid, commands);
     }
     ui.add_space(4.0);
-    let tables = [difference_table(state), effect_table(state)];
-    let half = 0.5 * ui.available_height();
-    for (index, table) in tables.iter().enumerate() {
-        ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-        let height = if index == 0 {
-            half
-        } else {
-            ui.available_height()
-        };
-        ui.allocate_ui(egui::vec2(ui.available_width(), height), |ui| {
-            let sorting = &mut state.display.judging.compare_sorting[index];
-            table_ui(ui, table, sorting, &TableLook::PLAIN, palette, commands);
-        });
-    }
+    let page = state.display.pages.compare;
+    let table = match page {
+        ComparePage::Decisions => difference_table(state),
+        ComparePage::Effects => effect_table(state),
+    };
+    ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
+    let sorting = &mut state.display.judging.compare_sorting[page as usize];
+    table_ui(ui, &table, sorting, &TableLook::PLAIN, palette, commands);
+}
+
+/// Returns the pages: decisions and effects.
+pub fn compare_pages(state: &State) -> Vec<PageEntry> {
+    [ComparePage::Decisions, ComparePage::Effects]
+        .map(|page| PageEntry::of(ViewPage::Compare(page), page == state.display.pages.compare))
+        .into()
 }
 
 /// Draws the name field and the button that stores the current decisions under that name.

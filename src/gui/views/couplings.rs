@@ -1,6 +1,6 @@
 //! Couplings: input mixing and output feedback, their benefit, and their effect on the loop.
 
-use egui::{Label, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
+use egui::{Frame, Label, Margin, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
@@ -13,6 +13,8 @@ use gdcm_words::Table;
 use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
 
+use super::PageEntry;
+use super::axis_updates::axis_update;
 use super::couplings_use::are_couplings_used;
 use super::figures::figure_request;
 use super::frequency_curves::condition_source;
@@ -20,8 +22,9 @@ use crate::gui::commands::command::Command;
 use crate::gui::plot::figure_legend::figure_legend_ui;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::view::View;
+use crate::gui::state::view_pages::{CouplingsPage, ViewPage};
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::choices::PageOption;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_block_ui};
@@ -31,8 +34,25 @@ const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial width of texts and tables, as a share of the view's width.
 const WORDS_PART: f32 = 0.56;
 
+/// Returns the pages: benefit, matrices, loop.
+pub fn couplings_pages(state: &State) -> Vec<PageEntry> {
+    let shown = state.display.pages.couplings;
+    [
+        CouplingsPage::Benefit,
+        CouplingsPage::Matrices,
+        CouplingsPage::Loop,
+    ]
+    .map(|page| PageEntry::of(ViewPage::Couplings(page), page == shown))
+    .into()
+}
+
 /// Draws the selector of the coupling correction: none, mixing, or mixing and feedback.
-pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+pub fn couplings_header_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
     let choices = [
@@ -52,13 +72,18 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
             "Constant shares of inputs and outputs are added to each input (M16)",
         ),
     ];
-    choice_ui(ui, "Couplings of the physics models", &mut chosen, &choices);
+    let option = PageOption {
+        name: "Couplings of the physics models",
+        label: "couplings",
+    };
+    option.ui(ui, &mut chosen, &choices, palette);
     if chosen != shown {
         commands.push(setting::COUPLINGS.to(chosen).into());
     }
 }
 
-/// Draws texts and tables on the left, the loop and the poles on the right.
+/// Draws the texts and tables of the page on the left, the loop and the poles on the right; the
+/// matrices take the whole width.
 pub fn couplings_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -77,6 +102,15 @@ pub fn couplings_view_ui(
             return;
         }
     };
+    let page = state.display.pages.couplings;
+    if page == CouplingsPage::Matrices {
+        let words = CouplingsWords {
+            state,
+            assessment: &assessment,
+            palette,
+        };
+        return words.ui(ui, page, commands);
+    }
     restore_panel_size(ui, "couplings");
     let width = WORDS_PART * ui.available_width();
     let panel = Panel::left("couplings")
@@ -89,9 +123,13 @@ pub fn couplings_view_ui(
             assessment: &assessment,
             palette,
         };
-        words.ui(ui, commands);
+        words.ui(ui, page, commands);
     });
-    couplings_figure_ui(ui, state, palette);
+    let beside = Frame::new().inner_margin(Margin {
+        left: 10,
+        ..Margin::ZERO
+    });
+    beside.show(ui, |ui| couplings_figure_ui(ui, state, palette));
 }
 
 /// Draws the figure below its legend; empty until its curves are available.
@@ -108,6 +146,7 @@ fn couplings_figure_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
         .figures
         .remove(&View::Couplings)
         .unwrap_or_default();
+    view.hold_axes(&mut figure, axis_update(ui, state));
     let scene = FigureScene {
         zooms: true,
         ..FigureScene::new(
@@ -131,16 +170,19 @@ struct CouplingsWords<'a> {
 }
 
 impl CouplingsWords<'_> {
-    fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    fn ui(&self, ui: &mut Ui, page: CouplingsPage, commands: &mut Vec<Command>) {
         ScrollArea::vertical()
-            .id_salt("couplings in words")
+            .id_salt(("couplings in words", page as usize))
             .auto_shrink(false)
-            .show(ui, |ui| {
-                self.use_ui(ui, commands);
-                // The costs, on which the decision depends, come first.
-                self.costs_ui(ui, commands);
-                self.remarks_ui(ui);
-                self.tables_ui(ui, commands);
+            .show(ui, |ui| match page {
+                CouplingsPage::Benefit => {
+                    self.use_ui(ui, commands);
+                    // The costs, on which the decision depends, come first.
+                    self.costs_ui(ui, commands);
+                    self.remarks_ui(ui);
+                }
+                CouplingsPage::Matrices => self.matrices_ui(ui, commands),
+                CouplingsPage::Loop => self.loop_ui(ui, commands),
             });
     }
 
@@ -210,8 +252,8 @@ impl CouplingsWords<'_> {
         }
     }
 
-    /// Draws the coupling matrices, then the loop and its poles.
-    fn tables_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    /// Draws the coupling matrices.
+    fn matrices_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in coupling_matrix_tables(self.assessment, self.state.dataset()) {
             // Values in parentheses lie within their error bar, so they are not distinguishable
             // from zero.
@@ -227,6 +269,10 @@ impl CouplingsWords<'_> {
             };
             self.table_ui(ui, &table, look, commands);
         }
+    }
+
+    /// Draws the tables of the loop and of its poles.
+    fn loop_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in [self.loop_table(), self.pole_table()] {
             if !table.rows.is_empty() {
                 self.table_ui(ui, &table, TableLook::PLAIN, commands);

@@ -9,10 +9,12 @@ use gdcm_words::uncertainty::{
     difference_table, difference_verdict, differences_summary, second_variable_table,
 };
 
+use super::PageEntry;
 use super::scatter_bars::ScatterBars;
 use super::schedule_tables::FormsTable;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::view_pages::{EvidencePage, ViewPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_block_ui, table_height, table_ui};
@@ -20,8 +22,20 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_block_ui, table_heig
 /// Maximum table height \[pt\]; longer tables scroll.
 const MOST_TABLE: f32 = 330.0;
 
-/// Shows the findings first (significant differences, a superfluous second variable, sources of the
-/// scatter), then the tables of differences, second variables and forms of the schedule.
+/// Returns the pages: findings, differences, forms.
+pub fn evidence_pages(state: &State) -> Vec<PageEntry> {
+    let shown = state.display.pages.evidence;
+    [
+        EvidencePage::Findings,
+        EvidencePage::Differences,
+        EvidencePage::Forms,
+    ]
+    .map(|page| PageEntry::of(ViewPage::Evidence(page), page == shown))
+    .into()
+}
+
+/// Shows the findings (significant differences, a superfluous second variable, sources of the
+/// scatter), or the tables of differences, or those of second variables and forms of the schedule.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -32,35 +46,46 @@ pub fn evidence_view_ui(
         ui.label(RichText::new(state.results.absence_of_error_bars()).color(palette.dim_text));
         return;
     };
-    let page = EvidencePage {
+    let page = EvidenceTables {
         uncertainty: &uncertainty,
         palette,
     };
     let mut sortings = state.display.gains.evidence_tables;
-    ui.label(RichText::new(differences_summary(&uncertainty)).font(medium(BODY_SIZE)));
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        page.differences_ui(ui, state, commands);
-        page.second_variable_ui(ui, state);
-        let bars = ScatterBars {
-            uncertainty: &uncertainty,
-            palette,
-        };
-        bars.ui(ui, state);
-        let [differences, second_variables, forms] = &mut sortings;
-        page.difference_table_ui(ui, state, differences, commands);
-        page.second_variable_table_ui(ui, state, second_variables, commands);
-        page.forms_table_ui(ui, state, forms, commands);
-    });
+    let [differences, second_variables, forms] = &mut sortings;
+    let shown = state.display.pages.evidence;
+    ScrollArea::vertical()
+        .id_salt(("evidence", shown as usize))
+        .auto_shrink(false)
+        .show(ui, |ui| match shown {
+            EvidencePage::Findings => {
+                let summary = differences_summary(&uncertainty);
+                ui.label(RichText::new(summary).font(medium(BODY_SIZE)));
+                page.differences_ui(ui, state, commands);
+                page.second_variable_ui(ui, state);
+                let bars = ScatterBars {
+                    uncertainty: &uncertainty,
+                    palette,
+                };
+                bars.ui(ui, state);
+            }
+            EvidencePage::Differences => {
+                page.difference_table_ui(ui, state, differences, commands);
+            }
+            EvidencePage::Forms => {
+                page.second_variable_table_ui(ui, state, second_variables, commands);
+                page.forms_table_ui(ui, state, forms, commands);
+            }
+        });
     state.display.gains.evidence_tables = sortings;
 }
 
 /// Context for drawing the evidence.
-struct EvidencePage<'a> {
+struct EvidenceTables<'a> {
     uncertainty: &'a Uncertainty,
     palette: &'a Palette,
 }
 
-impl EvidencePage<'_> {
+impl EvidenceTables<'_> {
     fn is_significant(&self, difference: &AirspeedDifference) -> bool {
         difference.is_significant(self.uncertainty.level)
     }

@@ -11,6 +11,7 @@ pub mod assessment_content;
 mod assessment_header;
 mod assessment_plots;
 mod automatic_settings;
+mod axis_updates;
 mod bandwidth;
 mod bandwidth_settings;
 pub mod bode;
@@ -68,31 +69,33 @@ use gdcm_study::jobs::analysis_jobs::AssessmentJob;
 use gdcm_study::jobs::curve_jobs::ModesJob;
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::view::View;
+use crate::gui::state::view_pages::ViewPage;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 use across::{across_header_ui, across_job, across_pages, across_view_ui};
 use assessment::assessment_view_ui;
 use assessment_content::assessed_pairs;
-use assessment_header::assessment_header_ui;
+use assessment_header::{assessment_header_ui, assessment_pages};
 use bode::bode_view_ui;
-use channels::{channels_header_ui, channels_view_ui};
-use compare::compare_view_ui;
-use couplings::{couplings_header_ui, couplings_view_ui};
+use channels::{channels_header_ui, channels_pages, channels_view_ui};
+use compare::{compare_pages, compare_view_ui};
+use couplings::{couplings_header_ui, couplings_pages, couplings_view_ui};
 use error_bars::error_bars_switch_ui;
-use evidence::evidence_view_ui;
+use evidence::{evidence_pages, evidence_view_ui};
 use leads::leads_view_ui;
 use model_error::{error_header_ui, error_view_ui};
 use need::{Need, current_analysis};
 use net_gain::net_gain_view_ui;
 use net_gain_header::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_words};
 use net_gain_pairs::net_gain_pairs;
-use overview::overview_view_ui;
+use overview::{overview_pages, overview_view_ui};
 use physics::{
     physics_evidence_ui, physics_header_ui, physics_job, physics_pages, physics_view_ui,
 };
-use poles::{poles_header_ui, poles_view_ui};
+use poles::{poles_header_ui, poles_pages, poles_view_ui};
 use records::{
     records_header_ui, records_pages, records_side_ui, records_view_ui, simulation_jobs,
 };
@@ -172,6 +175,17 @@ pub struct PageEntry {
     pub command: Command,
 }
 
+impl PageEntry {
+    /// Creates the entry of a page of a view without columns or jobs of its own.
+    fn of(page: ViewPage, is_shown: bool) -> Self {
+        Self {
+            words: page.words(),
+            is_shown,
+            command: DisplayCommand::ShowPage(page).into(),
+        }
+    }
+}
+
 /// Text in a view's header.
 #[derive(Clone, Copy, Debug)]
 pub enum ViewTitle {
@@ -198,7 +212,7 @@ const BODE: ViewContent = ViewContent {
 const ERROR: ViewContent = ViewContent {
     draw: error_view_ui,
     title: ViewTitle::ResponseAndCondition,
-    tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
+    tools: error_header_ui,
     tools_width: 160.0,
     figure_pairs: focused_pair,
     ..ViewContent::PLAIN
@@ -207,6 +221,7 @@ const ERROR: ViewContent = ViewContent {
 const OVERVIEW: ViewContent = ViewContent {
     draw: overview_view_ui,
     title: ViewTitle::Condition,
+    pages: overview_pages,
     ..ViewContent::PLAIN
 };
 
@@ -224,6 +239,7 @@ const ACROSS: ViewContent = ViewContent {
 const POLES: ViewContent = ViewContent {
     draw: poles_view_ui,
     title: ViewTitle::Condition,
+    pages: poles_pages,
     tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
     tools_width: 180.0,
     needs: modes_needs,
@@ -243,8 +259,9 @@ const PHYSICS: ViewContent = ViewContent {
 
 const COUPLINGS: ViewContent = ViewContent {
     draw: couplings_view_ui,
-    title: ViewTitle::Condition,
-    tools: |ui, state, _, commands| couplings_header_ui(ui, state, commands),
+    title: ViewTitle::Words(|_| "all conditions".to_owned()),
+    pages: couplings_pages,
+    tools: couplings_header_ui,
     tools_width: 220.0,
     needs: |state| vec![Need::Couplings(couplings_job(state))],
     ..ViewContent::PLAIN
@@ -268,15 +285,19 @@ const RECORDS: ViewContent = ViewContent {
 
 const CHANNELS: ViewContent = ViewContent {
     draw: channels_view_ui,
-    tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
-    tools_width: 410.0,
+    title: ViewTitle::Words(|_| "inputs above outputs, on the same axis".to_owned()),
+    pages: channels_pages,
+    tools: channels_header_ui,
+    tools_width: 240.0,
     ..ViewContent::PLAIN
 };
 
 const ASSESSMENT: ViewContent = ViewContent {
     draw: assessment_view_ui,
-    tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
-    tools_width: 640.0,
+    title: ViewTitle::Words(|_| "change of J, condition by condition".to_owned()),
+    pages: assessment_pages,
+    tools: assessment_header_ui,
+    tools_width: 500.0,
     needs: assessment_needs,
     figure_pairs: assessed_pairs,
     ..ViewContent::PLAIN
@@ -284,12 +305,16 @@ const ASSESSMENT: ViewContent = ViewContent {
 
 const EVIDENCE: ViewContent = ViewContent {
     draw: evidence_view_ui,
+    title: ViewTitle::Words(|_| "net gains at equal airspeed".to_owned()),
+    pages: evidence_pages,
     figure_pairs: |state| state.dataset().measuring_pairs().marked().collect(),
     ..ViewContent::PLAIN
 };
 
 const COMPARE: ViewContent = ViewContent {
     draw: compare_view_ui,
+    title: ViewTitle::Words(|_| "variants against the current decisions".to_owned()),
+    pages: compare_pages,
     needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
     ..ViewContent::PLAIN
 };

@@ -15,7 +15,7 @@ use crate::gui::plot::BodeScene;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit};
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::choices::PageOption;
 use crate::gui::widgets::palette::Palette;
 
 /// Draws the ratio and phase difference of every kept physics model and of the corrected model to
@@ -70,7 +70,7 @@ pub fn error_view_ui(
 }
 
 /// Draws the selector between phase differences \[deg\] and equivalent delays \[ms\].
-pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+pub fn error_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut unit = state.display.curves.phase_error;
     let units = [
         (PhaseErrorUnit::Degree, "Δφ", "Phase differences [deg]"),
@@ -80,7 +80,11 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
             "Equivalent delay of each phase difference [ms]",
         ),
     ];
-    choice_ui(ui, "Phase error", &mut unit, &units);
+    let option = PageOption {
+        name: "Phase error",
+        label: "phase",
+    };
+    option.ui(ui, &mut unit, &units, palette);
     if unit != state.display.curves.phase_error {
         commands.push(CurveCommand::DrawPhaseErrors(unit).into());
     }

@@ -6,9 +6,11 @@ use egui::{Panel, RichText, ScrollArea, Ui};
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::gains::{
     Across, GainQuantity, add_previous, add_variant, net_gain_figure, quieten,
+    reserve_room_for_bars,
 };
 use gdcm_plot::figure::marks::MarkId;
 
+use super::axis_updates::axis_update;
 use super::error_bars::{dim_older_bars, painted_uncertainty};
 use super::gain_plots::{GainPlots, gain_command};
 use super::net_gain_pairs::net_gain_pairs;
@@ -54,6 +56,7 @@ pub fn net_gain_view_ui(
         .remove(&View::NetGain)
         .unwrap_or_default();
     let mut plots = net_gain_plots(state);
+    view.hold_axes(&mut plots.figure, axis_update(ui, state));
     let selected = MarkId::Condition(state.condition().id());
     quieten(
         &mut plots.figure,
@@ -135,6 +138,7 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
             plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
         }
     }
+    reserve_room_for_bars(&mut figure);
     GainPlots {
         state,
         figure: figure.with_ranges(),

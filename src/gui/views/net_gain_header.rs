@@ -2,7 +2,7 @@
 //! form of the schedule.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Button, Grid, PopupCloseBehavior, RichText, Role, Ui, WidgetInfo};
+use egui::{Button, Grid, Label, PopupCloseBehavior, RichText, Role, Ui, WidgetInfo, vec2};
 
 use gdcm_plot::figure::condition_source::schedule_words;
 use gdcm_study::decisions::setting;
@@ -19,6 +19,9 @@ use crate::gui::widgets::choices::{Toggle, choice_ui};
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
 
+/// Size of the explanation of the control under the pointer \[pt\].
+const HELP_WIDTH: f32 = 300.0;
+const HELP_HEIGHT: f32 = 30.0;
 /// Width of the controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
@@ -135,6 +138,10 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                 ui.end_row();
             }
         });
-    // The line keeps its place, so that nothing moves under the pointer.
-    ui.label(palette.small(help.unwrap_or(" ")));
+    // Two lines stay reserved, so that the list does not jump when the pointer moves over it.
+    let size = vec2(HELP_WIDTH, HELP_HEIGHT);
+    ui.allocate_ui(size, |ui| {
+        ui.set_min_size(size);
+        ui.add(Label::new(palette.small(help.unwrap_or_default())).wrap());
+    });
 }

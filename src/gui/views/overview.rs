@@ -4,6 +4,7 @@ use egui::Ui;
 
 use gdcm_model::dataset::Pair;
 
+use super::PageEntry;
 use super::frequency_curves::bode_curves;
 use super::frequency_plot::action_command;
 use crate::gui::commands::command::Command;
@@ -13,8 +14,17 @@ use crate::gui::plot::overview::overview_ui;
 use crate::gui::plot::overview_scene::{OverviewCell, OverviewEvent, OverviewScene};
 use crate::gui::plot::{BodeCurve, CurveId};
 use crate::gui::state::view::View;
+use crate::gui::state::view_pages::ViewPage;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
+
+/// Returns the pages: magnitudes, or magnitudes and phases.
+pub fn overview_pages(state: &State) -> Vec<PageEntry> {
+    let shown = state.display.frequency.overview.show_phase;
+    [false, true]
+        .map(|has_phases| PageEntry::of(ViewPage::Overview(has_phases), has_phases == shown))
+        .into()
+}
 
 /// Draws every response in the displayed condition; a click shows a response in the Bode view.
 pub fn overview_view_ui(

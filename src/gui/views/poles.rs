@@ -9,15 +9,19 @@ use gdcm_plot::figure::poles::{PoleContents, damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, Range, Role};
 use gdcm_study::Edit;
 
+use super::PageEntry;
+use super::axis_updates::axis_update;
 use super::frequency_curves::{bode_options, condition_source};
 use super::mode_text::mode_description;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::figure_legend::figure_legend_ui;
+use crate::gui::plot::steady_range::AxisUpdate;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::gui::state::modes_cache::CachedModes;
 use crate::gui::state::view::View;
+use crate::gui::state::view_pages::{PolesPage, ViewPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
@@ -39,6 +43,16 @@ const SLOW: [Range; 2] = [
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
 /// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.3;
+/// Minimum height of the view with room for plots and table \[pt\]; below, the table is a page of its
+/// own only.
+const LEAST_WITH_TABLE: f32 = 440.0;
+
+/// Returns the pages: the s-plane, and the modes.
+pub fn poles_pages(state: &State) -> Vec<PageEntry> {
+    [PolesPage::Plane, PolesPage::Modes]
+        .map(|page| PageEntry::of(ViewPage::Poles(page), page == state.display.pages.poles))
+        .into()
+}
 
 /// Draws the switch for the zeros.
 pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
@@ -64,7 +78,16 @@ pub fn poles_view_ui(
     modes.refresh(state);
     state.display.poles.modes = modes;
     let height = ui.available_height();
-    if !state.display.poles.modes.table.rows.is_empty() {
+    let has_modes = !state.display.poles.modes.table.rows.is_empty();
+    if state.display.pages.poles == PolesPage::Modes {
+        if has_modes {
+            modes_ui(ui, state, palette, commands);
+        } else {
+            ui.label(palette.dim(absence_of_modes(state)));
+        }
+        return;
+    }
+    if has_modes && height >= LEAST_WITH_TABLE {
         restore_panel_size(ui, "modes");
         let panel = Panel::bottom("modes")
             .resizable(true)
@@ -72,18 +95,16 @@ pub fn poles_view_ui(
             .min_size(60.0);
         panel.show(ui, |ui| modes_ui(ui, state, palette, commands));
     }
-    let message = match state.modes() {
-        Some(_) => "The models of this condition have no poles: they are measured responses",
-        None => state.results.absence(),
-    };
+    let message = absence_of_modes(state);
     // The scene borrows the state, so the view is taken out of it while the figure is drawn.
     let mut view = state
         .display
         .figures
         .remove(&View::Poles)
         .unwrap_or_default();
+    let update = axis_update(ui, state);
     let figure = match poles(state) {
-        Some(figure) => with_screen_marks(figure, &view),
+        Some(figure) => with_screen_marks(figure, &mut view, update),
         None => Figure::default(),
     };
     figure_legend_ui(ui, &figure, palette);
@@ -101,6 +122,14 @@ pub fn poles_view_ui(
         commands.extend(pole_command(state, event));
     }
     state.display.figures.insert(View::Poles, view);
+}
+
+/// Returns the message shown without poles and modes.
+fn absence_of_modes(state: &State) -> &'static str {
+    match state.modes() {
+        Some(_) => "The models of this condition have no poles: they are measured responses",
+        None => state.results.absence(),
+    }
 }
 
 /// Returns the command for an event in the pole plots; `None` if the event has no effect.
@@ -142,13 +171,14 @@ pub fn poles(state: &State) -> Option<Figure> {
 
 /// Returns the figure as shown in the window: arcs of equal frequency follow the visible range, and
 /// the nominal model and the representatives have larger marks.
-fn with_screen_marks(mut figure: Figure, view: &FigureView) -> Figure {
+fn with_screen_marks(mut figure: Figure, view: &mut FigureView, update: AxisUpdate) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
         let [real, imaginary] = SLOW;
         slow.panels[0].x.range = Some(real);
         slow.panels[0].y.range = Some(imaginary);
     }
+    view.hold_axes(&mut figure, update);
     for (index, plot) in figure.plots.iter_mut().enumerate() {
         let panel = &mut plot.panels[0];
         let ranges = match view.ranges(index) {

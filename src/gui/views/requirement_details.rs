@@ -34,7 +34,7 @@ const HEIGHT: f32 = 250.0;
 /// Least distance between cards \[pt\].
 const CARD_GAP: f32 = 16.0;
 /// Widths of the cards, as shares.
-const CARD_SHARES: [f32; 3] = [0.26, 0.35, 0.39];
+const CARD_SHARES: [f32; 3] = [0.25, 0.37, 0.38];
 /// Width of the numbers beside a single card \[pt\].
 const NUMBERS: f32 = 250.0;
 
@@ -121,12 +121,7 @@ fn verdict(selected: &SelectedCell<'_>) -> String {
     }
     let value = value_with_unit_text(requirement, &cell.corrected);
     let physics = value_with_unit_text(requirement, &cell.physics);
-    let value = if matches!(requirement, Requirement::PeakError(_)) && verdict != "met" {
-        format!("{value} {verdict}")
-    } else {
-        format!("{value}, {verdict}")
-    };
-    format!("{value}; physics {physics}")
+    format!("{value}, {verdict}; physics {physics}")
 }
 
 /// Controls in the bar of the drawer.

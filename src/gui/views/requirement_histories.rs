@@ -1,7 +1,7 @@
 //! A flight record with its tolerances, or the responses to a test input, in the details of a
 //! requirement (M17.2).
 
-use egui::{Grid, Label, Ui, Vec2, vec2};
+use egui::{Align2, Grid, Label, Sense, Ui, Vec2, pos2, vec2};
 
 use gdcm_method::requirements::{RecordCheck, TestInput, TestInputShape};
 use gdcm_model::number_format::decimals;
@@ -18,6 +18,7 @@ use gdcm_words::requirement_grid::limit_description;
 
 use super::requirement_cards::role_color;
 use super::requirement_edits::requirement_edit;
+use super::requirement_grid::FULL_WIDTH;
 use super::requirement_history_jobs::{compared_record, over_time, record_job};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -26,12 +27,16 @@ use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
 use crate::gui::state::requirements_display::{RecordChoice, RequirementsDisplay};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::number_entry::number_entry_ui;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::palette::{Palette, small};
 use crate::message::Message;
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 90.0);
+/// Height of the line with the shares of time inside, and distance between them \[pt\].
+const SHARES: f32 = 16.0;
+const SHARES_GAP: f32 = 7.0;
 /// Relative height of the panel with the test input.
 const INPUT_WEIGHT: f64 = 0.4;
 
@@ -150,7 +155,10 @@ pub(super) fn time_detail_ui(
                 }
                 return;
             };
-            shares_ui(ui, quantity, palette);
+            // In a narrow window, the numbers beside the card include the shares.
+            if ui.ctx().content_rect().width() >= FULL_WIDTH {
+                shares_ui(ui, quantity, palette);
+            }
             quantity_figure(&history, quantity, state.dataset(), input)
         }
         Some(Ok(OverTime::Test(answers))) => {
@@ -172,6 +180,7 @@ pub(super) fn time_detail_ui(
     let words = HistoryWords(&figure);
     let scene = FigureScene {
         zooms: true,
+        is_stacked: true,
         ..FigureScene::new(
             "requirements in time",
             &figure,
@@ -205,17 +214,27 @@ fn output_figure(figure: Figure, output: usize) -> Figure {
     }
 }
 
-/// Draws the share of time that each model is inside the tolerance, in the model's colour.
+/// Draws the share of time that each model is inside the tolerance, in the model's colour; models
+/// that do not fit into the line are omitted.
 fn shares_ui(ui: &mut Ui, quantity: &QuantityHistory, palette: &Palette) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 8.0;
-        ui.label(palette.small("time inside, %"));
-        for (role, check) in &quantity.models {
-            let share = rounded_down_percent(check);
-            let text = palette.small(format!("{} {share}", role.name()));
-            ui.label(text.color(role_color(palette, *role)));
+    let size = vec2(ui.available_width(), SHARES);
+    let (row, _) = ui.allocate_exact_size(size, Sense::hover());
+    let mut texts = vec![("inside, %".to_owned(), palette.dim_text)];
+    for (role, check) in &quantity.models {
+        let text = format!("{} {}", role.name(), rounded_down_percent(check));
+        texts.push((text, role_color(palette, *role)));
+    }
+    let mut left = row.left();
+    for (text, color) in texts {
+        let width = text_width(ui, &text, small());
+        if left + width > row.right() {
+            break;
         }
-    });
+        let at = pos2(left, row.center().y);
+        ui.painter()
+            .text(at, Align2::LEFT_CENTER, text, small(), color);
+        left += width + SHARES_GAP;
+    }
 }
 
 /// Formats the share of time inside in percent, rounded down: only the whole is 100.

@@ -189,7 +189,7 @@ impl SettingControls<'_, '_> {
         let mut clicked = None;
         let mut pointed = None;
         let current = match texts.get(chosen) {
-            Some([_, text]) => text,
+            Some([_, text]) => *text,
             None => "…",
         };
         self.explained(words.help, |ui| {

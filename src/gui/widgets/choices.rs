@@ -3,9 +3,12 @@
 //! [`choice_ui`] changes a value in place; [`DropDown`] returns the chosen entry, which may be a
 //! command.
 
-use egui::{Button, ComboBox, Role, Ui, WidgetInfo};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Button, ComboBox, Role, TextWrapMode, Ui, WidgetInfo};
 
 use super::controls::{hint_ui, named, named_switch};
+use super::painted_text::chevron_down;
+use super::palette::{BODY_SIZE, Palette, body, medium};
 
 /// Draws a small drop-down list of choices (value, text, tooltip); stores the selected value in
 /// `value`.
@@ -35,6 +38,59 @@ pub fn choice_ui<T: Copy + PartialEq>(
         .response
         .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
     shown.response.on_hover_text(name);
+}
+
+/// Option in a page bar: a drop-down list whose closed text is its label and the chosen value.
+pub struct PageOption<'a> {
+    /// Accessible name.
+    pub name: &'a str,
+    /// Word before the value.
+    pub label: &'a str,
+}
+
+impl PageOption<'_> {
+    /// Draws the list of choices (value, text, tooltip); stores the selected value in `value`.
+    pub fn ui<T: Copy + PartialEq>(
+        &self,
+        ui: &mut Ui,
+        value: &mut T,
+        choices: &[(T, &str, &str)],
+        palette: &Palette,
+    ) {
+        let mut current = "…";
+        for (choice, text, _) in choices {
+            if choice == value {
+                current = text;
+                break;
+            }
+        }
+        let text = Self::closed_text_of(self.label, current, palette);
+        let arrow = palette.dim_text;
+        let shown = ComboBox::from_id_salt(self.name)
+            .selected_text(text)
+            .width(0.0)
+            .wrap_mode(TextWrapMode::Extend)
+            .icon(move |ui, place, _, _| {
+                chevron_down(ui, place.center(), arrow);
+            })
+            .show_ui(ui, |ui| {
+                for (choice, text, hint) in choices {
+                    ui.selectable_value(value, *choice, *text)
+                        .on_hover_text(*hint);
+                }
+            });
+        named(shown.response, Role::ComboBox, self.name);
+    }
+
+    /// Returns the dim label, followed by the value.
+    pub fn closed_text_of(label: &str, value: &str, palette: &Palette) -> LayoutJob {
+        let mut text = LayoutJob::default();
+        let dim = TextFormat::simple(body(), palette.dim_text);
+        let strong = TextFormat::simple(medium(BODY_SIZE), palette.text);
+        text.append(&format!("{label} "), 0.0, dim);
+        text.append(value, 0.0, strong);
+        text
+    }
 }
 
 /// Draws a check box; returns its new state after a click.

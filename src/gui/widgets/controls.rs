@@ -3,7 +3,7 @@
 //! Texts are in `painted_text.rs` and `text_fields.rs`, numbers in `number_field.rs` and
 //! `number_entry.rs`, check boxes and lists of choices in `choices.rs`, list rows in `list_row.rs`.
 
-use egui::{Button, Response, Role, Ui, WidgetInfo};
+use egui::{Button, Rect, RectAlign, Response, Role, Tooltip, Ui, WidgetInfo};
 
 /// Names a control for screen readers and tests.
 pub fn named(response: Response, role: Role, name: impl Into<String>) -> Response {
@@ -34,6 +34,34 @@ pub fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     } else {
         response.on_hover_text(hint)
     }
+}
+
+/// Adds a tooltip at the left of `subject`, the part of the window that it explains, so that it
+/// covers neither the subject nor the controls in it.
+pub fn hint_left_of(response: Response, subject: Rect, hint: &str) -> Response {
+    tooltip_left_of(&response, subject, |ui| {
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.label(hint);
+    });
+    response
+}
+
+/// Like [`hint_left_of`], with content of its own.
+pub fn tooltip_left_of(response: &Response, subject: Rect, add: impl FnOnce(&mut Ui)) {
+    let mut tooltip = Tooltip::for_enabled(response);
+    tooltip.popup = tooltip.popup.anchor(subject).align(RectAlign::LEFT_START);
+    tooltip.show(add);
+}
+
+/// Adds a tooltip above a control whose subject lies below it, such as a curve.
+pub fn hint_above(response: Response, hint: &str) -> Response {
+    let mut tooltip = Tooltip::for_enabled(&response);
+    tooltip.popup = tooltip.popup.align(RectAlign::TOP_START);
+    tooltip.show(|ui| {
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.label(hint);
+    });
+    response
 }
 
 /// Control that emits a command.

@@ -76,6 +76,18 @@ fn with_gap(letters: &[char], kept: usize, head: f32) -> String {
         .collect()
 }
 
+/// Returns the leading parts of text, which commas separate, that fit into `room` \[pt\]; at least the
+/// first part.
+pub fn leading_parts<'a>(ui: &Ui, text: &'a str, room: f32, size: f32) -> &'a str {
+    let mut shown = text;
+    while text_width(ui, shown, FontId::proportional(size)) > room
+        && let Some((leading, _)) = shown.rsplit_once(", ")
+    {
+        shown = leading;
+    }
+    shown
+}
+
 /// Returns the width of text on a single line \[pt\].
 pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     ui.fonts_mut(|fonts| {
@@ -89,6 +101,20 @@ pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_parts_are_dropped_first() {
+        let ctx = egui::Context::default();
+        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let text = "condition 10: 60 kt, low altitude, high weight";
+            let width = |text| text_width(ui, text, FontId::proportional(12.0));
+            let two = "condition 10: 60 kt, low altitude";
+            assert_eq!(leading_parts(ui, text, width(text), 12.0), text);
+            assert_eq!(leading_parts(ui, text, width(two) + 1.0, 12.0), two);
+            assert_eq!(leading_parts(ui, text, 0.0, 12.0), "condition 10: 60 kt");
+        });
+        drop(output);
+    }
 
     #[test]
     fn long_names_that_differ_only_at_one_end_differ_when_they_are_shortened() {

@@ -45,12 +45,18 @@ pub fn row_text_within(ui: &Ui, row: Rect, room: Room, text: &str, size: f32, co
 
 /// Paints a small arrow: to the right if its section is folded, down if it is open.
 pub fn chevron(ui: &Ui, center: Pos2, is_open: bool, palette: &Palette) {
-    let corners = if is_open {
-        [vec2(4.0, -2.0), vec2(0.0, 2.0), vec2(-4.0, -2.0)]
-    } else {
-        [vec2(-2.0, -4.0), vec2(2.0, 0.0), vec2(-2.0, 4.0)]
-    };
+    if is_open {
+        return chevron_down(ui, center, palette.dim_text);
+    }
+    let corners = [vec2(-2.0, -4.0), vec2(2.0, 0.0), vec2(-2.0, 4.0)];
     let points = corners.map(|corner| center + corner).to_vec();
     ui.painter()
         .line(points, Stroke::new(1.3, palette.dim_text));
+}
+
+/// Paints a small arrow downwards.
+pub fn chevron_down(ui: &Ui, center: Pos2, color: Color32) {
+    let corners = [vec2(4.0, -2.0), vec2(0.0, 2.0), vec2(-4.0, -2.0)];
+    let points = corners.map(|corner| center + corner).to_vec();
+    ui.painter().line(points, Stroke::new(1.3, color));
 }

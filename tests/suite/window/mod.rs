@@ -13,6 +13,7 @@ mod figures;
 mod files;
 mod foreign;
 mod forms;
+mod frame;
 mod hands;
 mod keyboard;
 mod layout;

@@ -443,7 +443,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         "the new part is displayed"
     );
     let moved = window
-        .get_by_label_contains("Move the end of cond10_sweep_COL_1, 2")
+        .get_by_label_contains("Move the end of cond10_sweep_COL_1, 3")
         .rect()
         .center();
     drag(&mut window, [moved, moved + egui::vec2(30.0, 0.0)]);

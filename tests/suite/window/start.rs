@@ -39,30 +39,6 @@ fn press(window: &mut Window, label: &str) {
 }
 
 #[test]
-fn a_line_over_the_plots_of_the_example_offers_three_ways_in() {
-    let mut window = window();
-    let places = WAYS.map(|way| window.get_by_label(way).rect());
-    assert!(
-        places
-            .windows(2)
-            .all(|pair| pair[0].right() < pair[1].left()),
-        "beside one another: {places:?}"
-    );
-    assert!(
-        places.iter().all(|place| place.height() <= 18.0),
-        "slim: {places:?}"
-    );
-    click(&mut window, "Import models…");
-    assert!(state(&window).assembling.is_some());
-    let mut window = super::window();
-    open_by_path(&mut window, &files::small_dataset());
-    assert!(
-        WAYS.iter().all(|way| window.query_by_label(way).is_none()),
-        "one's own data need no such line"
-    );
-}
-
-#[test]
 fn the_start_page_comes_with_close_and_from_the_menu_and_leads_back() {
     let mut window = window();
     window.key_press_modifiers(Modifiers::COMMAND, Key::W);
@@ -106,10 +82,7 @@ fn the_start_page_opens_the_real_aircraft_with_its_records() {
     let records = &state(&window).records.conditions[&ConditionId(1)];
     let held_out: Vec<bool> = records.rows.iter().map(|row| row.guess.held_out).collect();
     assert_eq!(held_out, [false, true]);
-    for way in WAYS {
-        window.get_by_label(way);
-    }
-    // The simulated example is offered beside it, and so is the start page.
+    // The start page offers the simulated example.
     click(&mut window, "File");
     press(&mut window, "Start page");
     press(&mut window, "Simulated example");

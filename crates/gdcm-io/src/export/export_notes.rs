@@ -1,10 +1,12 @@
 //! What exported files omit or approximate, as far as several formats have it in common.
 
+use std::collections::BTreeMap;
+
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::pade::HIGHEST_PADE_ORDER;
 use gdcm_method::schedule::{Schedule, ScheduleCaution};
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::results::export_note::ExportNote;
+use gdcm_study::results::export_note::{ExportNote, SignedDelayApart};
 use gdcm_study::{AssessedCorrection, PhaseCorrection};
 
 use super::Export;
@@ -92,22 +94,7 @@ impl Export<'_> {
                 is_signed: schedule.leads.is_some(),
             });
         }
-        for caution in &schedule.cautions {
-            if let ScheduleCaution::SignedDelayApart {
-                channel,
-                condition,
-                tau_s,
-                elsewhere_s,
-            } = caution
-            {
-                notes.push(ExportNote::SignedDelayNotScheduled {
-                    channel: *channel,
-                    condition: *condition,
-                    tau_s: *tau_s,
-                    elsewhere_s: *elsewhere_s,
-                });
-            }
-        }
+        notes.extend(signed_delay_notes(schedule));
         notes
     }
 
@@ -126,6 +113,40 @@ impl Export<'_> {
             .iter()
             .all(|(_, regression)| regression.parameters().len() == 1)
     }
+}
+
+/// Returns a note on each condition with signed delays that cannot be scheduled.
+fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
+    let mut by_condition: BTreeMap<ConditionId, Vec<SignedDelayApart>> = BTreeMap::new();
+    for caution in &schedule.cautions {
+        if let ScheduleCaution::SignedDelayApart {
+            channel,
+            condition,
+            tau_s,
+            elsewhere_s,
+        } = caution
+        {
+            let apart = SignedDelayApart {
+                channel: *channel,
+                tau_s: *tau_s,
+                elsewhere_s: *elsewhere_s,
+            };
+            by_condition.entry(*condition).or_default().push(apart);
+        }
+    }
+    let mut notes = Vec::new();
+    for (condition, mut channels) in by_condition {
+        channels.sort_by(|a, b| {
+            let difference_a = (a.tau_s - a.elsewhere_s).abs();
+            let difference_b = (b.tau_s - b.elsewhere_s).abs();
+            difference_b.total_cmp(&difference_a)
+        });
+        notes.push(ExportNote::SignedDelaysNotScheduled {
+            condition,
+            channels,
+        });
+    }
+    notes
 }
 
 /// Returns the notes on a file with corrected models.

@@ -210,6 +210,9 @@ impl ExportSet {
         {
             plan.add_checksums(name);
         }
+        // What can be changed comes first.
+        plan.notes
+            .sort_by_key(|planned| planned.note.remedy().is_none());
         Ok(plan)
     }
 
@@ -467,9 +470,9 @@ mod tests {
         let plan = set.dry_run(&analysis, &source(), &Unobserved).unwrap();
         assert_eq!(
             codes(&plan),
-            ["no-error-bars", "delays-not-scheduled", "gain-table-error"]
+            ["delays-not-scheduled", "gain-table-error", "no-error-bars"]
         );
-        let delays = &plan.notes[1];
+        let delays = &plan.notes[0];
         assert_eq!(delays.files, [1, 2, 3]);
         assert_eq!(delays.note.remedy(), Some(ExportRemedy::ScheduleDelays));
     }
@@ -513,7 +516,7 @@ mod tests {
         });
         assert_eq!(limit, Some((12.0, &vec![0, 1])));
         assert!(
-            codes(&plan).contains(&"signed-delay-not-scheduled"),
+            codes(&plan).contains(&"signed-delays-not-scheduled"),
             "{:?}",
             codes(&plan)
         );

@@ -2,7 +2,7 @@
 
 pub use super::display_units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 pub use super::range::Range;
-pub use super::ticks::{Scale, Tick, TickGaps, ticks_of};
+pub use super::ticks::{Scale, Tick, TickGaps, step_above, ticks_of};
 
 /// Margin at both ends of a fitted range, relative to its width.
 const MARGIN: f64 = 0.05;

@@ -8,12 +8,13 @@ use gdcm_study::results::uncertainty::Uncertainty;
 pub use super::condition_classes::{Classes, class_names};
 pub use super::gain_quantity::{Across, GainAxes, GainQuantity, Measure};
 
+use super::axis::Range;
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::gain_panel::{GainPanel, SIGNIFICANT};
 use super::gain_quantity::placed_results;
-use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
+use super::marks::{Along, Curve, DotShape, Dots, Mark, MarkId};
 use super::role::Role;
 
 /// Ratio of plot height to width, without and with error bars.
@@ -194,6 +195,27 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
     }
     marks.push(Mark::Dots(dots));
     marks
+}
+
+/// Part of the range of the dots that is reserved for error bars above and below it.
+const ROOM_FOR_BARS: f64 = 0.3;
+
+/// Sets value ranges that do not depend on the error bars, for the screen, where the bars appear
+/// later than the dots and must not move them. Longer bars end at the frame.
+pub fn reserve_room_for_bars(figure: &mut Figure) {
+    for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
+        let mut values = Vec::new();
+        for mark in &panel.marks {
+            if matches!(mark, Mark::Curve(_) | Mark::Dots(_)) {
+                values.extend(mark.values(Along::Y));
+            }
+        }
+        // The first value to be included is that without correction; the others are ends of bars.
+        values.extend(panel.y.including.first());
+        if let Some(range) = Range::spanning(values) {
+            panel.y.range = Some(range.with_margin(ROOM_FOR_BARS, panel.y.least));
+        }
+    }
 }
 
 /// Removes labels and brackets from net-gain plots for the screen, where labels appear under the

@@ -91,7 +91,7 @@ fn degree_step(least: f64) -> f64 {
 
 /// Returns the smallest of 1, 2 and 5 times a power of ten not below `least`; 1 if `least` is not
 /// positive and finite.
-pub(super) fn step_above(least: f64) -> f64 {
+pub fn step_above(least: f64) -> f64 {
     if !(least > 0.0 && least.is_finite()) {
         return 1.0;
     }

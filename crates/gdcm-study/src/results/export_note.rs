@@ -29,6 +29,14 @@ pub enum FileSummary {
     Checksums { files: usize },
 }
 
+/// Signed delay of a channel in a condition, far from its mean in the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignedDelayApart {
+    pub channel: Channel,
+    pub tau_s: f64,
+    pub elsewhere_s: f64,
+}
+
 /// Something that an exported file omits or approximates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExportNote {
@@ -39,12 +47,11 @@ pub enum ExportNote {
         /// Whether the delays are signed: of delays and leads.
         is_signed: bool,
     },
-    /// The signed delay of a channel in one condition is far from those in the others.
-    SignedDelayNotScheduled {
-        channel: Channel,
+    /// The signed delays of some channels in one condition are far from those in the others.
+    SignedDelaysNotScheduled {
         condition: ConditionId,
-        tau_s: f64,
-        elsewhere_s: f64,
+        /// Channels, the greatest difference first.
+        channels: Vec<SignedDelayApart>,
     },
     /// The requested couplings are unavailable.
     CouplingsLeftOut { why: CouplingError },
@@ -112,7 +119,7 @@ impl ExportNote {
         match self {
             Self::DelaysNotScheduled { .. } => "delays-not-scheduled",
             Self::ConstantDelays { .. } => "constant-delays",
-            Self::SignedDelayNotScheduled { .. } => "signed-delay-not-scheduled",
+            Self::SignedDelaysNotScheduled { .. } => "signed-delays-not-scheduled",
             Self::CouplingsLeftOut { .. } => "couplings-left-out",
             Self::GainTableError { .. } => "gain-table-error",
             Self::TimeTableError { .. } => "time-table-error",

@@ -1,7 +1,7 @@
 //! The files that an export writes, with the head of the selected one, and what they omit or
 //! approximate.
 
-use egui::{Button, Frame, Label, RichText, Role, ScrollArea, Sense, Stroke, Ui, vec2};
+use egui::{Button, Frame, Label, RichText, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, vec2};
 
 use gdcm_io::export::export_set::{ExportPlan, PlannedFile, PlannedNote};
 use gdcm_model::number_format::counted;
@@ -215,7 +215,9 @@ fn note_ui(
         room -= button_width + 8.0;
         let place = words.with_min_x(words.right() - button_width);
         let button = Button::new(RichText::new(text).color(palette.accent)).frame(false);
-        ui.put(place, button)
+        let mut place_ui = ui.new_child(UiBuilder::new().max_rect(place));
+        place_ui
+            .add(button)
             .asks(OutputCommand::ApplyExportRemedy(remedy), commands);
     }
     let shown = end_elided(ui, &title, room, BODY_SIZE);

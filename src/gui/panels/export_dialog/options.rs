@@ -316,10 +316,8 @@ fn existing_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let announced = existing_words(state);
     let choices = &mut state.forms.export.choices;
     ui.checkbox(&mut choices.replaces, "Overwrite existing files");
-    ui.horizontal(|ui| {
-        ui.add_space(22.0);
-        ui.label(palette.small(announced));
-    });
+    let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+    painted_text(ui, line, 22.0, &announced, small(), palette.dim_text);
     let remembers = &mut state.forms.export.remembers;
     ui.checkbox(remembers, "Remember for this study");
 }

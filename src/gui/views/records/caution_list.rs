@@ -58,7 +58,7 @@ pub(super) fn caution_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Co
         palette.text,
     );
     let count = match page.records.identification() {
-        Some(_) if page.records.changed => format!("{}, outdated", entries.len()),
+        Some(_) if page.is_outdated() => format!("{}, outdated", entries.len()),
         Some(_) => entries.len().to_string(),
         None => "–".to_owned(),
     };

@@ -1,7 +1,7 @@
 //! Commands and progress in the view's page bar.
 
 use egui::containers::menu::MenuButton;
-use egui::{Button, ProgressBar, RichText, Role, Ui};
+use egui::{Align, Button, Layout, RichText, Role, Sense, Ui, vec2};
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::counted;
@@ -131,21 +131,22 @@ fn progress_ui(
     if let Some(left_s) = progress.left_s {
         words.push_str(&format!(", {left_s:.0} s left"));
     }
-    let size = egui::vec2(BAR_WORDS, ui.spacing().interact_size.y);
+    let size = vec2(BAR_WORDS, ui.spacing().interact_size.y);
     let step = match state.records.under_way() {
         Some(job) => format!("condition {}: {}", job.condition, job.news().step),
         None => "waiting".to_owned(),
     };
-    ui.allocate_ui_with_layout(
-        size,
-        egui::Layout::left_to_right(egui::Align::Center),
-        |ui| {
-            ui.set_min_width(BAR_WORDS);
-            ui.label(palette.dim(words)).on_hover_text(step);
-        },
-    );
-    let bar = ProgressBar::new(progress.share)
-        .desired_width(BAR)
-        .desired_height(6.0);
-    ui.add(bar);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_width(BAR_WORDS);
+        ui.label(palette.dim(words)).on_hover_text(step);
+    });
+    bar_ui(ui, progress.share, palette);
+}
+
+/// Draws a bar that is filled to `share`, 0 to 1.
+fn bar_ui(ui: &mut Ui, share: f32, palette: &Palette) {
+    let (place, _) = ui.allocate_exact_size(vec2(BAR, 6.0), Sense::hover());
+    ui.painter().rect_filled(place, 3.0, palette.line);
+    let filled = place.with_max_x(place.left() + share.clamp(0.0, 1.0) * BAR);
+    ui.painter().rect_filled(filled, 3.0, palette.accent);
 }

@@ -34,7 +34,7 @@ const MOST_EXTENSION: f64 = 0.5;
 /// Radius of the dots at the cursor \[pt\].
 const DOT: f32 = 2.8;
 
-/// What the lane above the charts and the read-outs need.
+/// Horizontal axis and cursor of the charts.
 pub(super) struct TimeView {
     /// Transform of the charts; only its horizontal axis is common to all.
     pub(super) transform: PlotTransform,

@@ -185,7 +185,7 @@ impl Grid<'_> {
         let mut hint = name;
         if let Some(found) = records.identification() {
             let figures = PairFigures::new(found, pair);
-            let is_outdated = records.changed;
+            let is_outdated = self.page.is_outdated();
             self.paint_figures(ui, place, figures, is_outdated);
             hint = format!("{hint}: {}", figures.words());
         }

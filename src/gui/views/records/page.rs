@@ -29,9 +29,14 @@ impl<'a> Page<'a> {
         found.map(AsRef::as_ref)
     }
 
+    /// Returns whether records or settings have changed since the identification.
+    pub(super) fn is_outdated(self) -> bool {
+        self.state.is_fit_outdated(self.state.condition().id())
+    }
+
     /// Returns the identification; `None` if records or settings have changed since.
     pub(super) fn current_identification(self) -> Option<&'a Arc<Identification>> {
-        if self.state.is_fit_outdated(self.state.condition().id()) {
+        if self.is_outdated() {
             return None;
         }
         self.records.identification()

@@ -39,9 +39,10 @@ pub(super) fn record_details_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<
         ui.add(Label::new(palette.small_warning(problem)).wrap());
     }
     kind_ui(ui, page, row, commands);
-    if row.flight.is_some() {
-        let words = quality_words(page, row);
-        ui.add(Label::new(palette.small(words)).wrap());
+    if let Some(flight) = &row.flight {
+        let mut parts: Vec<String> = length_words(flight).into_iter().collect();
+        parts.push(quality_words(page, row));
+        ui.add(Label::new(palette.small(parts.join(", "))).wrap());
     }
     if let Some(cost) = cost_of_others(page, row) {
         let words = format!("χ²/dof of the other fitted records: {cost:.2}");
@@ -50,7 +51,7 @@ pub(super) fn record_details_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<
 }
 
 /// Shows the manoeuvre, which can be changed, and what it excites: "[sweep] of LON, 0.3 to
-/// 13 rad/s, 60 s at 50 Hz".
+/// 13 rad/s".
 fn kind_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -73,7 +74,7 @@ fn kind_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<
     });
 }
 
-/// "of LON, 0.3 to 13 rad/s, 60 s at 50 Hz".
+/// "of LON, 0.3 to 13 rad/s".
 fn excitation_words(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> String {
     let mut parts = Vec::new();
     if let Some(input) = displayed_excited_input(ui, page) {
@@ -90,14 +91,19 @@ fn excitation_words(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> Stri
             parts.push(format!("{from:.2} to {to:.1} rad/s"));
         }
     }
-    if let (Some(first_s), Some(last_s)) = (flight.time_s.first(), flight.time_s.last())
-        && last_s > first_s
-    {
-        let length_s = last_s - first_s;
-        let rate_hz = (flight.time_s.len() - 1) as f64 / length_s;
-        parts.push(format!("{length_s:.0} s at {rate_hz:.0} Hz"));
-    }
     parts.join(", ")
+}
+
+/// "60 s at 50 Hz"; `None` without increasing stamps.
+fn length_words(flight: &FlightRecord) -> Option<String> {
+    let first_s = flight.time_s.first()?;
+    let last_s = flight.time_s.last()?;
+    let length_s = last_s - first_s;
+    if length_s <= 0.0 {
+        return None;
+    }
+    let rate_hz = (flight.time_s.len() - 1) as f64 / length_s;
+    Some(format!("{length_s:.0} s at {rate_hz:.0} Hz"))
 }
 
 /// Returns the lowest and the highest frequency \[rad/s\] with a level within [`EXCITED_DB`] of the
@@ -132,7 +138,7 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
             count => format!("{count} gaps"),
         });
         if found_use.inputs_at_limit.is_empty() {
-            parts.push("no input at its limit".to_owned());
+            parts.push("no clipping of inputs".to_owned());
         }
         for (signal, percent) in &found_use.inputs_at_limit {
             parts.push(format!("{} at its limit for {percent:.0} %", signal.name));
@@ -149,7 +155,7 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
         parts.push(format!("units of {} assumed", assumed.join(", ")));
     }
     if parts.is_empty() {
-        return "not checked yet: identify".to_owned();
+        return "not yet checked by an identification".to_owned();
     }
     parts.join(", ")
 }

@@ -99,7 +99,7 @@ fn shown_name(row: &LaidOutRecord, prefix: &str) -> String {
 }
 
 fn heads_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
-    let Page { state, palette, .. } = page;
+    let palette = page.palette;
     let beginning = if prefix.is_empty() {
         String::new()
     } else {
@@ -117,7 +117,7 @@ fn heads_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
     let upto = row.with_max_x(row.right() - LENGTH_END);
     painted_text(ui, upto, AT_RIGHT_END, "s", small(), palette.dim_text);
     let upto = row.with_max_x(row.right() - COST_END);
-    let is_outdated = state.is_fit_outdated(state.condition().id());
+    let is_outdated = page.is_outdated();
     let place = if is_outdated {
         painted_text(ui, upto, AT_RIGHT_END, "outdated", small(), palette.warning)
     } else {
@@ -230,14 +230,12 @@ impl RecordRow<'_> {
     /// Paints χ²/dof of the record: dim if outdated, in the warning colour if the fit is bad.
     fn cost_ui(&self, ui: &Ui, rect: Rect) {
         let Page {
-            state,
-            palette,
-            records,
+            palette, records, ..
         } = self.page;
         let Some(cost) = records.fit_cost(&self.row.table.name) else {
             return;
         };
-        let color = if state.is_fit_outdated(state.condition().id()) {
+        let color = if self.page.is_outdated() {
             palette.quiet_text
         } else if cost > BAD_FIT {
             palette.warning

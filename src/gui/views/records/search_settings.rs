@@ -2,7 +2,7 @@
 
 use egui::{Grid, Id, Ui};
 
-use gdcm_model::units::{number, six_digits, telling};
+use gdcm_model::units::{number, six_digits};
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
 
@@ -76,17 +76,26 @@ impl SearchList {
     }
 }
 
-/// Summarises the settings: "0.5–12 rad/s · orders automatic".
+/// Summarises the settings that differ from the defaults: "own band, own search".
 pub(super) fn settings_summary(page: Page<'_>) -> FoldSummary {
-    let [low, high] = page.state.identified_band(page.state.condition().id());
-    let search = &page.records.search;
-    let orders = if search.orders.is_empty() {
-        "orders automatic".to_owned()
+    let records = page.records;
+    let mut parts = Vec::new();
+    if records.band.is_some() {
+        parts.push("own band".to_owned());
+    }
+    if !records.references.is_empty() {
+        parts.push("references".to_owned());
+    }
+    if records.search != SearchSpace::default() {
+        parts.push("own search".to_owned());
+    }
+    let text = if parts.is_empty() {
+        "automatic".to_owned()
     } else {
-        format!("orders {}", list_text(&search.orders))
+        parts.join(", ")
     };
     FoldSummary {
-        text: format!("{}–{} rad/s · {orders}", telling(low, 2), telling(high, 1)),
+        text,
         is_doubtful: false,
     }
 }

@@ -1,0 +1,18 @@
+//! When the axes of the views may follow their data.
+
+use egui::Ui;
+
+use crate::gui::plot::steady_range::AxisUpdate;
+use crate::gui::state::window_state::State;
+
+/// Returns how far the displayed results have come: axes follow complete results, and only grow
+/// while the pointer drags.
+pub(super) fn axis_update(ui: &Ui, state: &State) -> AxisUpdate {
+    if state.results.is_waiting() {
+        AxisUpdate::Pending
+    } else if ui.input(|input| input.pointer.any_down()) {
+        AxisUpdate::Dragging
+    } else {
+        AxisUpdate::Complete
+    }
+}

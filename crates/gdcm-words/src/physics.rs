@@ -285,8 +285,8 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     let mut cautions = Vec::new();
     if let Some(moving) = diagnosis.fit.still_moving {
         cautions.push(format!(
-            "the fit has not settled after {}: {} still moves; it is usually one of a pair",
-            counted(diagnosis.fit.passes.len(), "pass").replace("passs", "passes"),
+            "the fit has not settled after {} passes: {} still moves; it is usually one of a pair",
+            diagnosis.fit.passes.len(),
             name(moving)
         ));
     }

@@ -6,7 +6,6 @@ use gdcm_study::decisions::setting;
 use gdcm_study::{Edit, Study};
 
 use super::failure::Failure;
-use super::study_options::apply;
 
 /// Option that sets a parameter.
 const OPTION: &str = "--parameter";
@@ -97,16 +96,19 @@ pub(super) fn apply_parameters(
             name: value.name.clone(),
             decision: ParameterDecision::Value(Some(value.change)),
         };
-        apply(study, OPTION, &edit)?;
+        decide(study, &edit)?;
     }
     if !is_physics_given && study.settings.physics == PhysicsCorrection::Off {
-        apply(
-            study,
-            OPTION,
-            &setting::PHYSICS.to(PhysicsCorrection::ByHand),
-        )?;
+        decide(study, &setting::PHYSICS.to(PhysicsCorrection::ByHand))?;
     }
     Ok(())
+}
+
+/// Applies a decision of the option.
+fn decide(study: &mut Study, edit: &Edit) -> Result<(), Failure> {
+    study
+        .apply(edit)
+        .map_err(|refusal| Failure::option(OPTION, refusal))
 }
 
 #[cfg(test)]

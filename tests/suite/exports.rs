@@ -28,7 +28,8 @@ impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 }
 
-fn models(path: &Path) -> Vec<FoundModel> {
+/// Reads the models in an exported file.
+pub(crate) fn models(path: &Path) -> Vec<FoundModel> {
     let found = read_models(&[path.to_owned()], &Headings::new(), &Silent).unwrap();
     assert!(found.faults.is_empty(), "{:?}", found.faults);
     found.models

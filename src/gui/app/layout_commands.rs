@@ -39,14 +39,14 @@ impl GdcmApp {
                 self.ctx.memory_mut(|memory| memory.reset_areas());
             }
             LayoutCommand::ShowLeft(is_open) => display.layout.left_open = Some(is_open),
-            LayoutCommand::ShowSheet(sheet) => display.layout.sheet = sheet,
-            LayoutCommand::ShowSettings(is_open) => display.layout.settings_open = is_open,
+            LayoutCommand::ShowSheet(sheet) => display.layout.show_sheet(sheet),
+            LayoutCommand::ShowSettings(is_open) => display.layout.show_settings(is_open),
             LayoutCommand::ShowAdvanced(is_open) => display.layout.advanced_open = is_open,
             LayoutCommand::ShowIdentified(is_open) => display.layout.identified_open = is_open,
             LayoutCommand::SetTheme(theme) => self.ctx.set_theme(theme),
             LayoutCommand::FocusField(name) => {
                 // Open the collapsed sections: a hidden field cannot receive the focus.
-                display.layout.settings_open = true;
+                display.layout.show_settings(true);
                 display.layout.advanced_open = true;
                 self.focus_next(NextFocus::Field(name));
             }

@@ -44,16 +44,16 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Opens the form for the channels of a new dataset, with a proposal based on the records that
-    /// do not fit the open dataset.
+    /// Opens the form for the channels of a new dataset, with a proposal based on the records
+    /// without a condition, and on those of the displayed condition that do not fit the open
+    /// dataset.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let mut rows: Vec<&LaidOutRecord> = self.state.records.unassigned.iter().collect();
         if let Some(records) = self.state.records.conditions.get(&condition) {
-            rows.extend(&records.rows);
+            // Records of a condition that fit the open dataset need no other.
+            rows.extend(records.rows.iter().filter(|row| row.flight.is_none()));
         }
-        // Records that fit the open dataset need no other.
-        rows.retain(|row| row.flight.is_none());
         let path = match self.state.records.sources.first() {
             Some(source) => source.with_extension("json.gz").display().to_string(),
             None => String::new(),

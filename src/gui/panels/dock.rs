@@ -153,6 +153,8 @@ fn dock_head_ui(
                 fold_ui(ui, dock.is_open, palette, commands);
                 dock_pages_ui(ui, state, dock.view, palette, commands);
                 ui.add_space(4.0);
+                // Selectable text would take the double click from the bar.
+                ui.style_mut().interaction.selectable_labels = false;
                 title_ui(ui, state, view_content(dock.view).title, palette);
             });
         },

@@ -32,6 +32,8 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
 /// Size of the box that constrains or releases a response \[pt\].
 const HOLD_BOX_SIZE: f32 = 13.0;
+/// Margin around the box that also reacts to the pointer \[pt\].
+const HOLD_BOX_MARGIN: f32 = 2.0;
 
 /// J at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
@@ -142,7 +144,7 @@ impl<'a> Cell<'a> {
         let corner = rect.right_top() + vec2(-HOLD_BOX_SIZE, 1.0);
         let place = Rect::from_min_size(corner, vec2(HOLD_BOX_SIZE, HOLD_BOX_SIZE));
         let response = ui.interact(
-            place.expand(2.0),
+            place.expand(HOLD_BOX_MARGIN),
             ui.scope_id().with(("hold", self.pair)),
             Sense::click(),
         );
@@ -242,14 +244,18 @@ impl<'a> Cell<'a> {
             half: rect.with_max_y(middle),
             text: decimals(gain, 2),
             font: medium(BODY_SIZE),
-            // Under the pointer, the box that holds the response takes the place of the error bar.
-            bar: if is_pointed { None } else { gain_bar },
+            bar: gain_bar,
             bar_color,
             underline: change.map(|change| CostParts {
                 before: change.uncorrected.magnitude,
                 after: change.corrected.magnitude,
             }),
-            end_room: if is_pointed { HOLD_BOX_SIZE } else { 6.0 },
+            // Under the pointer, the error bar makes room for the box that holds the response.
+            end_room: if is_pointed {
+                HOLD_BOX_SIZE + 2.0 * HOLD_BOX_MARGIN
+            } else {
+                6.0
+            },
         };
         let lower = CellValue {
             half: rect.with_min_y(middle - 1.0),

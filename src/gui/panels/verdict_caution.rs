@@ -46,7 +46,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
-            message: Message::new("no-couplings", "No couplings could be found"),
+            message: Message::new("no-couplings", "No couplings"),
         });
     }
     let cautions = coupling_cautions(used_couplings(state)?).len();

@@ -257,11 +257,10 @@ impl<'a> StepsLine<'a> {
     fn ui(&self, ui: &mut Ui, line: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let mut left = line.left();
         let mut right = line.right();
+        let mut reasons_place = line;
         if let Some(step) = &self.reasons {
-            let width = text_width(ui, &step.label, body());
-            let place = line.with_min_x(right - width);
-            link_ui(ui, place, step, palette, commands);
-            right = place.left() - GAP;
+            reasons_place.min.x = right - text_width(ui, &step.label, body());
+            right = reasons_place.left() - GAP;
         }
         if let Some(step) = self.primary {
             let width = text_width(ui, &step.label, medium(BODY_SIZE)) + 24.0;
@@ -289,6 +288,10 @@ impl<'a> StepsLine<'a> {
             caution_ui(ui, rest, caution, palette);
         } else if !self.note.is_empty() {
             note_ui(ui, rest, self.note, palette);
+        }
+        // Drawn last, so that the keyboard reaches the primary step first.
+        if let Some(step) = &self.reasons {
+            link_ui(ui, reasons_place, step, palette, commands);
         }
     }
 }

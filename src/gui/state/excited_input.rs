@@ -49,7 +49,12 @@ impl Excitation {
 
     /// Returns whether the record excites an input.
     pub fn excites(&self, input: usize) -> bool {
-        self.0.get(input).is_some_and(|share| *share >= EXCITED)
+        self.share(input) >= EXCITED
+    }
+
+    /// Returns the share of an input, 0 to 1; 0 for an input that the record lacks.
+    fn share(&self, input: usize) -> f64 {
+        self.0.get(input).copied().unwrap_or(0.0)
     }
 
     /// Returns the input in focus if it is excited, otherwise the most excited input; `None` if no
@@ -91,6 +96,28 @@ fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
     deviations
 }
 
+/// A record that excites an input.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// Row of the record.
+    index: usize,
+    is_sweep: bool,
+    /// Share of the input, 0 to 1.
+    share: f64,
+}
+
+impl Candidate {
+    /// Returns whether this record shows the input better: sweeps come before other manoeuvres,
+    /// then the largest share counts.
+    fn is_better_than(self, other: Self) -> bool {
+        if self.is_sweep == other.is_sweep {
+            self.share > other.share
+        } else {
+            self.is_sweep
+        }
+    }
+}
+
 impl ConditionRecords {
     /// Displays a used sweep of an input, unless the engineer has chosen a record; any other used
     /// record of the input if there is no sweep.
@@ -115,17 +142,23 @@ impl ConditionRecords {
             .filter_map(|(_, row)| row.flight.clone())
             .collect();
         let excitations = Excitation::compare_records(&flights);
-        let mut first = None;
+        // A sweep of another input may excite this one too, by the pilot's compensation: the record
+        // that excites it most is the sweep of it.
+        let mut best: Option<Candidate> = None;
         for ((index, row), excitation) in rows.into_iter().zip(excitations) {
             if row.guess.held_out || !excitation.excites(input) {
                 continue;
             }
-            if row.guess.kind == RecordKind::Sweep {
-                return Some(index);
+            let candidate = Candidate {
+                index,
+                is_sweep: row.guess.kind == RecordKind::Sweep,
+                share: excitation.share(input),
+            };
+            if best.is_none_or(|best| candidate.is_better_than(best)) {
+                best = Some(candidate);
             }
-            first = first.or(Some(index));
         }
-        first
+        best.map(|best| best.index)
     }
 }
 

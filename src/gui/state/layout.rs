@@ -22,3 +22,27 @@ pub struct Layout {
     pub advanced_open: bool,
     pub identified_open: bool,
 }
+
+impl Layout {
+    /// Opens a sheet, or closes the open one. A list closes the settings: beside the rail of a narrow
+    /// window, only one of them has room.
+    pub fn show_sheet(&mut self, sheet: Option<Sheet>) {
+        self.sheet = sheet;
+        if let Some(sheet) = sheet
+            && !sheet.is_on_right()
+        {
+            self.settings_open = false;
+        }
+    }
+
+    /// Opens the settings and closes a list, or closes the settings.
+    pub fn show_settings(&mut self, is_open: bool) {
+        self.settings_open = is_open;
+        if let Some(sheet) = self.sheet
+            && is_open
+            && !sheet.is_on_right()
+        {
+            self.sheet = None;
+        }
+    }
+}

@@ -298,8 +298,8 @@ impl State {
         }
     }
 
-    /// Returns the uncertainty of the values in the displayed condition for painting: while the
-    /// settings are open, it may belong to earlier settings, and is then dimmed.
+    /// Returns the uncertainty of the values in the displayed condition for painting: until it
+    /// is computed for the present settings, that of earlier settings, which is dimmed.
     pub fn painted_uncertainty(&self) -> ValueUncertainty<'_> {
         let current = self.value_uncertainty();
         if current.uncertainty.is_some() {
@@ -311,15 +311,12 @@ impl State {
         }
     }
 
-    /// Returns the newest uncertainty while the settings are open and their change has made it
-    /// older than the results; `None` otherwise.
+    /// Returns the newest uncertainty if a change has made it older than the results; `None`
+    /// otherwise.
     pub fn older_uncertainty(&self) -> Option<&Uncertainty> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         let is_current = self.uncertainty().is_some() && !self.others_are_older();
-        if self.settings_session.is_none()
-            || is_current
-            || !self.is_shown_dataset(&job.analysis.study.dataset)
-        {
+        if is_current || !self.is_shown_dataset(&job.analysis.study.dataset) {
             return None;
         }
         Some(uncertainty)

@@ -23,8 +23,8 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Returns the uncertainty that is drawn in plots of gains: while the settings are open, it may
-/// belong to earlier settings, and [`dim_older_bars`] dims it.
+/// Returns the uncertainty that is drawn in plots of gains: until it is computed for the present
+/// settings, that of earlier settings, which [`dim_older_bars`] dims.
 pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         return None;

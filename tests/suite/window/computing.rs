@@ -75,7 +75,8 @@ impl Executor for Trap {
 }
 
 /// Records the locations of panics, as the program does, in addition to the panic handler of the
-/// tests.
+/// tests. Every test that panics on purpose calls it first: the records are found by their message,
+/// so a panic without a record would take that of another test.
 fn note_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -92,12 +93,20 @@ fn set_alpha(window: &mut Window, alpha: f64) {
     window.run_steps(2);
 }
 
+/// Draws frames until the error bars are available too and nothing runs, so that the next task
+/// belongs to the live analysis. Error bars are requested only once the results are drawn, so
+/// [`wait_for_background`] alone may return before.
+fn wait_for_idle(window: &mut Window) {
+    wait_for_bars(window);
+    wait_for_background(window);
+}
+
 #[test]
 fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     note_panics();
     let trap = Trap::default();
     let mut window = window_with(example(), trap.warm_setup());
-    wait_for_background(&mut window);
+    wait_for_idle(&mut window);
     let before = state(&window).results.received;
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
@@ -143,9 +152,10 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
 
 #[test]
 fn after_a_panic_the_same_can_be_computed_again() {
+    note_panics();
     let trap = Trap::default();
     let mut window = window_with(example(), trap.warm_setup());
-    wait_for_background(&mut window);
+    wait_for_idle(&mut window);
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the fault is told", |window| {
@@ -161,6 +171,7 @@ fn after_a_panic_the_same_can_be_computed_again() {
 
 #[test]
 fn a_panic_over_the_first_results_leaves_a_window_that_can_open_another_file() {
+    note_panics();
     let trap = Trap::default();
     trap.panics.store(true, Ordering::Relaxed);
     let build = |creation: &mut eframe::CreationContext<'static>| {

@@ -91,7 +91,10 @@ fn an_error_stays_in_the_dialog_and_an_impossible_file_prevents_the_export() {
     press_export(&mut window);
     let form = &state(&window).forms;
     assert_eq!(form.shown, Some(gdcm::gui::state::forms::FormKind::Export));
-    assert_eq!(form.export.error.as_ref().unwrap().code, "not-a-directory");
+    assert_eq!(
+        form.export.error.as_ref().unwrap().code,
+        "output-directory-is-a-file"
+    );
     window.get_by_label("Close error");
 
     open_export(&mut window, folder.path(), "2-", &["m"]);
@@ -167,9 +170,13 @@ fn the_equivalent_command_line_writes_the_same_files() {
     );
     refill(&mut window, "Export folder", by_window.to_str().unwrap());
     wait_for_export_plan(&mut window);
+    let announced = note_codes(&window);
     press_export(&mut window);
 
-    desk.gdcm(&words).assert_done();
+    let ended = desk.messages(&words);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let noted: Vec<&str> = ended.notes.iter().map(|note| note.code.as_str()).collect();
+    assert_eq!(noted, announced, "the notes of the dialog");
     assert_eq!(names(&by_window), names(&by_command));
     for name in names(&by_window) {
         let same =
@@ -177,7 +184,7 @@ fn the_equivalent_command_line_writes_the_same_files() {
         assert!(same, "{name}");
     }
     // Run again, the command keeps its files, as the dialog does.
-    desk.gdcm(&words).assert_done();
+    assert_eq!(desk.messages(&words).status, 0);
     assert!(by_command.join("a_correction_2.m").exists());
 }
 
@@ -188,7 +195,8 @@ fn decisions_that_options_cannot_express_must_be_saved_first() {
     click(&mut window, "Keep physics model V+10kt");
     open_export(&mut window, folder.path(), "", &["csv"]);
     let line = window.state().export_command().unwrap();
-    assert!(line.contains(" --reject 10:V+10kt "), "{line}");
+    let id = state(&window).condition().id();
+    assert!(line.contains(&format!(" --reject {id}:V+10kt ")), "{line}");
     press(&mut window, Modifiers::NONE, Key::Escape);
 
     let scheduled = Edit::SetScheduled {

@@ -89,10 +89,12 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     open_export(&mut window, folder.path(), "corrected_", &["state-space"]);
     press_export(&mut window);
     assert_notice(&window, NoticeKind::Done, "exported", &["1 file"]);
-    assert!(
-        std::fs::metadata(&path).unwrap().len() > 10_000,
-        "models of two conditions"
-    );
+    let models = crate::exports::models(&path);
+    let conditions: Vec<Option<i64>> = models.iter().map(|model| model.facts.condition).collect();
+    assert_eq!(conditions, [Some(1), Some(3)]);
+    for model in &models {
+        assert!(model.draft.matrices.iter().all(Option::is_some));
+    }
 }
 
 #[test]
@@ -123,7 +125,12 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_assumed_and_chosen_in_the
     open_by_path(&mut window, &dataset);
     show_records(&mut window);
     give(&mut window, RecordsCommand::Add(vec![path]));
+    // Its name gives no condition: it waits in the list until one is chosen.
+    wait_until(&mut window, "the record without a condition", |window| {
+        state(window).records.unassigned.len() == 1
+    });
     let id = state(&window).condition().id();
+    give(&mut window, RecordsCommand::Assign(vec![0], id));
     let row = |window: &Window| {
         state(window)
             .records
@@ -131,8 +138,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_assumed_and_chosen_in_the
             .get(&id)
             .and_then(|of| of.rows.first().cloned())
     };
-    wait_until(&mut window, "the record", |window| row(window).is_some());
-    let asked = row(&window).unwrap();
+    let asked = row(&window).expect("the record of the condition");
     assert!(
         matches!(
             asked.cautions.as_slice(),
@@ -188,13 +194,19 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     let mut window = window();
     show_records(&mut window);
     wait_until(&mut window, "the records looked for", |window| {
-        state(window).records.reading.is_none()
+        let records = &state(window).records;
+        let conditions = state(window).dataset().conditions().len();
+        records.reading.is_none() && records.conditions.len() == conditions
     });
     let before = rows(&window);
+    let progress = format!("reading {} …", path.display());
     window.state_mut().dispatch(RecordsCommand::Add(vec![path]));
     window.step();
-    window.get_by_label_contains("long.csv …");
-    window.get_by_label("Stop").click();
+    // The page, which has no record to show, says so too; its words have no Stop beside them.
+    let progress = window.get_by_label(&progress).rect();
+    let stop = window.get_by_label("Stop");
+    assert!(stop.rect().y_range().contains(progress.center().y));
+    stop.click();
     window.run_steps(2);
     assert!(state(&window).records.reading.is_none());
     assert_notice(&window, NoticeKind::Done, "reading-stopped", &["long.csv"]);

@@ -234,6 +234,10 @@ fn the_dock_is_the_only_place_of_the_net_gains_and_a_double_click_doubles_it() {
     let height = |window: &Window| window.get_by_label("Bar of the dock").rect().top();
     let low = 900.0 - 24.0 - height(&window);
     let bar = window.get_by_label("Bar of the dock").rect();
+    // In the test harness, frames are 0.25 s apart, so that a double click needs a longer delay.
+    window
+        .ctx
+        .options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     for _ in 0..2 {
         window.drag_at(bar.center());
         window.run_steps(1);

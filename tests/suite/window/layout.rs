@@ -21,7 +21,20 @@ pub(super) fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
 
 pub(super) const SMALL: egui::Vec2 = vec2(1280.0, 720.0);
 
-/// Asserts that verdict, result, matrix, settings line and export are completely visible.
+/// Returns a text in the first line of the evidence for physics parameters: the name of the selected
+/// one, or that there is no diagnosis yet.
+fn physics_evidence(window: &Window) -> String {
+    if let Some(Some(Ok(assessment))) = state(window).physics()
+        && let Some(findings) = &assessment.applied.findings
+    {
+        let selected = state(window).selected_parameter(findings);
+        return findings.parameters[selected].name.clone();
+    }
+    "No diagnosis of physics parameters".to_owned()
+}
+
+/// Asserts that verdict, result, matrix, settings line and export are completely visible; in Physics,
+/// the evidence instead of result and matrix.
 fn assert_answered(window: &Window, view: View) {
     let screen = egui::Rect::from_min_size(Pos2::ZERO, SMALL);
     let is_whole = |label: &str, place: egui::Rect| {
@@ -30,27 +43,32 @@ fn assert_answered(window: &Window, view: View) {
             "{label} at {place} in {view:?}"
         );
     };
-    let mut parts = vec!["Gain: ", "Phase: "];
-    // In Records, the fit and the identified responses take the place of result and matrix.
-    if view != View::Records {
-        parts.push("global optimum");
+    let mut parts = vec!["Gain: ".to_owned(), "Phase: ".to_owned()];
+    match view {
+        // The fit and the identified responses take the place of result and matrix.
+        View::Records => {}
+        View::Physics => parts.push(physics_evidence(window)),
+        _ => parts.push("global optimum".to_owned()),
     }
     for part in parts {
         let mut found = window
-            .query_all_by_label_contains(part)
+            .query_all_by_label_contains(&part)
             .map(|node| node.rect());
         assert!(
             found.any(|place| screen.contains_rect(place)),
             "{part} in {view:?}"
         );
     }
-    let (inputs, outputs) = state(window).dataset().names_of_channels();
-    for (output, input) in outputs
-        .iter()
-        .flat_map(|output| inputs.iter().map(move |input| (output, input)))
-    {
-        let label = format!("Response {input} → {output}");
-        is_whole(&label, window.get_by_label(&label).rect());
+    // In Physics, the evidence takes the place of result and matrix.
+    if view != View::Physics {
+        let (inputs, outputs) = state(window).dataset().names_of_channels();
+        for (output, input) in outputs
+            .iter()
+            .flat_map(|output| inputs.iter().map(move |input| (output, input)))
+        {
+            let label = format!("Response {input} → {output}");
+            is_whole(&label, window.get_by_label(&label).rect());
+        }
     }
     for label in ["Settings", "Export corrections…"] {
         is_whole(

@@ -413,6 +413,9 @@ fn across_values(window: &Window) -> [Range; 2] {
     [Pane::Magnitude, Pane::Phase].map(|pane| fitted_values(&drawn, pane, band).expect("curves"))
 }
 
+/// Height of a fitted axis relative to its curves: margins, round ends, and at least five labels.
+const MOST_HEIGHT: f64 = 1.75;
+
 /// Returns whether the Airspeeds view shows these ranges with at most a small margin.
 fn across_is_fitted(window: &Window) -> bool {
     let view = &state(window).display.frequency.across;
@@ -424,7 +427,7 @@ fn across_is_fitted(window: &Window) -> bool {
             let shown = view.value_range(pane);
             shown.min <= values.min
                 && shown.max >= values.max
-                && shown.width() <= 1.2 * values.width().max(20.0)
+                && shown.width() <= MOST_HEIGHT * values.width().max(20.0)
         })
 }
 
@@ -465,7 +468,13 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
         .value_range(Pane::Magnitude);
     for (output, input) in [("NX", "PED"), ("NZ", "LAT"), ("P", "LAT")] {
         click(&mut window, &format!("Response {input} → {output}"));
-        assert!(across_is_fitted(&window), "{input} → {output}");
+        let across = &state(&window).display.frequency.across;
+        let shown = [Pane::Magnitude, Pane::Phase].map(|pane| across.value_range(pane));
+        assert!(
+            across_is_fitted(&window),
+            "{input} → {output}: {shown:?} for {:?}",
+            across_values(&window)
+        );
     }
     click(&mut window, "Response PED → NX");
     assert_ne!(

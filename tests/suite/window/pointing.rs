@@ -176,7 +176,11 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
     let model = place(&window, "physics model V+10kt");
     let lines = lines_of_tooltip(&mut window, pos2(model.left() + 60.0, model.center().y));
     assert!((3..=5).contains(&lines), "{lines} lines about a model");
-    let cell = place(&window, "Response LON → Q");
+    // The card below the matrix has the rows of the response in focus.
+    let focused = place(&window, "Response LON → Q");
+    rest_at(&mut window, focused.left_bottom() + vec2(8.0, -6.0));
+    assert_eq!(tooltips(&window), [], "no second card of the same response");
+    let cell = place(&window, "Response LAT → P");
     let lines = lines_of_tooltip(&mut window, cell.left_bottom() + vec2(8.0, -6.0));
     // The column headings add a line.
     assert!((5..=6).contains(&lines), "{lines} lines about a response");

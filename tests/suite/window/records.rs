@@ -529,6 +529,8 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
             .contains_key(&ConditionId(3))
     });
     click(&mut window, CONDITION_10);
+    wait_for_bars(&mut window);
+    wait_for_background(&mut window);
     window.get_by_label("Identify all 2").click();
     wait_until(&mut window, "a step of the first", |window| {
         state(window).records.under_way().is_some()
@@ -542,6 +544,10 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     window.get_by_label("Waiting for condition 10");
     assert_eq!(status(&window, 3), FitStatus::Queued);
     assert!(matches!(status(&window, 10), FitStatus::Running { .. }));
+    // Views of the condition just shown may be computed too, with their Stop in the status bar.
+    wait_until(&mut window, "only the Stop of the page bar", |window| {
+        window.query_all_by_label("Stop").count() == 1
+    });
     window.get_by_label("Stop").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());

@@ -466,8 +466,9 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         "{:?}",
         step.models
     );
-    window.run_steps(2);
-    assert!(is_named(&window, "step of LON"));
+    wait_until(&mut window, "the details with the test input", |window| {
+        is_named(window, "of LON by")
+    });
     click(&mut window, "Shape of the test input");
     click(&mut window, "doublet");
     let doublet = answers(&mut window);

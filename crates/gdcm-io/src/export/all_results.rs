@@ -72,7 +72,9 @@ pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
         let chosen = export.request.chosen(export.analysis);
         write_assessment_csv(export.analysis, &chosen, &mut text)
             .map_err(|error| ExportFault::contents(&error))?;
-        Ok(Exported::bytes(rows_summary(&text), text).with_notes(export.result_notes()))
+        Ok(Exported::bytes(rows_summary(&text), text)
+            .with(export.price_remarks())
+            .with_notes(export.result_notes()))
     },
     ..JSON
 };

@@ -9,12 +9,14 @@ const LONGEST_LINE: usize = 240;
 
 /// Returns the first lines of a text file.
 pub(super) fn text_head(bytes: &[u8]) -> Vec<String> {
-    // A few bytes for each character are enough for the longest head.
-    let most = (4 * MOST_LINES * LONGEST_LINE).min(bytes.len());
-    let text = String::from_utf8_lossy(&bytes[..most]);
+    let text = bytes.strip_suffix(b"\n").unwrap_or(bytes);
     let mut lines = Vec::new();
-    for line in text.lines().take(MOST_LINES) {
-        lines.push(line.chars().take(LONGEST_LINE).collect());
+    for line in text.split(|byte| *byte == b'\n').take(MOST_LINES) {
+        // A character has at most four bytes.
+        let most = (4 * LONGEST_LINE).min(line.len());
+        let shown = String::from_utf8_lossy(&line[..most]);
+        let shown = shown.trim_end_matches('\r');
+        lines.push(shown.chars().take(LONGEST_LINE).collect());
     }
     lines
 }

@@ -75,6 +75,7 @@ pub enum RequirementUnit {
 }
 
 impl Requirement {
+    /// Returns the group of rows to which the requirement belongs.
     pub fn group(self) -> RequirementGroup {
         match self {
             Self::Bandwidth(_) | Self::PhaseDelay(_) => RequirementGroup::Bandwidth,
@@ -84,6 +85,7 @@ impl Requirement {
         }
     }
 
+    /// Returns the unit of its cells and of its limit.
     pub fn unit(self) -> RequirementUnit {
         match self {
             Self::PhaseDelay(_) => RequirementUnit::Milliseconds,

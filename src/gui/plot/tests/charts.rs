@@ -37,8 +37,8 @@ fn harness() -> Harness<'static, Vec<PlotBounds>> {
             });
             let rect = Rect::from_min_size(corner + vec2(0.0, row as f32 * SIZE.y), SIZE);
             chart_ui(ui, rect, &chart, &palette);
-            let memory =
-                PlotMemory::load(ui.ctx(), ui.make_persistent_id(title)).expect("it was drawn");
+            let memory = PlotMemory::load(ui.ctx(), ui.make_persistent_id((title, chart.group)))
+                .expect("it was drawn");
             views.push(*memory.transform().bounds());
         }
     };

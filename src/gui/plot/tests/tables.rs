@@ -84,14 +84,6 @@ fn a_small_plot_is_found_by_its_name() {
 }
 
 #[test]
-fn phases_are_shown_when_asked_for() {
-    let mut harness = overview_harness(vec![lag(1, 0.0, 1.0, Role::Nominal)]);
-    harness.get_by_label("phase").click();
-    harness.run();
-    assert!(harness.state().overview.show_phase);
-}
-
-#[test]
 fn an_overview_without_curves_has_a_message() {
     overview_harness(Vec::new()).get_by_label("Nothing to draw");
 }

@@ -79,14 +79,19 @@ fn assumed_units_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     });
 }
 
-/// Offers to make a dataset from records that lack the open dataset's channels.
+/// Offers to make a dataset from records that lack the open dataset's channels, or that belong to
+/// no condition of it.
 pub(super) fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let has_missing = page.records.rows.iter().any(lacks_channels)
-        || page.state.records.unassigned.iter().any(lacks_channels);
-    if !has_missing {
+    let unassigned = &page.state.records.unassigned;
+    let has_missing =
+        page.records.rows.iter().any(lacks_channels) || unassigned.iter().any(lacks_channels);
+    let text = if has_missing {
+        "Records without the dataset's channels?"
+    } else if unassigned.is_empty() {
         return;
-    }
-    let text = "Records without the dataset's channels?";
+    } else {
+        "Records of another aircraft?"
+    };
     ui.add(Label::new(page.palette.small(text)).wrap());
     button_ui(
         ui,

@@ -21,7 +21,7 @@ struct ResponseRow<'a> {
 /// Name of a column, with the function that formats its cell.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
-const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
+const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
     ("condition", |row| row.results.condition.id().to_string()),
     ("airspeed_kt", |row| {
         row.results.condition.flight_state().airspeed_kt.to_string()
@@ -154,12 +154,20 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     ("D_band_high_s", |row| {
         row.results.upper_end(Scalar::BandDelay(row.pair))
     }),
+    ("gain_above_band_db", |row| {
+        cell(row.results.price().map(|price| price.of_pair_db(row.pair)))
+    }),
+    ("not_valid_above_rad_s", |row| {
+        cell(row.results.price().map(|price| price.limit_rad_s))
+    }),
 ];
 
 /// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model with and without the
 /// scheduled correction, for every response in the chosen conditions. A missing value is an empty
 /// cell. `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
-/// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals.
+/// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals. The last two columns
+/// contain the gain that the condition's own leads add to the response at ten times the band, and
+/// the limit of validity (M15.6).
 pub(crate) fn write_assessment_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
+use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::response::LeadFilter;
@@ -89,10 +89,10 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
             .deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)
     }),
     ("gain_above_band_db", |row| {
-        cell(row.price().map(|price| price.gains_db[row.channel]))
+        cell(row.results.price().map(|price| price.gains_db[row.channel]))
     }),
     ("not_valid_above_rad_s", |row| {
-        cell(row.price().map(|price| price.limit_rad_s))
+        cell(row.results.price().map(|price| price.limit_rad_s))
     }),
     ("contains", |row| row.results.contains.clone()),
 ];
@@ -173,11 +173,6 @@ impl ChannelRow<'_> {
             }
             Channel::Output(_) => vec![String::new(); mixing.ncols() + feedback.ncols()],
         }
-    }
-
-    /// Returns the cost of the leads in the condition's own correction.
-    fn price(&self) -> Option<LeadPrice> {
-        LeadPrice::new(self.results.own()?.leads.as_ref()?)
     }
 
     /// Returns the channel's lead filter in the condition's own correction.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::correction::{ChannelCorrection, LeadPrice};
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::{Condition, ConditionId};
 use gdcm_study::{Analysis, ConditionAnalysis};
@@ -53,6 +53,11 @@ impl ConditionResults<'_> {
     /// Returns the condition's own correction; `None` if the condition has no result.
     pub(super) fn own(&self) -> Option<&ChannelCorrection> {
         self.result().map(|result| &result.correction)
+    }
+
+    /// Returns the cost of the leads in the condition's own correction; `None` without leads.
+    pub(super) fn price(&self) -> Option<LeadPrice> {
+        LeadPrice::new(self.own()?.leads.as_ref()?)
     }
 
     /// Returns the error bar of a scalar result; `None` if it was not computed.

@@ -14,10 +14,11 @@ use gdcm_plot::figure::{
     Range, all_channels,
 };
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, ConditionCurves, curves_band};
-use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, Study};
+use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhysicsCorrection, Study};
 
 mod leads;
 mod numbers;
@@ -31,6 +32,7 @@ struct Example {
     curves: Arc<ConditionCurves>,
     requirements: Arc<Requirements>,
     couplings: Arc<CouplingsAssessment>,
+    physics: Arc<PhysicsAssessment>,
 }
 
 static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
@@ -58,11 +60,16 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     let couplings =
         engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
     let couplings = couplings.unwrap().unwrap().unwrap();
+    let physics = engine
+        .assess_physics(&study, PhysicsCorrection::Named, &Unobserved)
+        .unwrap();
+    let physics = physics.unwrap().unwrap();
     Example {
         analysis,
         curves,
         requirements,
         couplings,
+        physics,
     }
 });
 
@@ -103,9 +110,11 @@ impl Example {
     fn figure(&self, kind: FigureKind, pairs: Vec<Pair>) -> Figure {
         let requirements = Some(Arc::clone(&self.requirements));
         let couplings = Some(Arc::clone(&self.couplings));
+        let physics = Some(Arc::clone(&self.physics));
         self.request(&FigureRequest {
             requirements,
             couplings,
+            physics,
             ..FigureRequest::new(kind, pairs, self.channels())
         })
     }

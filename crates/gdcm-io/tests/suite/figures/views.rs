@@ -438,3 +438,30 @@ fn the_quantiles_of_an_error_are_those_of_the_representative_even_where_its_curv
     assert_eq!(shown.len(), 2);
     assert_eq!(quantiles(&[Role::Representative]), shown);
 }
+
+/// The values that the figure shows are those of the diagnosis, in the unit of the parameter.
+#[test]
+fn a_physics_parameter_is_drawn_in_every_condition_with_the_misfit_that_remains() {
+    let findings = EXAMPLE.physics.applied.findings.as_ref().unwrap();
+    let shown = findings.selected(None).unwrap();
+    let parameter = &findings.parameters[shown];
+    let diagnosis = &findings.diagnosis;
+    let figure = EXAMPLE.figure(FigureKind::Physics, Vec::new());
+    let [by_condition, misfit] = &figure.plots[..] else {
+        panic!("{} plots", figure.plots.len())
+    };
+    let mut expected = Vec::new();
+    for condition in &diagnosis.conditions {
+        let here = condition.z_here[shown].unwrap();
+        expected.push(here.z * parameter.plausible_sd);
+    }
+    let mut drawn: Vec<f64> = by_condition.panels[0].dots().map(|dot| dot.y).collect();
+    expected.sort_by(f64::total_cmp);
+    drawn.sort_by(f64::total_cmp);
+    assert_eq!(drawn, expected);
+    let steps = &diagnosis.scores.as_ref().unwrap().stepwise;
+    let ratios: Vec<f64> = steps.iter().map(|step| 100.0 * step.score.ratio).collect();
+    let remaining: Vec<f64> = misfit.panels[0].dots().map(|dot| dot.y).collect();
+    assert_eq!(remaining, ratios);
+    assert_eq!(remaining[0], 100.0, "without parameters");
+}

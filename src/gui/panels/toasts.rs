@@ -86,7 +86,7 @@ impl ToastBar<'_> {
         let buttons = in_line_ui(ui, inner, true, |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let close = ui.add(Button::new("×").frame(false));
-            let close = named(close, Role::Button, "Close message");
+            let close = named(close, Role::Button, "Dismiss");
             close.asks(FormCommand::DismissToast(notice.number), commands);
             let mut left = close.rect.left();
             if more > 0 {

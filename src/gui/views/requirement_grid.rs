@@ -493,12 +493,14 @@ impl GridPainter<'_> {
             },
         );
         // Only the selected cell is reached by Tab; the arrow keys lead to the others.
-        let sense = if is_selected {
+        // A cell that has just received the focus would lose it without a focusable sense.
+        let id = ui.scope_id().with((key, condition));
+        let is_focused = ui.memory(|memory| memory.has_focus(id));
+        let sense = if is_selected || is_focused {
             Sense::click()
         } else {
             Sense::CLICK
         };
-        let id = ui.scope_id().with((key, condition));
         let response = ui.interact(shown.rect, id, sense);
         let words = format!(
             "{}, condition {condition}: {}, {}; physics {}",

@@ -340,12 +340,15 @@ impl DrawnTable<'_> {
     ) -> Response {
         let cell = self.table.rows[self.order[at.row]][at.column].as_str();
         let place = Rect::from_x_y_ranges(self.column_range(at.column), self.row_range(at.row));
-        let sense = if is_entry {
+        // A cell that has just received the focus would lose it without a focusable sense.
+        let id = self.cell_id(at);
+        let is_focused = ui.memory(|memory| memory.has_focus(id));
+        let sense = if is_entry || is_focused {
             Sense::click()
         } else {
             Sense::CLICK
         };
-        let response = ui.interact(place, self.cell_id(at), sense);
+        let response = ui.interact(place, id, sense);
         let text = shown_text(cell);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
         response.context_menu(|ui| self.menu_ui(ui, Some(text), commands));

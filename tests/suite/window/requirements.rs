@@ -466,8 +466,14 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         "{:?}",
         step.models
     );
+    let shown = RequirementsDisplay {
+        detail: RequirementDetail::Time,
+        ..display(&window)
+    };
+    give(&mut window, DisplayCommand::ShowRequirements(shown));
+    let input = state(&window).dataset().inputs()[step.input].name.clone();
     wait_until(&mut window, "the details with the test input", |window| {
-        is_named(window, "of LON by")
+        is_named(window, &format!("of {input} by"))
     });
     click(&mut window, "Shape of the test input");
     click(&mut window, "doublet");

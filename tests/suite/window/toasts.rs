@@ -34,7 +34,7 @@ fn a_failure_stays_until_it_is_closed_and_the_others_are_listed() {
     window.get_by_label("first is refused");
     click(&mut window, "Close message: first is refused");
     assert_eq!(toasts(&window), ["third", "second"]);
-    click(&mut window, "Close message");
+    click(&mut window, "Dismiss");
     assert_eq!(toasts(&window), ["second"]);
     window.get_by_label("second is refused");
 }
@@ -71,7 +71,7 @@ fn the_name_of_the_dataset_returns_after_a_toast() {
     assert!(is_named(&window));
     refuse(&mut window, "refused");
     assert!(!is_named(&window));
-    click(&mut window, "Close message");
+    click(&mut window, "Dismiss");
     assert!(is_named(&window));
 }
 

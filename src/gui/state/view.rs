@@ -89,18 +89,18 @@ impl View {
         Self::Error,
         Self::Overview,
         Self::Across,
-        Self::Poles,
+        Self::Records,
         Self::Physics,
         Self::Couplings,
-        Self::Records,
+        Self::Poles,
         Self::NetGain,
         Self::ScheduleCost,
         Self::Channels,
         Self::Leads,
         Self::Evidence,
+        Self::Requirements,
         Self::Assessment,
         Self::Compare,
-        Self::Requirements,
     ];
 
     /// Returns the pages of the dock; the leads only if the study requests them.
@@ -232,7 +232,6 @@ const PHYSICS: ViewFacts = ViewFacts {
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Physics),
-    ..ViewFacts::PLAIN
 };
 
 const COUPLINGS: ViewFacts = ViewFacts {
@@ -242,7 +241,6 @@ const COUPLINGS: ViewFacts = ViewFacts {
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Couplings),
-    ..ViewFacts::PLAIN
 };
 
 const RECORDS: ViewFacts = ViewFacts {
@@ -279,7 +277,6 @@ const CHANNELS: ViewFacts = ViewFacts {
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Channels),
-    ..ViewFacts::PLAIN
 };
 
 const LEADS: ViewFacts = ViewFacts {
@@ -298,7 +295,6 @@ const EVIDENCE: ViewFacts = ViewFacts {
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Evidence),
-    ..ViewFacts::PLAIN
 };
 
 const ASSESSMENT: ViewFacts = ViewFacts {
@@ -325,5 +321,4 @@ const REQUIREMENTS: ViewFacts = ViewFacts {
     takes_dock: true,
     is_of_all_conditions: true,
     figure: Some(FigureKind::Requirements),
-    ..ViewFacts::PLAIN
 };

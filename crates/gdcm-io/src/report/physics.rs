@@ -45,7 +45,7 @@ pub(super) fn add_physics(page: &mut Page, analysis: &Analysis) {
             page.section("Physics parameters");
             page.paragraph(&format!("{}.", capital(&failure.to_string())));
             if let Some(left_out) = failure.left_out() {
-                page.list(left_out_lines(left_out).into_iter());
+                page.list(left_out_lines(left_out));
             }
             return;
         }
@@ -58,7 +58,7 @@ pub(super) fn add_physics(page: &mut Page, analysis: &Analysis) {
         page.wide_table(&parameter_table(findings, level), TABLE_COLUMNS);
         let mut lines = diagnosis_cautions(findings);
         lines.extend(left_out_lines(&findings.left_out));
-        page.list(lines.into_iter());
+        page.list(lines);
     }
     let values = applied_value_list(applied);
     if values.is_empty() {

@@ -67,6 +67,14 @@ impl CorrelationMatrix<'_> {
             room.top() + 8.0,
         );
         self.text(ui, channel_at, "channels");
+        let title_at = pos2(corner.x + 0.62 * side * count as f32, corner.y + 6.0);
+        ui.painter().text(
+            title_at,
+            Align2::LEFT_TOP,
+            "correlation",
+            small(),
+            self.palette.dim_text,
+        );
         let end = corner.y + side * count as f32 + 4.0;
         ui.allocate_rect(room.with_max_y(end), Sense::hover());
     }

@@ -138,14 +138,30 @@ impl Evidence<'_> {
     fn effect_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = self.assessment.correction.name();
         self.heading_ui(ui, &format!("Effect of {name} on the correction"));
+        // The panel is narrow: the headings say "with" after each value without the parameters.
+        let columns = ["mean J", "on-axis", "with", "others", "with"];
         let costs = Table {
             title: "Mean J without and with physics parameters".to_owned(),
+            columns: columns.map(str::to_owned).to_vec(),
             ..physics_cost_table(self.assessment)
         };
         self.table_ui(ui, &costs, commands);
-        let (inputs, outputs) = self.state.dataset().names_of_channels();
-        let delays = channel_delay_table(self.assessment, &inputs, &outputs);
-        self.table_ui(ui, &delays, commands);
+        if self.has_delays() {
+            let (inputs, outputs) = self.state.dataset().names_of_channels();
+            let delays = channel_delay_table(self.assessment, &inputs, &outputs);
+            self.table_ui(ui, &delays, commands);
+        }
+    }
+
+    /// Returns whether any channel has a delay or a lead, without or with the parameters.
+    fn has_delays(&self) -> bool {
+        let Some(mean) = self.assessment.mean_delays_s() else {
+            return false;
+        };
+        [&mean.without, &mean.with].into_iter().any(|channels| {
+            let mut delays_s = channels.inputs.iter().chain(&channels.outputs);
+            delays_s.any(|delay_s| *delay_s != 0.0)
+        })
     }
 
     fn cautions_ui(&self, ui: &mut Ui) {

@@ -17,7 +17,6 @@ use std::sync::Arc;
 
 use egui::{Frame, Label, Margin, RichText, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
-use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::physics::physics_figure;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
@@ -193,8 +192,8 @@ fn conditions_ui(
     commands: &mut Vec<Command>,
 ) {
     let selected = state.selected_parameter(findings);
-    let figure = physics_figure(findings, state.dataset(), assessment.level, selected)
-        .unwrap_or_else(Figure::default);
+    let figure =
+        physics_figure(findings, state.dataset(), assessment.level, selected).unwrap_or_default();
     let mut view = state
         .display
         .figures

@@ -21,8 +21,10 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 pub(super) const ROW: f32 = 24.0;
 /// Height of the headings \[pt\].
 const HEADINGS: f32 = 20.0;
-/// Length of a bar that explains everything \[pt\].
+/// Length of the bar of the parameter that explains most alone \[pt\].
 const FULL_BAR: f32 = 56.0;
+/// Least share that a full bar stands for, so that negligible shares stay short.
+const LEAST_FULL: f32 = 0.1;
 /// Side of a check box \[pt\].
 const CHECK_SIDE: f32 = 12.0;
 /// Plausible standard deviations shown on each side of the nominal value.
@@ -206,7 +208,7 @@ impl Ranking<'_> {
         self.explained_ui(ui, row, columns, index);
         let words = naming_words(diagnosed.diagnosis.why_not_named);
         let color = verdict_color(&diagnosed, self.palette);
-        row_text_within(ui, row, columns.verdict, &words, BODY_SIZE, color);
+        row_text_within(ui, row, columns.verdict, words, BODY_SIZE, color);
     }
 
     /// Draws the axis of plausible standard deviations with the value and its interval.
@@ -247,6 +249,17 @@ impl Ranking<'_> {
         }
     }
 
+    /// Returns the share that a full bar stands for: the largest that a parameter explains alone.
+    fn full_share(&self) -> f32 {
+        let mut full = LEAST_FULL;
+        for parameter in &self.findings.diagnosis.parameters {
+            if let Some(ratio_alone) = parameter.ratio_alone {
+                full = full.max((1.0 - ratio_alone) as f32);
+            }
+        }
+        full
+    }
+
     /// Draws what the parameter explains: alone (pale), and by its step of the stepwise list
     /// (solid).
     fn explained_ui(&self, ui: &Ui, row: Rect, columns: Columns, index: usize) {
@@ -257,10 +270,11 @@ impl Ranking<'_> {
         let alone = (1.0 - ratio_alone).clamp(0.0, 1.0) as f32;
         let by_step = diagnosis.gain.unwrap_or(0.0).clamp(0.0, 1.0) as f32;
         let left = row.left() + columns.bar;
+        let full = self.full_share();
         for (share, strength) in [(alone, 0.45), (by_step, 1.0)] {
             let bar = Rect::from_min_size(
                 pos2(left, row.center().y - 4.0),
-                vec2(FULL_BAR * share, 8.0),
+                vec2(FULL_BAR * (share / full).min(1.0), 8.0),
             );
             let color = self.palette.perturbed.gamma_multiply(strength);
             ui.painter().rect_filled(bar, 1.0, color);

@@ -38,6 +38,7 @@ mod sign_reversal;
 mod start_icons;
 pub mod start_page;
 pub mod status_bar;
+mod suggested_runs_list;
 pub mod table_menu;
 mod toasts;
 pub mod tour;

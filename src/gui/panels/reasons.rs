@@ -23,6 +23,7 @@ use gdcm_words::solution_details::details;
 use super::advice::{INSPECT, USE_COUPLINGS, phase_step_label};
 use super::derivation_sheet::value_label_ui;
 use super::sign_reversal::sign_reversal_entry;
+use super::suggested_runs_list::suggested_runs_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
@@ -140,6 +141,7 @@ fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     };
     remarks_ui(ui, state, &remarks_shown(state, shown), palette, commands);
     couplings_offer_ui(ui, state, palette, commands);
+    suggested_runs_ui(ui, state, palette, commands);
     if !shown.delays.matched || shown.compensated.is_some() {
         causes_ui(ui, state, shown, palette, commands);
     }

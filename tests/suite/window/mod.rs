@@ -21,6 +21,7 @@ mod lead;
 mod lists;
 mod logs;
 mod memory;
+mod physics;
 mod pictures;
 mod plots;
 mod pointing;

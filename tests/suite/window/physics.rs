@@ -1,0 +1,112 @@
+//! The view of named physics parameters.
+
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::view::View;
+use gdcm_io::load_dataset;
+use gdcm_study::PhysicsCorrection;
+use gdcm_study::results::physics_assessment::PhysicsAssessment;
+
+use super::views::give;
+use super::*;
+
+/// The dataset with known truth: tail lift +11 %, swashplate phase +1.6 deg, inflow mass -12 %.
+const DATASET: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/data/reference/physics-dataset.json.gz"
+);
+
+/// Opens the dataset in the view, and waits for the diagnosis.
+fn physics_window() -> Window {
+    let opened = Opened::Dataset(load_dataset(Path::new(DATASET)).unwrap());
+    let mut window = window_with(opened, Setup::default());
+    give(&mut window, LayoutCommand::ShowView(View::Physics));
+    assessment(&mut window);
+    window
+}
+
+/// Waits for the diagnosis under the present decisions.
+fn assessment(window: &mut Window) -> Arc<PhysicsAssessment> {
+    wait_until(window, "the diagnosis", |window| {
+        let state = state(window);
+        let known = state.results.physics.as_ref();
+        known.is_some_and(|(job, _)| job.study.settings == state.study.settings)
+            && state.physics().is_some()
+    });
+    window.run_steps(2);
+    let found = state(window).physics().unwrap().as_ref().unwrap();
+    Arc::clone(found.as_ref().unwrap())
+}
+
+#[test]
+fn a_click_selects_a_parameter_whose_evidence_is_shown() {
+    let mut window = physics_window();
+    let found = assessment(&mut window);
+    let findings = found.applied.findings.as_ref().unwrap();
+    let mut named: Vec<&str> = Vec::new();
+    for diagnosed in findings.named() {
+        named.push(&diagnosed.parameter.name);
+    }
+    named.sort_unstable();
+    assert_eq!(
+        named,
+        ["swashplate_phase", "tail_lift"],
+        "as in the reference"
+    );
+    for name in named {
+        window.get_by_label(&format!("Parameter {name}")).click();
+        window.run_steps(3);
+        let selected = state(&window).display.physics.selected.as_deref();
+        assert_eq!(selected, Some(name));
+        window.get_by_label(&format!("Plausible change of {name}"));
+    }
+}
+
+#[test]
+fn the_named_parameters_are_used_with_a_click_and_undo_gives_the_models_back() {
+    let mut window = physics_window();
+    click(&mut window, "Use 2 parameters");
+    assert_eq!(
+        state(&window).study.settings.physics,
+        PhysicsCorrection::Named
+    );
+    let analysis = state(&window).analysis().unwrap();
+    let applied = analysis.applied_physics().unwrap();
+    assert_eq!(applied.values.len(), 2);
+    give(&mut window, StudyCommand::Undo);
+    settle(&mut window);
+    assert_eq!(
+        state(&window).study.settings.physics,
+        PhysicsCorrection::Off
+    );
+    assert!(
+        state(&window)
+            .analysis()
+            .unwrap()
+            .applied_physics()
+            .is_none()
+    );
+}
+
+#[test]
+fn a_parameter_that_is_switched_off_takes_no_part_in_the_fit() {
+    let mut window = physics_window();
+    window.get_by_label("Fit tail_lift").click();
+    let found = assessment(&mut window);
+    let findings = found.applied.findings.as_ref().unwrap();
+    assert!(
+        findings
+            .parameters
+            .iter()
+            .all(|parameter| parameter.name != "tail_lift")
+    );
+    assert_eq!(findings.off.len(), 1);
+    assert!(
+        state(&window)
+            .study
+            .settings
+            .physics_parameters
+            .off
+            .contains("tail_lift")
+    );
+}

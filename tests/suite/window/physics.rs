@@ -91,7 +91,7 @@ fn the_named_parameters_are_used_with_a_click_and_undo_gives_the_models_back() {
 #[test]
 fn a_parameter_that_is_switched_off_takes_no_part_in_the_fit() {
     let mut window = physics_window();
-    window.get_by_label("Fit tail_lift").click();
+    click(&mut window, "Fit tail_lift");
     let found = assessment(&mut window);
     let findings = found.applied.findings.as_ref().unwrap();
     assert!(

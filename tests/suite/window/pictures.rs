@@ -310,13 +310,16 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
     wait_for_bars(&mut window);
     look(&mut window, "leads");
     show(&mut window, View::Records);
+    // The records of the other conditions are read after those of the displayed one.
     wait_until(&mut window, "the records", |window| {
-        state(window)
-            .records
-            .conditions
-            .get(&ConditionId(10))
-            .is_some_and(|of| of.rows.len() == 9)
+        let records = &state(window).records;
+        records.reading.is_none()
+            && [ConditionId(3), ConditionId(10)].iter().all(|id| {
+                let of = records.conditions.get(id);
+                of.is_some_and(|of| of.rows.len() == 9)
+            })
     });
+    window.run_steps(2);
     click(&mut window, "More ways to identify");
     click(&mut window, "Identify condition 10 only");
     wait_until(&mut window, "the models", |window| {

@@ -305,14 +305,23 @@ fn short_caution(caution: &str) -> String {
     format!("⚠ {short}")
 }
 
-/// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " if there is no room.
+/// Draws "⚠ Price: +21 dB above 12 rad/s"; without "Price: ", or only "⚠ +21 dB", if there is no
+/// room.
 fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
     let subject = ui.max_rect();
     let whole = format!("⚠ {caution}");
-    let shown = if text_width(ui, &whole, body()) <= place.width() {
-        whole
-    } else {
-        elided(ui, &short_caution(caution), place.width(), BODY_SIZE)
+    let short = short_caution(caution);
+    // A number must not lose its middle: the range is omitted as a whole.
+    let shortest = match short.split_once(" above ") {
+        Some((value, _)) => value.to_owned(),
+        None => short.clone(),
+    };
+    let fitting = [whole, short, shortest.clone()]
+        .into_iter()
+        .find(|text| text_width(ui, text, body()) <= place.width());
+    let shown = match fitting {
+        Some(text) => text,
+        None => elided(ui, &shortest, place.width(), BODY_SIZE),
     };
     painted_text(ui, place, 0.0, &shown, body(), palette.warning);
     let id = ui.scope_id().with("caution");

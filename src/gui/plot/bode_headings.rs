@@ -78,6 +78,11 @@ impl BodeHeadings<'_> {
 
     /// Paints quantity and unit; returns the right end of the text.
     fn paint_quantity(&self, ui: &Ui, line: Rect, pane: Pane) -> f32 {
+        // The heading begins at the frame, so that the label of the highest tick does not touch it.
+        let line = match self.view.frame(pane) {
+            Some(frame) => line.with_min_x(frame.left()),
+            None => line,
+        };
         let label = self.scene.quantity.axis_label(pane);
         let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
         let font = medium(BODY_SIZE);

@@ -69,8 +69,11 @@ impl Design {
             .collect()
     }
 
-    /// Computes `x' (X'X)^-1 x` for any row `x`.
+    /// Computes `x' (X'X)^-1 x` for any row `x`; NaN for a row with another number of columns.
     pub fn leverage(&self, row: &[f64]) -> f64 {
+        if row.len() != self.rank() {
+            return f64::NAN;
+        }
         let row = DVector::from_column_slice(row);
         // X'X = R'R, so that the leverage is the squared norm of R'^-1 x.
         self.r
@@ -153,6 +156,13 @@ mod tests {
         let predicted = without_last[0] + 4.0 * without_last[1];
         // The same small problem, solved in two ways: a few rounding errors.
         assert!((design.left_out_errors(&figures)[3].unwrap() - (3.5 - predicted)).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_row_with_another_number_of_columns_has_no_leverage() {
+        let design = Design::new(&line(&[0.0, 1.0, 2.0])).unwrap();
+        assert!(design.leverage(&[1.0, 0.5]).is_finite());
+        assert!(design.leverage(&[1.0, 0.5, 0.25]).is_nan());
     }
 
     #[test]

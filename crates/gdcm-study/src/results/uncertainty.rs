@@ -108,7 +108,8 @@ pub struct ScheduleBands {
 
 impl ScheduleBands {
     /// Returns the half-widths about a scheduled value (`ln k` of a channel or net gain) at an
-    /// airspeed \[kt\].
+    /// airspeed \[kt\]; `None` without a band, and for a schedule with another number of terms than
+    /// that of the bands.
     pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
         let (_, band) = self.bands.iter().find(|(scalar, _)| *scalar == figure)?;
         let widths = band.at(&schedule.design_row(airspeed_kt));

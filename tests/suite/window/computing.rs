@@ -383,8 +383,9 @@ fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
             && steps(&window).is_some_and(|(done, total)| done < total)
     );
     window.get_by_label("Stop").click();
-    window.run_steps(3);
-    assert!(steps(&window).is_none() && state(&window).results.background.stopped);
+    wait_until(&mut window, "the end of the work", |window| {
+        steps(window).is_none() && state(window).results.background.stopped
+    });
     drop(closed);
     click(&mut window, "Compute");
     wait_until(&mut window, "what couplings do", |window| {

@@ -311,11 +311,17 @@ pub(crate) fn wait_for_export_plan(window: &mut Window) {
     });
 }
 
-/// Presses the button of the export dialog that writes the files.
+/// Presses the button of the export dialog that writes the files, and waits until the dialog is
+/// closed or shows an error.
 pub(crate) fn press_export(window: &mut Window) {
     let plan = state(window).current_export_plan().expect("a dry run");
     let count = plan.files.len() + usize::from(plan.report.is_some());
     click(window, &format!("Export {}", counted(count, "file")));
+    // If the results have changed since, the dry run is repeated before the files are written.
+    wait_until(window, "the end of the export", |window| {
+        let forms = &state(window).forms;
+        forms.shown.is_none() || forms.export.error.is_some()
+    });
 }
 
 fn open_by_path(window: &mut Window, path: &Path) {

@@ -223,6 +223,17 @@ fn others(one: &[u8], other: &[u8]) -> f64 {
     differing as f64 / (one.len() / 3) as f64
 }
 
+/// Returns whether the records of both conditions of the example that have some are read; those of
+/// the displayed condition come first.
+fn has_all_records(window: &Window) -> bool {
+    let records = &state(window).records;
+    let are_read = |id: ConditionId| {
+        let of = records.conditions.get(&id);
+        of.is_some_and(|of| of.rows.len() == 9)
+    };
+    records.reading.is_none() && are_read(ConditionId(3)) && are_read(ConditionId(10))
+}
+
 fn pictured_window(textures: &Textures, format: Format) -> Window {
     let size = vec2(format.size[0] as f32, format.size[1] as f32);
     let mut window = Harness::builder()
@@ -258,11 +269,11 @@ fn every_view_looks_as_it_did_in_both_themes() {
                 View::Across => state(window).across().is_some(),
                 View::Poles => state(window).modes().is_some(),
                 View::Compare => !state(window).results.variants.is_empty(),
-                View::Records => state(window)
-                    .records
-                    .conditions
-                    .get(&ConditionId(10))
-                    .is_some_and(|of| of.rows.len() == 9),
+                View::Physics => state(window).physics().is_some(),
+                View::Records => has_all_records(window),
+                View::Requirements => {
+                    has_all_records(window) && state(window).requirements().is_some()
+                }
                 _ => true,
             });
             // The status bar shows running work, which would change the picture.
@@ -311,14 +322,7 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
     look(&mut window, "leads");
     show(&mut window, View::Records);
     // The records of the other conditions are read after those of the displayed one.
-    wait_until(&mut window, "the records", |window| {
-        let records = &state(window).records;
-        records.reading.is_none()
-            && [ConditionId(3), ConditionId(10)].iter().all(|id| {
-                let of = records.conditions.get(id);
-                of.is_some_and(|of| of.rows.len() == 9)
-            })
-    });
+    wait_until(&mut window, "the records", has_all_records);
     window.run_steps(2);
     click(&mut window, "More ways to identify");
     click(&mut window, "Identify condition 10 only");

@@ -26,7 +26,7 @@ pub enum Hue {
     Warning,
     /// Proofs of optimality, and improvements.
     Good,
-    /// Airspeed, from 0 at the lowest to 255 at the highest; the colours of [`AIRSPEED_STOPS`]
+    /// Airspeed, from 0 at the lowest to 255 at the highest; the colours of `AIRSPEED_STOPS`
     /// differ in lightness, and no role has them.
     OfAirspeed(u8),
 }

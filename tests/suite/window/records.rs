@@ -506,7 +506,7 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
     );
     identify_one(&mut window);
     assert!(state(&window).records.job_of(CONDITION_10_ID).is_some());
-    window.get_by_label("Stop").click();
+    window.get_by_label("Stop identifying").click();
     window.run_steps(3);
     assert!(state(&window).records.running.is_empty());
     assert!(
@@ -544,11 +544,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     window.get_by_label("Waiting for condition 10");
     assert_eq!(status(&window, 3), FitStatus::Queued);
     assert!(matches!(status(&window, 10), FitStatus::Running { .. }));
-    // Views of the condition just shown may be computed too, with their Stop in the status bar.
-    wait_until(&mut window, "only the Stop of the page bar", |window| {
-        window.query_all_by_label("Stop").count() == 1
-    });
-    window.get_by_label("Stop").click();
+    window.get_by_label("Stop identifying").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());
     assert_notice(&window, NoticeKind::Done, "identification-stopped", &["2"]);
@@ -557,10 +553,6 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
 
 #[test]
 fn the_work_of_the_view_is_stopped_beside_its_progress_and_elsewhere_in_the_status_bar() {
-    fn stops(window: &Window) -> usize {
-        window.query_all_by_label("Stop").count()
-    }
-
     fn is_running(window: &Window) -> bool {
         !state(window).records.running.is_empty()
     }
@@ -572,14 +564,15 @@ fn the_work_of_the_view_is_stopped_beside_its_progress_and_elsewhere_in_the_stat
     wait_until(&mut window, "a step of the first", |window| {
         state(window).records.under_way().is_some()
     });
-    assert_eq!(stops(&window), 1, "in the page bar");
+    window.get_by_label("Stop identifying");
     give(&mut window, ComputingCommand::StopComputing);
     assert!(is_running(&window), "its own Stop stops it");
     give(&mut window, ComputingCommand::Compute);
     show(&mut window, View::Bode);
     wait_until(&mut window, "the Stop of the status bar", |window| {
-        stops(window) == 1
+        window.query_by_label("Stop").is_some()
     });
+    assert!(window.query_by_label("Stop identifying").is_none());
     window.get_by_label("Stop").click();
     wait_until(&mut window, "its end", |window| !is_running(window));
 }

@@ -12,7 +12,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::condition_fit::BatchProgress;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::widgets::controls::{Asks, entries_ui, named};
 use crate::gui::widgets::palette::Palette;
 
 /// Width of the progress bar \[pt\].
@@ -120,13 +120,10 @@ fn progress_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    button_ui(
-        ui,
-        Button::new("Stop"),
-        "Stops identifying; finished fits are kept",
-        RecordsCommand::Stop,
-        commands,
-    );
+    // The status bar may show a Stop for other work at the same time, so this one has its own name.
+    named(ui.button("Stop"), Role::Button, "Stop identifying")
+        .on_hover_text("Stops identifying; finished fits are kept")
+        .asks(RecordsCommand::Stop, commands);
     let mut words = format!("{} of {}", progress.finished, progress.requested);
     if let Some(left_s) = progress.left_s {
         words.push_str(&format!(", {left_s:.0} s left"));

@@ -6,10 +6,11 @@ use gdcm_method::requirements::{Tolerance, ToleranceTable};
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, s_to_ms, signed};
-use gdcm_study::results::requirement_grid::{
-    CellVerdict, GridCount, NotDetermined, Requirement, RequirementGrid, RequirementGroup,
-    RequirementLimit, RequirementUnit, RoleCell,
+use gdcm_study::results::grid_cell::{CellVerdict, NotDetermined, RoleCell};
+use gdcm_study::results::grid_requirement::{
+    Requirement, RequirementGroup, RequirementLimit, RequirementUnit,
 };
+use gdcm_study::results::requirement_grid::{GridCount, RequirementGrid};
 
 use crate::missing_results::{no_bandwidth_text, no_summary_text};
 use crate::table::Table;
@@ -336,8 +337,8 @@ pub fn grid_table(grid: &RequirementGrid, names: RequirementNames<'_>) -> Table 
 mod tests {
     use gdcm_study::Execution;
     use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
+    use gdcm_study::results::grid_source::GridSource;
     use gdcm_study::results::required_modes::KnownPoles;
-    use gdcm_study::results::requirement_grid::GridSource;
     use gdcm_study::results::requirement_role::RequirementRole;
     use gdcm_study::results::requirements::requirements_of;
 

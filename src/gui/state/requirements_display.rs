@@ -1,7 +1,7 @@
 //! Display options of the requirements: selected cell, details, order of the columns.
 
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::results::requirement_grid::{Requirement, RequirementGroup};
+use gdcm_study::results::grid_requirement::{Requirement, RequirementGroup};
 use gdcm_study::results::requirement_role::RequirementRole;
 
 /// Details of the selected requirement.

@@ -4,7 +4,8 @@
 use egui::{Rect, Ui, UiBuilder, vec2};
 
 use gdcm_study::decisions::setting;
-use gdcm_study::results::requirement_grid::{Requirement, RequirementGrid};
+use gdcm_study::results::grid_requirement::Requirement;
+use gdcm_study::results::requirement_grid::RequirementGrid;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::requirement_grid::{value_with_unit_text, verdict_text};
 

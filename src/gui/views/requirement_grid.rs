@@ -7,9 +7,9 @@ use egui::{
 };
 
 use gdcm_model::units::telling;
-use gdcm_study::results::requirement_grid::{
-    CellVerdict, GridCell, GridRow, Requirement, RequirementGrid, RequirementGroup,
-};
+use gdcm_study::results::grid_cell::{CellVerdict, GridCell};
+use gdcm_study::results::grid_requirement::{Requirement, RequirementGroup};
+use gdcm_study::results::requirement_grid::{GridRow, RequirementGrid};
 use gdcm_words::requirement_grid::{
     NONE, group_description, group_name, limit_description, limit_text, unit_text, value_text,
     value_with_unit_text, verdict_text,

@@ -11,8 +11,8 @@ use gdcm_plot::figure::figure::Plot;
 use gdcm_plot::figure::request::OverTime;
 use gdcm_plot::figure::requirements::{quantity_figure, test_answers_figure};
 use gdcm_study::decisions::requirement_settings::RequirementPart;
+use gdcm_study::results::grid_requirement::{Requirement, RequirementLimit};
 use gdcm_study::results::record_history::{QuantityHistory, RecordHistory};
-use gdcm_study::results::requirement_grid::{Requirement, RequirementLimit};
 use gdcm_words::missing_results::not_in_history_text;
 use gdcm_words::requirement_grid::limit_description;
 

@@ -7,7 +7,7 @@ use egui::{Button, Grid, Popup, PopupCloseBehavior, Response, Ui};
 use gdcm_method::requirements::mode_comparison::ModeTolerance;
 use gdcm_method::requirements::{ModeName, ModeToleranceTable, Tolerance, ToleranceTable};
 use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementPart};
-use gdcm_study::results::requirement_grid::Requirement;
+use gdcm_study::results::grid_requirement::Requirement;
 
 use super::bandwidth_settings::bandwidth_inputs_ui;
 use super::limit_field::LimitField;

@@ -4,8 +4,8 @@ use egui::{Align2, Rect, Role, ScrollArea, Sense, Ui, pos2, vec2};
 
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::number_format::decimals;
+use gdcm_study::results::grid_requirement::Requirement;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
-use gdcm_study::results::requirement_grid::Requirement;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::missing_results::missing_reason_text;

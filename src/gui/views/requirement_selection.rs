@@ -3,9 +3,10 @@
 
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::results::requirement_grid::{
-    GridCell, GridRow, GridSource, Requirement, RequirementGrid,
-};
+use gdcm_study::results::grid_cell::GridCell;
+use gdcm_study::results::grid_requirement::Requirement;
+use gdcm_study::results::grid_source::GridSource;
+use gdcm_study::results::requirement_grid::{GridRow, RequirementGrid};
 use gdcm_words::requirement_grid::RequirementNames;
 
 use super::requirement_history_jobs::time_histories_job;

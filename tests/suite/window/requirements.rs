@@ -16,9 +16,11 @@ use gdcm_method::requirements::{ModeName, ModeVerdict, RecordCheck, ToleranceTab
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
 use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
+use gdcm_study::results::grid_cell::CellVerdict;
+use gdcm_study::results::grid_requirement::Requirement;
 use gdcm_study::results::record_history::RecordHistory;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
-use gdcm_study::results::requirement_grid::{CellVerdict, Requirement, RequirementGrid};
+use gdcm_study::results::requirement_grid::RequirementGrid;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_words::missing_results::no_bandwidth_text;
 use gdcm_words::requirement_grid::met_text;

@@ -17,6 +17,9 @@ pub mod coupling_remark_search;
 pub mod couplings_assessment;
 pub mod export_note;
 pub mod fitted_couplings;
+pub mod grid_cell;
+pub mod grid_requirement;
+pub mod grid_source;
 pub mod lead_compensation;
 pub mod lead_offer;
 pub mod lead_remarks;
@@ -35,6 +38,8 @@ pub mod required_bandwidth;
 pub mod required_modes;
 pub mod required_summary;
 pub mod requirement_grid;
+#[cfg(test)]
+mod requirement_grid_tests;
 pub mod requirement_role;
 pub mod requirements;
 pub mod rerun_check;

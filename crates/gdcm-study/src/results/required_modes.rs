@@ -17,6 +17,7 @@ use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::asked_condition::AskedCondition;
 use super::missing_finding::NoModes;
+use super::requirement_role::RequirementRole;
 
 /// Poles of identified models with their uncertainty, by condition; a dataset does not store them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -243,6 +244,29 @@ fn known_modes(model: &Model) -> Result<Vec<Mode>, NoModes> {
         is_coupled: false,
         why,
     })
+}
+
+/// A mode of the model in a role, with its verdict.
+pub struct RoleMode<'a> {
+    pub numbers: Option<&'a ModeNumbers>,
+    pub verdict: ModeVerdict,
+}
+
+impl ModeFinding {
+    /// Returns the counterpart of the flown mode in the model of a role. Gains and delays move no
+    /// pole: without couplings, a corrected model has the modes of the physics model.
+    pub fn of_role(&self, role: RequirementRole) -> RoleMode<'_> {
+        match (role, self.corrected_verdict) {
+            (RequirementRole::Corrected | RequirementRole::Scheduled, Some(verdict)) => RoleMode {
+                numbers: self.corrected.as_ref(),
+                verdict,
+            },
+            _ => RoleMode {
+                numbers: self.physics.as_ref(),
+                verdict: self.verdict,
+            },
+        }
+    }
 }
 
 #[cfg(test)]

@@ -9,9 +9,9 @@ use serde_json::Value;
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
-use gdcm_study::results::requirement_grid::{
-    GridCount, GridRow, GridSource, Requirement, RequirementGrid,
-};
+use gdcm_study::results::grid_requirement::Requirement;
+use gdcm_study::results::grid_source::GridSource;
+use gdcm_study::results::requirement_grid::{GridCount, GridRow, RequirementGrid};
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;

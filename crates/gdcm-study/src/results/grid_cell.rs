@@ -1,0 +1,119 @@
+//! Cells of the grid of requirements: values of models with verdicts, and reasons for missing ones.
+
+use super::grid_requirement::RequirementLimit;
+use super::required_bandwidth::NoBandwidth;
+use super::required_summary::NoSummary;
+use super::requirement_role::RequirementRole;
+
+/// Verdict on a value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CellVerdict {
+    Met,
+    Outside,
+    /// The requirement has no limit.
+    NoTolerance,
+    NotDetermined(NotDetermined),
+}
+
+impl CellVerdict {
+    /// Returns the stable code, for files and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::Outside => "outside",
+            Self::NoTolerance => "no-tolerance",
+            Self::NotDetermined(_) => "not-determined",
+        }
+    }
+}
+
+/// Why a cell has no value, or a value without a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotDetermined {
+    /// There is no model in this role.
+    NoModel(RequirementRole),
+    Bandwidth {
+        role: RequirementRole,
+        why: NoBandwidth,
+    },
+    /// The condition has no flight record that was held out of the identification.
+    NoHeldOutRecord,
+    /// The quantity could not be compared with the held-out records.
+    NotCompared,
+    /// Flight does not show this mode.
+    NoMode,
+    /// The models have no modes that could be compared.
+    NoModes,
+    ModeNotPaired,
+    /// The mode is below the band, or its standard deviations exceed the tolerance.
+    ModeUncertain,
+    Summary(NoSummary),
+}
+
+impl NotDetermined {
+    /// Returns the stable code, for files and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoModel(_) => "no-model",
+            Self::Bandwidth { why, .. } => why.code(),
+            Self::NoHeldOutRecord => "no-held-out-record",
+            Self::NotCompared => "not-compared",
+            Self::NoMode => "no-mode",
+            Self::NoModes => "no-modes",
+            Self::ModeNotPaired => "mode-not-paired",
+            Self::ModeUncertain => "mode-uncertain",
+            Self::Summary(why) => why.code(),
+        }
+    }
+}
+
+/// Value of a model, and its verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoleCell {
+    /// Fraction, seconds or cost ([`unit`](super::grid_requirement::Requirement::unit)); `None` where it is not determined.
+    pub value: Option<f64>,
+    pub verdict: CellVerdict,
+}
+
+impl RoleCell {
+    pub(super) fn absent(why: NotDetermined) -> Self {
+        Self {
+            value: None,
+            verdict: CellVerdict::NotDetermined(why),
+        }
+    }
+
+    pub(super) fn judged(value: f64, limit: &RequirementLimit) -> Self {
+        Self {
+            value: Some(value),
+            verdict: limit.verdict(value),
+        }
+    }
+}
+
+/// A requirement in a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridCell {
+    /// The corrected model, in the role of the grid.
+    pub corrected: RoleCell,
+    /// The uncorrected physics model.
+    pub physics: RoleCell,
+}
+
+impl RequirementLimit {
+    fn verdict(&self, value: f64) -> CellVerdict {
+        let is_met = match self {
+            Self::Within(limit) => value.abs() <= *limit,
+            Self::AtMost(limit) => value <= *limit,
+            Self::AtLeast(limit) => value >= *limit,
+            Self::Tolerance(_) => value <= 1.0,
+            // A mode has a verdict of its own.
+            Self::Mode(_) | Self::None => return CellVerdict::NoTolerance,
+        };
+        if is_met {
+            CellVerdict::Met
+        } else {
+            CellVerdict::Outside
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Requirements of the grid: the rows, their groups, units and limits (M17.5).
+
+use serde::Serialize;
+
+use gdcm_method::requirements::mode_comparison::ModeTolerance;
+use gdcm_method::requirements::{ModeName, Tolerance, ToleranceTable};
+use gdcm_model::dataset::{Dataset, Pair};
+
+/// Group of requirements, in the order of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RequirementGroup {
+    Bandwidth,
+    InTime,
+    Modes,
+    Summary,
+}
+
+impl RequirementGroup {
+    pub const ALL: [Self; 4] = [Self::Bandwidth, Self::InTime, Self::Modes, Self::Summary];
+}
+
+/// A requirement: a row of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Requirement {
+    Bandwidth(Pair),
+    PhaseDelay(Pair),
+    /// Peak error in time; the index is that of the row in the tolerance table.
+    PeakError(usize),
+    ModeFrequency(ModeName),
+    MeanJOnAxis,
+    MeanJAll,
+    MuadShareOnAxis,
+}
+
+/// Unit in which the values of a requirement are displayed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RequirementUnit {
+    /// The stored value is a fraction.
+    Percent,
+    /// The stored value is in seconds.
+    Milliseconds,
+    /// The value is a cost without unit.
+    Cost,
+}
+
+impl Requirement {
+    /// Returns the group of rows to which the requirement belongs.
+    pub fn group(self) -> RequirementGroup {
+        match self {
+            Self::Bandwidth(_) | Self::PhaseDelay(_) => RequirementGroup::Bandwidth,
+            Self::PeakError(_) => RequirementGroup::InTime,
+            Self::ModeFrequency(_) => RequirementGroup::Modes,
+            Self::MeanJOnAxis | Self::MeanJAll | Self::MuadShareOnAxis => RequirementGroup::Summary,
+        }
+    }
+
+    /// Returns the unit of its cells and of its limit.
+    pub fn unit(self) -> RequirementUnit {
+        match self {
+            Self::PhaseDelay(_) => RequirementUnit::Milliseconds,
+            Self::MeanJOnAxis | Self::MeanJAll => RequirementUnit::Cost,
+            Self::Bandwidth(_)
+            | Self::PeakError(_)
+            | Self::ModeFrequency(_)
+            | Self::MuadShareOnAxis => RequirementUnit::Percent,
+        }
+    }
+
+    /// Returns the stable code of the quantity, for files and tests.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Bandwidth(_) => "bandwidth",
+            Self::PhaseDelay(_) => "phase-delay",
+            Self::PeakError(_) => "peak-error",
+            Self::ModeFrequency(_) => "mode-frequency",
+            Self::MeanJOnAxis => "mean-j-on-axis",
+            Self::MeanJAll => "mean-j-all",
+            Self::MuadShareOnAxis => "muad-share-on-axis",
+        }
+    }
+
+    /// Returns the response that a requirement concerns: for a peak error, the on-axis response of
+    /// its output; `None` for modes and summary costs.
+    pub fn pair(self, dataset: &Dataset, tolerances: &ToleranceTable) -> Option<Pair> {
+        match self {
+            Self::Bandwidth(pair) | Self::PhaseDelay(pair) => Some(pair),
+            Self::PeakError(row) => {
+                let channel = &tolerances.rows().get(row)?.channel;
+                let outputs = dataset.outputs();
+                let output = outputs.iter().position(|output| output.name == *channel)?;
+                let pairs = dataset.measuring_pairs();
+                pairs.marked().find(|pair| pair.output == output)
+            }
+            Self::ModeFrequency(_) | Self::MeanJOnAxis | Self::MeanJAll | Self::MuadShareOnAxis => {
+                None
+            }
+        }
+    }
+}
+
+/// Limit of the values in a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RequirementLimit {
+    /// Maximum magnitude, in the stored unit of the values.
+    Within(f64),
+    AtMost(f64),
+    AtLeast(f64),
+    /// Tolerance of a time history: a peak error of at most 1.
+    Tolerance(Tolerance),
+    /// Tolerances of a mode: the period, and the time to half amplitude or the damping ratio.
+    Mode(ModeTolerance),
+    None,
+}

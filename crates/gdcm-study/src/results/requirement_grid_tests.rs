@@ -1,0 +1,277 @@
+//! Tests of the grid of requirements: known values, reasons, and counts.
+
+use std::collections::BTreeMap;
+
+use gdcm_method::requirements::NamedBy;
+use gdcm_method::requirements::mode_comparison::ModeValues;
+
+use gdcm_method::requirements::{ModeName, ModeVerdict, ToleranceTable};
+use gdcm_model::dataset::ConditionId;
+
+use super::grid_cell::{CellVerdict, NotDetermined};
+use super::grid_requirement::{Requirement, RequirementGroup};
+use super::grid_source::GridSource;
+use super::required_bandwidth::{BandwidthFinding, NoBandwidth};
+use super::required_modes::{ModeFinding, ModeNumbers};
+use super::required_summary::SummaryFinding;
+use super::requirement_grid::{GridCount, RequirementGrid};
+use super::requirement_role::RequirementRole;
+use super::requirements::Requirements;
+use super::time_histories::TimeHistories;
+use crate::decisions::requirement_settings::RequirementSettings;
+use crate::execution::Execution;
+use crate::jobs::couplings_tests::EXAMPLE;
+use crate::results::required_modes::KnownPoles;
+use crate::results::requirements::requirements_of;
+use crate::results::time_histories::{HistoryFinding, ToleranceFinding};
+
+const ID: ConditionId = ConditionId(3);
+
+/// A bandwidth \[rad/s\] and a phase delay \[s\] of the example's roll response.
+fn bandwidth(role: RequirementRole, omega: Option<f64>, delay_s: f64) -> BandwidthFinding {
+    let dataset = &EXAMPLE.analysis.study.dataset;
+    BandwidthFinding {
+        condition: ID,
+        pair: dataset.find_pair("P", "LAT").unwrap(),
+        role,
+        omega_bw_rad_s: omega,
+        phase_delay_s: Some(delay_s),
+        ..BandwidthFinding::default()
+    }
+}
+
+fn summary(role: RequirementRole, mean_j: f64, share: f64) -> SummaryFinding {
+    SummaryFinding {
+        condition: ID,
+        airspeed_kt: 45.0,
+        role,
+        model: String::new(),
+        mean_j_on_axis: Some(mean_j),
+        mean_j_all: Some(mean_j),
+        muad_share_on_axis: Some(share),
+        muad_share_all: Some(share),
+        absent: BTreeMap::new(),
+    }
+}
+
+fn numbers(modulus_rad_s: f64) -> ModeNumbers {
+    ModeNumbers {
+        model: String::new(),
+        pole_real_rad_s: -0.6 * modulus_rad_s,
+        pole_imaginary_rad_s: 0.8 * modulus_rad_s,
+        values: ModeValues {
+            period_s: None,
+            time_to_half_s: None,
+            damping_ratio: Some(0.6),
+        },
+        absent: BTreeMap::new(),
+    }
+}
+
+fn mode(name: ModeName, verdict: ModeVerdict, physics: Option<f64>) -> ModeFinding {
+    ModeFinding {
+        condition: ID,
+        airspeed_kt: 45.0,
+        number: 1,
+        name: Some(name),
+        named_by: NamedBy::States,
+        verdict,
+        identified: numbers(2.0),
+        identified_deviation: None,
+        physics: physics.map(numbers),
+        corrected_verdict: None,
+        corrected: None,
+        tolerance: None,
+    }
+}
+
+fn known() -> Requirements {
+    use RequirementRole::{Corrected, Identified, Physics};
+    Requirements {
+        bandwidth: vec![
+            bandwidth(Physics, Some(2.5), 0.16),
+            bandwidth(Corrected, Some(2.1), 0.10),
+            bandwidth(Identified, Some(2.0), 0.13),
+        ],
+        modes: vec![
+            mode(ModeName::DutchRoll, ModeVerdict::Outside, Some(1.8)),
+            mode(ModeName::ShortPeriod, ModeVerdict::NoTolerance, Some(2.2)),
+            mode(ModeName::Phugoid, ModeVerdict::NotPaired, None),
+        ],
+        summary: vec![summary(Physics, 60.0, 0.5), summary(Corrected, 6.0, 0.95)],
+        ..Requirements::default()
+    }
+}
+
+/// A record with the peak error of the roll rate of the corrected and the physics model.
+fn record(held_out: bool, corrected: f64, physics: f64) -> Vec<HistoryFinding> {
+    let roles = [
+        (RequirementRole::Corrected, corrected),
+        (RequirementRole::Physics, physics),
+    ];
+    let mut findings = Vec::new();
+    for (role, peak_error) in roles {
+        findings.push(HistoryFinding {
+            condition: ID,
+            airspeed_kt: 45.0,
+            record: "a".to_owned(),
+            held_out,
+            role,
+            model: String::new(),
+            moved_input: None,
+            samples: 100,
+            windows: 1,
+            window_s: 10.0,
+            j_rms: None,
+            j_rms_left_out: Vec::new(),
+            theil: BTreeMap::new(),
+            tolerances: vec![ToleranceFinding {
+                quantity: "roll rate".to_owned(),
+                output: "P".to_owned(),
+                integrated: false,
+                unit: "deg/s".to_owned(),
+                share_inside: 1.0,
+                largest_excess: -1.0,
+                largest_excess_at_s: 0.0,
+                peak_error,
+                peak_error_at_s: 0.0,
+                correlation: None,
+                on_axis: None,
+                trend: None,
+            }],
+        });
+    }
+    findings
+}
+
+fn grid(requirements: &Requirements, records: Vec<HistoryFinding>) -> RequirementGrid {
+    let histories = TimeHistories {
+        tolerance_table: ToleranceTable::default(),
+        records,
+        missing: Vec::new(),
+    };
+    RequirementGrid::new(&GridSource {
+        requirements,
+        histories: Some(&histories),
+        dataset: &EXAMPLE.analysis.study.dataset,
+        settings: &RequirementSettings::default(),
+        role: RequirementRole::Corrected,
+    })
+}
+
+fn value(grid: &RequirementGrid, requirement: Requirement) -> f64 {
+    grid.cell(requirement, ID).unwrap().corrected.value.unwrap()
+}
+
+#[test]
+fn known_values_are_judged_and_counted() {
+    let grid = grid(&known(), record(true, 0.7, 1.2));
+    let pair = EXAMPLE
+        .analysis
+        .study
+        .dataset
+        .find_pair("P", "LAT")
+        .unwrap();
+    let cases = [
+        (Requirement::Bandwidth(pair), 0.05, "met", "outside"),
+        (Requirement::PhaseDelay(pair), -0.03, "outside", "outside"),
+        (Requirement::PeakError(0), 0.7, "met", "outside"),
+        (
+            Requirement::ModeFrequency(ModeName::DutchRoll),
+            -0.1,
+            "outside",
+            "outside",
+        ),
+        (
+            Requirement::ModeFrequency(ModeName::ShortPeriod),
+            0.1,
+            "no-tolerance",
+            "no-tolerance",
+        ),
+        (Requirement::MeanJOnAxis, 6.0, "met", "outside"),
+        (Requirement::MeanJAll, 6.0, "no-tolerance", "no-tolerance"),
+        (Requirement::MuadShareOnAxis, 0.95, "met", "outside"),
+    ];
+    for (requirement, expected, corrected, physics) in cases {
+        assert!(
+            (value(&grid, requirement) - expected).abs() < 1e-12,
+            "{requirement:?}"
+        );
+        let cell = grid.cell(requirement, ID).unwrap();
+        assert_eq!(cell.corrected.verdict.code(), corrected, "{requirement:?}");
+        assert_eq!(cell.physics.verdict.code(), physics, "{requirement:?}");
+    }
+    // Not determined: the unpaired phugoid, and the quantities of the table that the record
+    // lacks.
+    let phugoid = grid
+        .cell(Requirement::ModeFrequency(ModeName::Phugoid), ID)
+        .unwrap();
+    assert_eq!(
+        phugoid.corrected.verdict,
+        CellVerdict::NotDetermined(NotDetermined::ModeNotPaired)
+    );
+    let in_time = grid.group_rows(RequirementGroup::InTime).count();
+    assert_eq!(
+        grid.count(),
+        GridCount {
+            met: 4,
+            judged: 6,
+            physics_met: 0,
+            not_determined: 1 + (in_time - 1),
+        }
+    );
+    let summary = grid.group_cell(RequirementGroup::Summary, 0);
+    assert_eq!((summary.count.met, summary.count.judged), (2, 2));
+    assert!(summary.is_physics_outside);
+}
+
+#[test]
+fn only_held_out_records_count_and_of_several_the_worst() {
+    let peak = Requirement::PeakError(0);
+    let mut records = record(true, 0.7, 0.5);
+    records.extend(record(true, 0.9, 0.4));
+    records.extend(record(false, 5.0, 5.0));
+    assert!((value(&grid(&known(), records), peak) - 0.9).abs() < 1e-12);
+    let grid = grid(&known(), record(false, 0.7, 0.5));
+    assert_eq!(
+        grid.cell(peak, ID).unwrap().corrected.verdict,
+        CellVerdict::NotDetermined(NotDetermined::NoHeldOutRecord)
+    );
+}
+
+#[test]
+fn a_missing_bandwidth_says_which_model_lacks_it() {
+    let mut requirements = known();
+    requirements.bandwidth[2].omega_bw_rad_s = None;
+    requirements.bandwidth[2]
+        .absent
+        .insert("omega_bw_rad_s", NoBandwidth::NetGainNotPositive);
+    let pair = requirements.bandwidth[0].pair;
+    let grid = grid(&requirements, Vec::new());
+    let cell = grid.cell(Requirement::Bandwidth(pair), ID).unwrap();
+    assert_eq!(
+        cell.corrected.verdict,
+        CellVerdict::NotDetermined(NotDetermined::Bandwidth {
+            role: RequirementRole::Identified,
+            why: NoBandwidth::NetGainNotPositive
+        })
+    );
+}
+
+#[test]
+fn a_quantity_has_one_row_and_each_condition_a_cell() {
+    let analysis = &EXAMPLE.analysis;
+    let requirements =
+        requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+    let grid = grid(&requirements, Vec::new());
+    assert_eq!(grid.conditions.len(), analysis.conditions.len());
+    for row in &grid.rows {
+        assert_eq!(row.cells.len(), grid.conditions.len());
+    }
+    // The two short-term rows of the table repeat pitch attitude and pitch rate.
+    let table = ToleranceTable::default().rows().len();
+    let in_time = grid.group_rows(RequirementGroup::InTime).count();
+    assert_eq!(in_time, table - 2);
+    let count = grid.count();
+    assert!(count.met <= count.judged && count.judged > 0);
+}

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use gdcm_io::{Example, load_dataset, load_example, save_study};
 use gdcm_model::dataset::BundleKind;
 use gdcm_study::Study;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 
 use crate::{entries, members};
 
@@ -632,7 +632,10 @@ fn a_study_stands_in_place_of_a_dataset_and_options_over_what_it_says() {
     let desk = Desk::new();
     let loaded = load_dataset(&desk.path("small.json")).unwrap();
     let mut study = Study::new(loaded.dataset.clone());
-    for edit in [setting::ALPHA_GAIN.to(0.1 + 0.2), setting::POINTS.to(33)] {
+    for edit in [
+        setting_table::ALPHA_GAIN.to(0.1 + 0.2),
+        setting_table::POINTS.to(33),
+    ] {
         study.apply(&edit).unwrap();
     }
     save_study(&study, &loaded, &desk.path("a.gdcm-study.json")).unwrap();

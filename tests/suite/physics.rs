@@ -7,7 +7,7 @@ use gdcm_io::load_dataset;
 use gdcm_model::dataset::BundleKind;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::evaluate;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Engine, PhysicsCorrection, Study};
 
 use crate::commands::Desk;
@@ -148,8 +148,8 @@ fn octave_computes_the_responses_of_models_with_moved_parameters() {
     };
     let mut study = Study::new(load_dataset(Path::new(DATASET)).unwrap().dataset);
     for edit in [
-        setting::POINTS.to(40_usize),
-        setting::PHYSICS.to(PhysicsCorrection::Named),
+        setting_table::POINTS.to(40_usize),
+        setting_table::PHYSICS.to(PhysicsCorrection::Named),
     ] {
         study.apply(&edit).unwrap();
     }

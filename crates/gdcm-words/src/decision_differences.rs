@@ -9,7 +9,7 @@ use gdcm_model::units::number;
 use gdcm_study::Study;
 use gdcm_study::decisions::choices::BundleChoice;
 use gdcm_study::decisions::physics_settings::PhysicsSettings;
-use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_table::SETTINGS;
 
 /// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use egui::{Frame, Label, Margin, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_study::CouplingCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::coupling_remark_search::coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::remark_kind::RemarkKind;
@@ -78,7 +78,7 @@ pub fn couplings_header_ui(
     };
     option.ui(ui, &mut chosen, &choices, palette);
     if chosen != shown {
-        commands.push(setting::COUPLINGS.to(chosen).into());
+        commands.push(setting_table::COUPLINGS.to(chosen).into());
     }
 }
 
@@ -217,7 +217,7 @@ impl CouplingsWords<'_> {
             .on_hover_text("In every condition; can be undone")
             .clicked()
         {
-            commands.push(setting::COUPLINGS.to(couplings).into());
+            commands.push(setting_table::COUPLINGS.to(couplings).into());
         }
     }
 

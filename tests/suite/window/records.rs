@@ -24,7 +24,7 @@ use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::simulation::Signal;
 use gdcm_study::decisions::adopted_models::OfferedModels;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::records::LaidOutRecord;
 
@@ -310,7 +310,10 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
     window.get_by_label("Identify 1 of 2");
     step(&mut window, UNDO);
     assert!(is_finished(&window, 10));
-    give(&mut window, setting::BAND.to(Band::new(0.6, 9.0).unwrap()));
+    give(
+        &mut window,
+        setting_table::BAND.to(Band::new(0.6, 9.0).unwrap()),
+    );
     assert_eq!(
         [status(&window, 3), status(&window, 10)],
         [FitStatus::Outdated; 2]
@@ -749,10 +752,10 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
     };
     let edits: Vec<Action> = vec![
         RecordsCommand::SetUsed(2, false).into(),
-        setting::ALPHA_GAIN.to(3.0).into(),
+        setting_table::ALPHA_GAIN.to(3.0).into(),
         RecordsCommand::AddPart(0, [5.0, 25.0]).into(),
         RecordsCommand::SetHeldOut(1, true).into(),
-        setting::ALPHA_GAIN.to(7.0).into(),
+        setting_table::ALPHA_GAIN.to(7.0).into(),
         RecordsCommand::SetKind(3, RecordKind::Multisine).into(),
         RecordsCommand::SetLayout(0, other).into(),
         RecordsCommand::SetDelay(q, 0.05).into(),
@@ -1550,7 +1553,10 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     assert!(is_at(&window, of_study), "{} Hz", rate_hz(&window));
     give(&mut window, RecordsCommand::SetBand(Some([0.5, 3.0])));
     assert!(is_at(&window, 3.0), "{} Hz", rate_hz(&window));
-    give(&mut window, setting::BAND.to(Band::new(0.5, 6.0).unwrap()));
+    give(
+        &mut window,
+        setting_table::BAND.to(Band::new(0.5, 6.0).unwrap()),
+    );
     assert!(is_at(&window, 3.0), "its own band goes before the study's");
     give(&mut window, RecordsCommand::SetBand(None));
     assert!(is_at(&window, 6.0), "{} Hz", rate_hz(&window));

@@ -169,7 +169,7 @@ mod tests {
     use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
     use gdcm_study::decisions::physics_settings::ParameterDecision;
-    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_table;
     use gdcm_study::{
         AssessedCorrection, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection,
         Study,
@@ -296,9 +296,9 @@ mod tests {
             .dataset;
         let mut study = Study::new(dataset.clone());
         for edit in [
-            setting::PHASE.to(PhaseCorrection::None),
-            setting::POINTS.to(40_usize),
-            setting::PHYSICS.to(PhysicsCorrection::ByHand),
+            setting_table::PHASE.to(PhaseCorrection::None),
+            setting_table::POINTS.to(40_usize),
+            setting_table::PHYSICS.to(PhysicsCorrection::ByHand),
             Edit::DecideParameter {
                 name: "Ixx".to_owned(),
                 decision: ParameterDecision::Value(Some(5.0)),
@@ -335,10 +335,10 @@ mod tests {
     fn a_corrected_model_with_couplings_has_the_response_of_the_analysis() {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         study
-            .apply(&setting::PHASE.to(PhaseCorrection::None))
+            .apply(&setting_table::PHASE.to(PhaseCorrection::None))
             .unwrap();
         study
-            .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+            .apply(&setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
             .unwrap();
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let own = ExportRequest {

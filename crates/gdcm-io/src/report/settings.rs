@@ -2,8 +2,8 @@
 
 use gdcm_model::dataset::{Dataset, PairTable};
 use gdcm_study::Study;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_table::SETTINGS;
 
 use super::page::Page;
 use super::wording::{capital, names};
@@ -27,7 +27,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
         if !(row.control.applies)(study) {
             continue;
         }
-        let words = if *row == setting::GAIN_SOURCE {
+        let words = if *row == setting_table::GAIN_SOURCE {
             settings.gain_source_words()
         } else {
             row.words(settings)

@@ -12,7 +12,7 @@ use gdcm_method::schedule::{
 };
 use gdcm_model::dataset::Dataset;
 use gdcm_model::progress::Unobserved;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{
     Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection, Study,
 };
@@ -53,7 +53,7 @@ fn analyses() -> Vec<(String, Analysis)> {
             ..ScheduleSettings::default()
         };
         study
-            .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+            .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
             .unwrap();
         study.settings.schedule = schedule;
         let analysis = engine.analyze(&study, &Unobserved).unwrap();
@@ -62,7 +62,7 @@ fn analyses() -> Vec<(String, Analysis)> {
     // A schedule for physics models moved by their named parameters.
     let mut study = Study::new(embedded_example().unwrap().dataset);
     study
-        .apply(&setting::PHYSICS.to(PhysicsCorrection::Named))
+        .apply(&setting_table::PHYSICS.to(PhysicsCorrection::Named))
         .unwrap();
     analyses.push((
         "physics parameters".to_owned(),
@@ -365,10 +365,10 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
 fn coupled() -> Analysis {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::None))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::None))
         .unwrap();
     study
-        .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+        .apply(&setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
         .unwrap();
     Engine::default().analyze(&study, &Unobserved).unwrap()
 }

@@ -305,7 +305,7 @@ fn study_of_known_spread() -> (Study, Value) {
     let case = case("A_pure_gain_bundles");
     let mut study = study_of(&case["dataset"]);
     let kind = ScheduleKind::Polynomial { degree: 1 };
-    set(&mut study, setting::SCHEDULE.to(kind));
+    set(&mut study, setting_table::SCHEDULE.to(kind));
     (study, case)
 }
 
@@ -358,7 +358,7 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
             }
         }
         let mut study = study_of(&dataset);
-        set(&mut study, setting::POINTS.to(40));
+        set(&mut study, setting_table::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
         let gain = bar(Scalar::Gain(Pair::new(0, 0)));
@@ -724,7 +724,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
         "inputs": [{"name": "U", "unit": "%"}], "outputs": [{"name": "Y", "unit": "deg/s"}], "on_axis": [["Y", "U"]],
         "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"}, "conditions": conditions});
     let mut study = study_of(&dataset);
-    set(&mut study, setting::POINTS.to(5));
+    set(&mut study, setting_table::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
     let covers = |of: &gdcm_study::results::uncertainty::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))]
@@ -837,7 +837,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
         .map(|condition| condition.as_ref().clone())
         .collect();
     let mut study = Study::new(Arc::new(Dataset::new(example.header(), first_two).unwrap()));
-    set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
+    set(&mut study, setting_table::PHASE.to(PhaseCorrection::Lead));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let written = corrections(

@@ -124,7 +124,7 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
     let mut engine = Engine::default();
     apply(
         &mut study,
-        &[setting::POINTS.to(40), Edit::Reject(nominal_of_10())],
+        &[setting_table::POINTS.to(40), Edit::Reject(nominal_of_10())],
     );
     let without = analyze(&mut engine, &study);
     apply(
@@ -164,9 +164,9 @@ fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
     apply(
         &mut study,
         &[
-            setting::ALPHA_GAIN.to(0.1),
+            setting_table::ALPHA_GAIN.to(0.1),
             keep(" soft "),
-            setting::ALPHA_GAIN.to(9.0),
+            setting_table::ALPHA_GAIN.to(9.0),
         ],
     );
     let before = study.clone();
@@ -236,14 +236,17 @@ fn a_variant_is_analysed_like_a_study_with_its_decisions() {
     apply(
         &mut study,
         &[
-            setting::POINTS.to(40),
-            setting::ALPHA_GAIN.to(0.01),
+            setting_table::POINTS.to(40),
+            setting_table::ALPHA_GAIN.to(0.01),
             keep("soft"),
         ],
     );
     apply(
         &mut study,
-        &[setting::ALPHA_GAIN.to(1.0), Edit::Reject(nominal_of_10())],
+        &[
+            setting_table::ALPHA_GAIN.to(1.0),
+            Edit::Reject(nominal_of_10()),
+        ],
     );
     let job = VariantJob {
         study: study.of_variant("soft").unwrap(),
@@ -286,7 +289,11 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
     };
     apply(
         &mut after,
-        &[setting::ALPHA_GAIN.to(0.1), Edit::Hold(pair, false), reject],
+        &[
+            setting_table::ALPHA_GAIN.to(0.1),
+            Edit::Hold(pair, false),
+            reject,
+        ],
     );
     let left_out = Edit::SetScheduled {
         condition: ConditionId(3),
@@ -294,7 +301,11 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
     };
     apply(
         &mut after,
-        &[left_out, keep("kept"), setting::DELAY_UPPER.to(Some(0.02))],
+        &[
+            left_out,
+            keep("kept"),
+            setting_table::DELAY_UPPER.to(Some(0.02)),
+        ],
     );
     let words: Vec<String> = decision_differences(&before, &after)
         .iter()

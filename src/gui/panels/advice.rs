@@ -7,7 +7,7 @@ use gdcm_model::units::telling;
 use gdcm_study::decisions::setting::Value;
 use gdcm_study::decisions::setting_table;
 use gdcm_study::decisions::signs::SignRole;
-use gdcm_study::results::couplings_assessment::CouplingCost;
+use gdcm_study::results::correction_costs::CorrectionCost;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
 
 use super::sign_reversal::sign_reversal_entry;
@@ -168,7 +168,7 @@ impl Advice {
 }
 
 /// "off-axis J 41→12".
-fn off_axis_note(cost: CouplingCost) -> String {
+fn off_axis_note(cost: CorrectionCost) -> String {
     match (cost.without.others, cost.with.others) {
         (Some(without), Some(with)) => {
             format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))

@@ -24,7 +24,8 @@ use crate::decisions::setting_table;
 use crate::decisions::settings::{CouplingCorrection, PhaseCorrection};
 use crate::decisions::study::Study;
 use crate::reference_tests::{list, number, numbers};
-use crate::results::couplings_assessment::{AxisCost, CouplingsAssessment};
+use crate::results::correction_costs::AxisCost;
+use crate::results::couplings_assessment::CouplingsAssessment;
 use crate::stages::engine::Engine;
 
 /// The assessment of mixing and feedback of the reference dataset.

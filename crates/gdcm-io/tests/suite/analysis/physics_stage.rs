@@ -13,7 +13,7 @@ use gdcm_study::decisions::physics_settings::ParameterDecision;
 use gdcm_study::jobs::analysis_jobs::PhysicsJob;
 use gdcm_study::jobs::job::Job;
 use gdcm_study::results::applied_physics::AppliedPhysics;
-use gdcm_study::results::couplings_assessment::AxisCost;
+use gdcm_study::results::correction_costs::AxisCost;
 use gdcm_study::results::moved_models::MovedModels;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::rerun_check::RerunVerdict;

@@ -106,11 +106,13 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("dataset_differences", &["edit"]),
             ("decision_differences", &[]),
             ("setting_words", &[]),
+            ("gain_source", &[]),
             ("schedule", &[]),
             ("conflict_text", &[]),
             ("sensitivity", &[]),
             ("solution_details", &["conflict_text", "sensitivity"]),
-            ("coupling_remark", &[]),
+            ("coupling_error", &[]),
+            ("coupling_remark", &["coupling_error"]),
             (
                 "remark",
                 &[
@@ -123,7 +125,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ),
             ("lead_price", &[]),
             ("leads", &["remark", "lead_price"]),
-            ("export", &["lead_price", "schedule"]),
+            ("export", &["coupling_error", "lead_price", "schedule"]),
             ("couplings", &["coupling_remark", "table"]),
             ("physics", &["couplings", "table"]),
             ("suggested_runs", &[]),

@@ -10,6 +10,7 @@ use gdcm_study::results::coupling_remark_search::coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
 
@@ -93,7 +94,7 @@ pub fn couplings_view_ui(
     let assessment = match state.couplings().cloned() {
         Some(Ok(assessment)) => assessment,
         Some(Err(why)) => {
-            let why = why.words(&state.dataset().names_of_channels().0);
+            let why = coupling_error_text(&why, state.dataset());
             ui.add(Label::new(palette.dim(format!("No couplings: {why}"))).wrap());
             return;
         }

@@ -9,8 +9,6 @@ use egui::{
     WidgetInfo, vec2,
 };
 
-use gdcm_method::correction::delta::GainSource;
-use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting::{Kind, Setting, Value};
 use gdcm_study::decisions::setting_table;
 use gdcm_words::setting_words::setting_words;
@@ -144,9 +142,7 @@ impl SettingControls<'_, '_> {
 
     /// Draws the note beside a setting's value.
     pub fn note_ui(&mut self, setting: &Setting) {
-        let settings = &self.state.study.settings;
-        let is_idle = settings.gain_source == GainSource::MeanOfPairs
-            && settings.phase == PhaseCorrection::Lead;
+        let is_idle = self.state.study.settings.is_gain_source_idle();
         if *setting == setting_table::GAIN_SOURCE && is_idle {
             self.ui.label("");
             let text = self.palette.small_warning("No effect with leads");

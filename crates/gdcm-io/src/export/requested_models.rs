@@ -5,6 +5,7 @@ use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis};
 use gdcm_words::caution::failure_text;
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::lead_price::price_text;
 
 use super::exported_model::{DescribedPrice, ExportedModel};
@@ -23,7 +24,7 @@ pub(super) fn exported_models(
     analysis
         .asked_couplings()
         .map_err(|error| ExportFault::NoCouplings {
-            why: error.words(&dataset.names_of_channels().0),
+            why: coupling_error_text(error, dataset),
         })?;
     analysis
         .asked_physics()

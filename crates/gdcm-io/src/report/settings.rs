@@ -4,6 +4,7 @@ use gdcm_model::dataset::{Dataset, PairTable};
 use gdcm_study::Study;
 use gdcm_study::decisions::setting_table;
 use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_words::gain_source::gain_source_text;
 
 use super::page::Page;
 use super::wording::{capital, names};
@@ -28,7 +29,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
             continue;
         }
         let words = if *row == setting_table::GAIN_SOURCE {
-            settings.gain_source_words()
+            gain_source_text(settings)
         } else {
             row.words(settings)
         };

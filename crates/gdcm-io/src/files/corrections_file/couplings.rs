@@ -9,6 +9,7 @@ use gdcm_study::results::correction_costs::{AxisCost, CorrectionCost};
 use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::coupling_remark_text;
 
 use super::pair_rows::rows_of;
@@ -19,8 +20,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,
         Some(Err(error)) => {
-            let (inputs, _) = analysis.study.dataset.names_of_channels();
-            return json!({"why": error.words(&inputs)});
+            return json!({"why": coupling_error_text(error, &analysis.study.dataset)});
         }
         Some(Ok(fitted)) => fitted,
     };

@@ -112,6 +112,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("sensitivity", &[]),
             ("solution_details", &["conflict_text", "sensitivity"]),
             ("coupling_error", &[]),
+            ("coupled_model_error", &[]),
             ("coupling_remark", &["coupling_error"]),
             (
                 "remark",

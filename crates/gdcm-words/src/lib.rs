@@ -9,7 +9,7 @@
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
 //! suspected faults; [`missing_results`] for results that do not exist; [`coupling_error`],
-//! [`coupling_remark`], [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`]
+//! [`coupled_model_error`], [`coupling_remark`], [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`]
 //! for a study; [`edit`], [`decision_differences`] and [`dataset_differences`]; [`export`] for
 //! exported files; [`identification_caution`] for identified models; [`flight_plan`] for further
 //! flights, [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`],
@@ -31,6 +31,7 @@ pub mod caution;
 pub mod channel_time_skew;
 pub mod conflict_text;
 pub mod convention_doubt;
+pub mod coupled_model_error;
 pub mod coupling_error;
 pub mod coupling_remark;
 pub mod couplings;

@@ -5,6 +5,7 @@ use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis};
 use gdcm_words::caution::failure_text;
+use gdcm_words::coupled_model_error::coupled_model_error_text;
 use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::lead_price::price_text;
 
@@ -78,7 +79,7 @@ fn exported_model(
         .map_err(|error| ExportFault::Model {
             condition: id,
             model: model.name.clone(),
-            words: error.words(&inputs, &outputs),
+            words: coupled_model_error_text(&error, &analysis.study.dataset),
         })?;
     let price = correction.leads.as_ref().and_then(LeadPrice::new);
     let band_top_rad_s = analysis.study.settings.band.max();

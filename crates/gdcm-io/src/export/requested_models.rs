@@ -9,8 +9,8 @@ use gdcm_words::coupled_model_error::coupled_model_error_text;
 use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::lead_price::price_text;
 
-use super::exported_model::{DescribedPrice, ExportedModel};
-use super::model_description::{correction_words, couplings_words};
+use super::exported_model::{DescribedPrice, ExportedModel, ModelCouplings};
+use super::model_description::correction_words;
 use super::state_names::state_names;
 use super::{ExportRequest, ExportedRole};
 use crate::export_fault::ExportFault;
@@ -107,7 +107,7 @@ fn exported_model(
             words: price_text(&price, &inputs, &outputs),
             price,
         }),
-        couplings: couplings_words(analysis, dynamics),
+        couplings: ModelCouplings::new(analysis, dynamics),
         model: corrected.model,
     })
 }

@@ -124,9 +124,13 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     let analysis = analyze(&mut engine, &study);
     let written = corrections(&analysis, "", &BTreeSet::from([ConditionId(1)]));
     assert!(written["schedule"].is_null());
+    let Err(error) = &analysis.schedule else {
+        panic!("there is a schedule")
+    };
+    assert_eq!(error.code(), "no-condition-to-schedule");
     assert_eq!(
         written["assessment"]["left_out"][0]["why"],
-        "no schedule: none of the conditions chosen for it has a correction"
+        error.to_string()
     );
 }
 

@@ -19,7 +19,7 @@ use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::dataset_differences::Difference as DatasetDifference;
 use gdcm_study::results::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
 use gdcm_words::ExplainTarget;
-use gdcm_words::derivation::derivation;
+use gdcm_words::derivation::{SPREAD_ALONE, derivation};
 
 use super::*;
 
@@ -810,10 +810,7 @@ fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_er
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let says_so = |asked: ExplainTarget| {
         let found = derivation(&analysis, &asked).unwrap();
-        found
-            .rests_on
-            .iter()
-            .any(|line| line.contains("the spread of the models alone"))
+        found.rests_on.iter().any(|line| line == SPREAD_ALONE)
     };
     let told = ConditionId(1);
     assert!(

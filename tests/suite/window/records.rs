@@ -896,7 +896,8 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     wait_until(&mut window, "the archive", |window| {
         used_rows(window) == (99, 11)
     });
-    window.get_by_label("81 records of 9 conditions added; 18 already loaded");
+    let counts = ["81", "9", "18"];
+    assert_notice(&window, NoticeKind::Done, "records-added", &counts);
     let records = &state(&window).records;
     assert!(
         records

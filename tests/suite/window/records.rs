@@ -153,6 +153,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         assert_eq!(state(&window).records.page, page);
     }
     click(&mut window, "Page Fit");
+    assert_next_flight(&window);
     let pair = Pair {
         output: 5,
         input: 3,
@@ -232,6 +233,31 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     window.get_by_label("Use 1 fit");
     give(&mut window, StudyCommand::Undo);
     assert_eq!(identified_models(&window), taken);
+}
+
+/// The page shows a table for each input, with the intervals that the plan predicts.
+fn assert_next_flight(window: &Window) {
+    let records = &state(window).records.conditions[&CONDITION_10_ID];
+    let (job, _) = records.found.as_ref().unwrap();
+    let plan = job.news().next_flight.expect("a plan");
+    let dataset = state(window).dataset();
+    assert_eq!(plan.sweeps.len(), dataset.inputs().len());
+    for sweep in &plan.sweeps {
+        let input = &dataset.inputs()[sweep.sweep.sweep.input].name;
+        let title = format!("sweep of {input} (amplitude");
+        assert!(
+            window.get_all_by_label_contains(&title).count() > 0,
+            "{title}"
+        );
+        let mut narrowed = 0;
+        for response in &sweep.responses {
+            let now = response.now.half_db;
+            let after = response.after.last().unwrap().half_db;
+            assert!(0.0 < after && after <= now, "{after} {now}");
+            narrowed += usize::from(after < now);
+        }
+        assert!(narrowed > 0, "{input}");
+    }
 }
 
 /// Limits the search of these conditions, because only the end of the identification matters.

@@ -249,7 +249,8 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
             name: "example".to_owned(),
             sha256: "ba78".to_owned(),
         };
-        for exporter in EXPORTERS.iter() {
+        // The table of physics parameters contains no leads.
+        for exporter in EXPORTERS.iter().filter(|format| format.name != "physics") {
             let path = Path::new("k").with_extension(exporter.extension);
             let request = ExportRequest::default();
             let export = Export {

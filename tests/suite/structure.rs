@@ -131,6 +131,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("physics", &["couplings", "table"]),
             ("suggested_runs", &[]),
             ("identification_caution", &[]),
+            ("record_use", &[]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
             ("flight_plan", &["table"]),

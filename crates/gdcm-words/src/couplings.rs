@@ -27,6 +27,10 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
     cost_table(&assessment.costs, AxisCost::default())
 }
 
+/// Headings of the table of J for narrow panels: "with" stands after each value without the
+/// correction.
+pub const NARROW_COST_COLUMNS: [&str; 5] = ["mean J", "on-axis", "with", "others", "with"];
+
 /// Tabulates J on-axis and off-axis, without and with a correction; `with_uncorrected` is J of the
 /// models with it and without gains and delays.
 pub(crate) fn cost_table(costs: &CorrectionCosts, with_uncorrected: AxisCost) -> Table {

@@ -12,7 +12,9 @@ use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;
 use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
-use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
+use gdcm_words::couplings::{
+    NARROW_COST_COLUMNS, coupling_cost_table, coupling_matrix_tables, pole_table,
+};
 
 use super::PageEntry;
 use super::axis_updates::axis_update;
@@ -225,6 +227,7 @@ impl CouplingsWords<'_> {
     fn costs_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let costs = Table {
             title: "J, mean over the conditions".to_owned(),
+            columns: NARROW_COST_COLUMNS.map(str::to_owned).to_vec(),
             ..coupling_cost_table(self.assessment)
         };
         self.table_ui(ui, &costs, TableLook::PLAIN, commands);

@@ -263,6 +263,14 @@ fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
             "--write-tolerances",
             "pipe.json",
         ],
+        &[
+            "requirements",
+            "small.json",
+            "--levels",
+            "ads-33e-prf-yaw-tracking",
+            "--write-levels",
+            "pipe.json",
+        ],
         &["example", "learn"],
         &[&identify[..], &["--out", "identified"]].concat(),
     ];

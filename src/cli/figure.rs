@@ -55,7 +55,10 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     if arguments.view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
     }
-    if arguments.view == FigureKind::Physics {
+    if matches!(
+        arguments.view,
+        FigureKind::Physics | FigureKind::PhysicsChange
+    ) {
         request.physics = Some(assessed_physics(&analysis.study, &mut engine)?);
     }
     let figure = match condition {

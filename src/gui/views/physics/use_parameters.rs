@@ -22,6 +22,20 @@ pub fn physics_job(state: &State) -> PhysicsJob {
     }
 }
 
+/// Counts the named parameters while none is applied.
+pub fn unused_named(state: &State) -> usize {
+    if state.study.settings.physics != PhysicsCorrection::Off {
+        return 0;
+    }
+    match state.physics() {
+        Some(Some(Ok(assessment))) => match &assessment.applied.findings {
+            Some(findings) => findings.named().len(),
+            None => 0,
+        },
+        _ => 0,
+    }
+}
+
 /// Draws the choice of the parameters applied, and the button that applies the named ones.
 pub fn physics_header_ui(
     ui: &mut Ui,
@@ -30,14 +44,8 @@ pub fn physics_header_ui(
     commands: &mut Vec<Command>,
 ) {
     let shown = state.study.settings.physics;
-    let named = match state.physics() {
-        Some(Some(Ok(assessment))) => match &assessment.applied.findings {
-            Some(findings) => findings.named().len(),
-            None => 0,
-        },
-        _ => 0,
-    };
-    if shown == PhysicsCorrection::Off && named > 0 {
+    let named = unused_named(state);
+    if named > 0 {
         let text = format!("Use {}", counted(named, "parameter"));
         let button =
             Button::new(RichText::new(text).color(palette.on_accent())).fill(palette.accent);

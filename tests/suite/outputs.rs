@@ -234,7 +234,7 @@ fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
         "1",
         "9",
     ];
-    let commands: [&[&str]; 11] = [
+    let commands: [&[&str]; 12] = [
         &["report", "small.json", "--out", "pipe.html"],
         &[
             "figure",

@@ -26,7 +26,7 @@ pub struct StandardLevels {
 }
 
 /// The boundaries to choose from.
-pub const STANDARD_LEVELS: [StandardLevels; 2] = [
+pub static STANDARD_LEVELS: [StandardLevels; 2] = [
     StandardLevels {
         name: "ads-33e-prf-yaw-tracking",
         title: "ADS-33E-PRF, yaw: target acquisition and tracking",

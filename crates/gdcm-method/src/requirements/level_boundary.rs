@@ -279,16 +279,14 @@ impl LevelBoundaries {
     }
 
     /// Returns the boundaries that give levels for an axis, in the order of the levels.
-    fn assessing(&self, axis: &str) -> Vec<(u32, &LevelBoundary)> {
+    fn assessing(&self, axis: &str) -> Vec<&LevelBoundary> {
         let mut found = Vec::new();
         for boundary in &self.0 {
-            if boundary.axis == axis
-                && let Some(level) = boundary.level
-            {
-                found.push((level, boundary));
+            if boundary.axis == axis && boundary.level.is_some() {
+                found.push(boundary);
             }
         }
-        found.sort_by_key(|(level, _)| *level);
+        found.sort_by_key(|boundary| boundary.level);
         found
     }
 
@@ -315,14 +313,14 @@ impl LevelBoundaries {
         phase_delay_s: f64,
     ) -> Option<AssessedLevel> {
         let assessing = self.assessing(axis);
-        for (level, boundary) in &assessing {
+        for boundary in &assessing {
             match boundary.side(omega_bw_rad_s, phase_delay_s) {
-                BoundarySide::Within => return Some(AssessedLevel::Level(*level)),
+                BoundarySide::Within => return boundary.level.map(AssessedLevel::Level),
                 BoundarySide::Undrawn => return Some(AssessedLevel::AboveBoundaries),
                 BoundarySide::Beyond => {}
             }
         }
-        let (last, _) = assessing.last()?;
+        let last = assessing.last()?.level?;
         Some(AssessedLevel::Level(last.saturating_add(1)))
     }
 

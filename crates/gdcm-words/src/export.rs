@@ -125,6 +125,7 @@ pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
         }
         ExportNote::NoSchedule { .. } => "No schedule".to_owned(),
         ExportNote::NoErrorBars => "No error bars".to_owned(),
+        ExportNote::NoPhysicsParameters => "Physics parameters: none".to_owned(),
     }
 }
 
@@ -173,6 +174,7 @@ pub fn export_note_detail(
         | ExportNote::ConditionsWithoutResult { conditions } => listed(conditions),
         ExportNote::NoSchedule { why } => why.to_string(),
         ExportNote::NoErrorBars => "still being computed, or stopped".to_owned(),
+        ExportNote::NoPhysicsParameters => "the table has only its headings".to_owned(),
     }
 }
 

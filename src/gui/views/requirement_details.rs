@@ -4,6 +4,7 @@
 use egui::{Rect, Ui, UiBuilder, vec2};
 
 use gdcm_study::decisions::setting;
+use gdcm_study::results::grid_cell::CellVerdict;
 use gdcm_study::results::grid_requirement::Requirement;
 use gdcm_study::results::requirement_grid::RequirementGrid;
 use gdcm_study::results::requirements::Requirements;
@@ -57,6 +58,9 @@ pub(super) fn details_ui(
         name: "requirement details",
         title: &title,
         verdict: &verdict,
+        is_warning: selected
+            .cell
+            .is_some_and(|cell| cell.corrected.verdict == CellVerdict::Outside),
         default_height: HEIGHT,
         min_height: HEIGHT.min(0.5 * ui.available_height()),
     };

@@ -97,10 +97,11 @@ pub struct ExportFormat {
 }
 
 /// All export formats, in display order; the first is the default.
-pub static EXPORTERS: [ExportFormat; 12] = [
+pub static EXPORTERS: [ExportFormat; 13] = [
     all_results::JSON,
     all_results::CSV,
     all_results::ASSESSMENT,
+    all_results::PHYSICS,
     all_results::MAT,
     programs::MATLAB,
     programs::PYTHON,

@@ -197,6 +197,16 @@ impl ExportContents {
         self
     }
 
+    /// Returns the contents of the table of physics parameters, which has no part of the corrections.
+    pub fn of_physics(analysis: &Analysis) -> Self {
+        let mut contents = Self::of_none(analysis);
+        contents.couplings = PartSource::None;
+        contents
+            .left_out
+            .retain(|part| matches!(part, LeftOutPart::Physics(_)));
+        contents
+    }
+
     fn of_none(analysis: &Analysis) -> Self {
         let (couplings, mut left_out) = match analysis.asked_couplings() {
             Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),

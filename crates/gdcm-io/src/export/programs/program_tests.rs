@@ -13,7 +13,9 @@ use gdcm_method::schedule::{
 use gdcm_model::dataset::Dataset;
 use gdcm_model::progress::Unobserved;
 use gdcm_study::decisions::setting;
-use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
+use gdcm_study::{
+    Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection, Study,
+};
 
 use super::*;
 use crate::export::{EXPORTERS, ExportRequest, ExportSource};
@@ -57,6 +59,15 @@ fn analyses() -> Vec<(String, Analysis)> {
         let analysis = engine.analyze(&study, &Unobserved).unwrap();
         analyses.push((format!("leads of degree {tau_degree}"), analysis));
     }
+    // A schedule for physics models moved by their named parameters.
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    study
+        .apply(&setting::PHYSICS.to(PhysicsCorrection::Named))
+        .unwrap();
+    analyses.push((
+        "physics parameters".to_owned(),
+        engine.analyze(&study, &Unobserved).unwrap(),
+    ));
     // Conditions at a single airspeed, so that the airspeed range has zero width.
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let conditions = study.dataset.clone();

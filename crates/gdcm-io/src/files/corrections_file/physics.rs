@@ -252,9 +252,22 @@ fn rerun_json(check: &RerunCheck) -> Value {
 }
 
 /// Writes `physics.csv`: a row for each parameter, with its diagnosis and the change applied; of a
-/// parameter set by hand without a fit, only the change applied.
-pub(super) fn write_physics_csv(applied: &AppliedPhysics, file: &mut dyn Write) -> io::Result<()> {
+/// parameter set by hand without a fit, only the change applied. Only the headings if no parameters
+/// are applied.
+pub(crate) fn write_physics_csv(
+    applied: Option<&AppliedPhysics>,
+    file: &mut dyn Write,
+) -> io::Result<()> {
     let mut records = vec![COLUMNS.map(str::to_owned).to_vec()];
+    if let Some(applied) = applied {
+        records.extend(parameter_records(applied));
+    }
+    write_records(file, records.into_iter())
+}
+
+/// Returns the rows of `physics.csv`.
+fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
+    let mut records = Vec::new();
     let mut listed: BTreeSet<&str> = BTreeSet::new();
     if let Some(findings) = &applied.findings {
         for found in findings.diagnosed() {
@@ -285,7 +298,7 @@ pub(super) fn write_physics_csv(applied: &AppliedPhysics, file: &mut dyn Write) 
         cells[20] = full_precision(Some(value.change()));
         records.push(cells);
     }
-    write_records(file, records.into_iter())
+    records
 }
 
 /// Returns the cells of a parameter without a diagnosis.

@@ -18,6 +18,7 @@ use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
 use gdcm_words::caution::failure_text;
+use gdcm_words::coupling_error::coupling_error_text;
 
 use super::dataset_lookup::{channel_names, condition_ids, condition_of, pairs_of};
 use super::failure::Failure;
@@ -90,7 +91,7 @@ fn assessed_couplings(
     match assessed {
         Some(Ok(assessment)) => Ok(assessment),
         Some(Err(why)) => Err(Failure::NoResult {
-            reason: why.words(&study.dataset.names_of_channels().0),
+            reason: coupling_error_text(&why, &study.dataset),
         }),
         None => Err(Failure::NoResult {
             reason: "there are no couplings to assess".to_owned(),

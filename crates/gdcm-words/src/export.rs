@@ -7,6 +7,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::results::export_note::{ExportNote, ExportRemedy, FileSummary};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 
+use super::coupling_error::coupling_error_text;
 use super::lead_price::limit_text;
 use super::schedule::delayed_channel_text;
 
@@ -153,7 +154,7 @@ pub fn export_note_detail(
             ),
             None => String::new(),
         },
-        ExportNote::CouplingsLeftOut { why } => why.words(&dataset.names_of_channels().0),
+        ExportNote::CouplingsLeftOut { why } => coupling_error_text(why, dataset),
         ExportNote::GainTableError { .. } | ExportNote::TimeTableError { .. } => {
             "functions are exact".to_owned()
         }

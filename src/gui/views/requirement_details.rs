@@ -3,7 +3,7 @@
 
 use egui::{Rect, Ui, UiBuilder, vec2};
 
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::grid_cell::CellVerdict;
 use gdcm_study::results::grid_requirement::Requirement;
 use gdcm_study::results::requirement_grid::RequirementGrid;
@@ -142,7 +142,7 @@ impl DetailsBar {
     fn new(state: &State, selected: &SelectedCell<'_>, requirements: &Requirements) -> Self {
         let display = state.display.judging.requirements;
         let use_couplings = offered_couplings(state)
-            .map(|(assessment, _)| setting::COUPLINGS.to(assessment.couplings).into());
+            .map(|(assessment, _)| setting_table::COUPLINGS.to(assessment.couplings).into());
         let show_in_bode = match selected.row.requirement {
             Requirement::Bandwidth(pair)
             | Requirement::PhaseDelay(pair)

@@ -11,6 +11,7 @@ pub mod comparison;
 pub mod condition_bandwidths;
 pub mod condition_remarks;
 pub mod convention_doubt;
+pub mod correction_costs;
 pub mod coupled_model;
 pub mod coupling_remark;
 pub mod coupling_remark_search;

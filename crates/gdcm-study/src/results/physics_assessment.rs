@@ -9,7 +9,8 @@ use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Band, ConditionId};
 
 use super::applied_physics::AppliedPhysics;
-use super::couplings_assessment::{AxisCost, CouplingCost, CouplingCosts, NoPoles};
+use super::correction_costs::{AxisCost, CorrectionCost, CorrectionCosts};
+use super::couplings_assessment::NoPoles;
 use super::fitted_couplings::FittedCouplings;
 use super::physics_findings::PhysicsFailure;
 use super::rerun_check::RerunCheck;
@@ -33,7 +34,7 @@ pub struct PhysicsAssessment {
     /// Frequencies of [`ConditionPhysics::responses`] \[rad/s\].
     pub omega: Arc<[f64]>,
     /// J without and with the parameters, each with the other corrections of the study.
-    pub costs: CouplingCosts,
+    pub costs: CorrectionCosts,
     /// J of the moved physics representatives without any other correction.
     pub moved_uncorrected: AxisCost,
     /// Effect on each analysed condition.
@@ -59,7 +60,7 @@ pub struct ConditionPhysics {
     /// condition are not moved.
     pub responses: Vec<ResponseShapes>,
     /// J of the condition left out of the fit and the schedule; `None` if it takes no part in them.
-    pub left_out: Option<CouplingCost>,
+    pub left_out: Option<CorrectionCost>,
 }
 
 impl PhysicsAssessment {

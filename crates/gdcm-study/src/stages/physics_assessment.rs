@@ -4,7 +4,7 @@
 //! ```text
 //! 1  analysis without the parameters, and with them
 //! 2  each condition of the fit: values without it, schedule without it; J of the condition
-//! 3  J without and with the parameters                                  (`coupling_costs`)
+//! 3  J without and with the parameters                                  (`correction_costs`)
 //! 4  reruns against the prediction                                      (`rerun_checks`)
 //! ```
 
@@ -19,7 +19,7 @@ use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 
 use super::condition_stages::SWAP_PROOF;
-use super::coupling_costs::{LeftOutCost, coupling_costs, uncorrected_cost};
+use super::correction_costs::{LeftOutCost, correction_costs, uncorrected_cost};
 use super::engine::Engine;
 use super::rerun_checks::check_reruns;
 use crate::decisions::edit::Edit;
@@ -75,7 +75,7 @@ impl Engine {
             correction: physics,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
-            costs: coupling_costs(&without, &with, &costs_left_out),
+            costs: correction_costs(&without, &with, &costs_left_out),
             moved_uncorrected: uncorrected_cost(&with),
             conditions: condition_effects(&without, &with, &left_out),
             omega: Arc::clone(&with.omega),

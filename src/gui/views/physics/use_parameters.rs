@@ -5,7 +5,7 @@ use egui::{Button, RichText, Ui};
 
 use gdcm_model::number_format::counted;
 use gdcm_study::decisions::physics_settings::PhysicsCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::jobs::analysis_jobs::PhysicsJob;
 
 use crate::gui::commands::command::Command;
@@ -51,7 +51,7 @@ pub fn physics_header_ui(
             Button::new(RichText::new(text).color(palette.on_accent())).fill(palette.accent);
         let hint = "Moves the physics models of all conditions by the named parameters, before every \
             other correction; one step to undo";
-        let command = setting::PHYSICS.to(PhysicsCorrection::Named);
+        let command = setting_table::PHYSICS.to(PhysicsCorrection::Named);
         button_ui(ui, button, hint, command, commands);
     }
     let mut chosen = shown;
@@ -75,6 +75,6 @@ pub fn physics_header_ui(
     ];
     choice_ui(ui, "Physics parameters applied", &mut chosen, &choices);
     if chosen != shown {
-        commands.push(setting::PHYSICS.to(chosen).into());
+        commands.push(setting_table::PHYSICS.to(chosen).into());
     }
 }

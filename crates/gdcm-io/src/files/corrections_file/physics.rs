@@ -19,7 +19,7 @@ use gdcm_words::physics::{
     diagnosis_cautions, left_out_lines, paste_block, rerun_text, verdict_text,
 };
 
-use super::couplings::{axis_cost, coupling_cost};
+use super::couplings::{axis_cost, correction_cost};
 use crate::csv_text::write_records;
 use crate::json_empty_members::without_empty;
 
@@ -223,10 +223,10 @@ fn add_assessment(physics: &mut Value, assessment: &PhysicsAssessment) {
     let costs = &assessment.costs;
     physics["uncorrected"] = axis_cost(costs.uncorrected);
     physics["moved"] = axis_cost(assessment.moved_uncorrected);
-    physics["own"] = coupling_cost(costs.own);
-    physics["scheduled"] = coupling_cost(costs.scheduled);
+    physics["own"] = correction_cost(costs.own);
+    physics["scheduled"] = correction_cost(costs.scheduled);
     if let Some(left_out) = costs.left_out {
-        physics["left_out"] = coupling_cost(left_out);
+        physics["left_out"] = correction_cost(left_out);
     }
     if !assessment.reruns.is_empty() {
         physics["reruns"] = assessment.reruns.iter().map(rerun_json).collect();

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use gdcm_io::export::{EXPORTERS, ExportFormat};
 use gdcm_io::{FolderProgress, load_dataset, read_models};
 use gdcm_model::assembly::{FoundModel, Headings};
-use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair, StateSpace};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate};
 use gdcm_words::schedule::DELAYS_NOT_SCHEDULED;
 
@@ -1092,6 +1092,98 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
             .all(|(a, b)| a == b || (a.is_nan() && b.is_nan())),
         "to the last digit"
     );
+}
+
+/// Returns the blocks of a page in a language, in their order.
+fn blocks(page: &str, language: &str) -> Vec<String> {
+    let start = format!("```{language}\n");
+    page.split(&start)
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn the_blocks_of_the_page_for_matlab_run_in_octave_and_give_the_numbers_of_the_files() {
+    let desk = Desk::with_few();
+    let mut dataset = crate::read_json(&desk.path("few.json"));
+    // The aircraft answers later, so that the page's code for delays has something to do.
+    for condition in dataset["conditions"].as_array_mut().unwrap() {
+        for model in condition["identified_models"].as_array_mut().unwrap() {
+            model["input_delays_s"] = json!([0.25, 0.25, 0.25, 0.25]);
+        }
+    }
+    let text = serde_json::to_vec(&dataset).unwrap();
+    fs::write(desk.path("my-dataset.json"), text).unwrap();
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/how-to/matlab.md");
+    let page = fs::read_to_string(page).unwrap();
+    let mut commands = 0;
+    for line in blocks(&page, "sh").concat().lines() {
+        let mut words: Vec<&str> = line.split_whitespace().collect();
+        assert_eq!(words.remove(0), "gdcm", "{line}");
+        words.extend(["--phase", "delay"]);
+        let ended = desk.gdcm(&words);
+        assert_eq!(ended.status, 0, "{ended:?}");
+        commands += 1;
+    }
+    assert_eq!(commands, 4);
+    let mut program = String::from("page_of_the_program = 1;\n");
+    program += &blocks(&page, "matlab").join("\n");
+    program += "file = fopen('numbers.txt', 'w');\n\
+        fprintf(file, '%.17g ', gain_in, gain_out, delay_in, delay_out, gain, Mi(1, 1), gain_in(1));\n\
+        fprintf(file, '%.17g ', same.gains.inputs);\n\
+        last = corrected(2, 1, end);\n\
+        fprintf(file, '%.17g ', real(last), imag(last));\n\
+        first = corrected(:, :, 1);\n\
+        fprintf(file, '%.17g ', max(max(abs(response - first) ./ abs(first))));\n\
+        fclose(file);\n";
+    fs::write(desk.path("page.m"), &program).unwrap();
+    let Some(_) = octave(&desk, "evalc('page');") else {
+        return;
+    };
+    let found: Vec<f64> = desk
+        .read("numbers.txt")
+        .split_whitespace()
+        .map(|word| word.parse().unwrap())
+        .collect();
+
+    let corrections = crate::read_json(&desk.path("results/corrections.json"));
+    let condition = entries(&corrections["conditions"])
+        .iter()
+        .find(|condition| condition["id"] == 10)
+        .unwrap();
+    let gains = &condition["gains"];
+    let delays = &condition["delays_s"];
+    let [gain_in, gain_out] = ["inputs", "outputs"].map(|side| member_numbers(&gains[side]));
+    let [delay_in, delay_out] = ["inputs", "outputs"].map(|side| member_numbers(&delays[side]));
+    let own = [&gain_in[..], &gain_out, &delay_in, &delay_out].concat();
+    assert!(own.len() == 20 && delay_in.iter().chain(&delay_out).any(|delay| *delay > 0.0));
+    assert_eq!(found[..20], own);
+    // The schedule by its coefficients is that of the function.
+    assert!((found[20] / found[21] - 1.0).abs() < 1e-12, "{found:?}");
+    assert_eq!(found[23..27], gain_in);
+    // The corrected response LON -> Q at the upper end of the band.
+    let dataset = load_dataset(&desk.path("my-dataset.json")).unwrap().dataset;
+    let name = condition["physics_representative"].as_str().unwrap();
+    let model = dataset
+        .condition(ConditionId(10))
+        .unwrap()
+        .model(BundleKind::Physics, name)
+        .unwrap();
+    let pair = Pair::new(1, 0);
+    let omega = 12.0;
+    let response = evaluate(model.state_space().unwrap(), &[omega]).curve(pair)[0];
+    let factor = gain_out[1] * gain_in[0];
+    let delay_s = delay_out[1] + delay_in[0];
+    let expected = response * nalgebra::Complex::new(0.0, -omega * delay_s).exp() * factor;
+    let last = nalgebra::Complex::new(found[27], found[28]);
+    assert!(
+        (last - expected).norm() < 1e-9 * expected.norm(),
+        "{last} {expected}"
+    );
+    // A Pade approximant of order 2 is nearly exact at 0.5 rad/s.
+    assert!(found[29] < 1e-6, "{}", found[29]);
 }
 
 #[test]

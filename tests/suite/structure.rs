@@ -137,12 +137,17 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("flight_plan", &["table"]),
             ("time_histories", &["table"]),
             (
-                "requirements",
+                "requirement_grid",
                 &["missing_results", "table", "time_histories"],
             ),
             (
-                "requirement_grid",
-                &["missing_results", "table", "time_histories"],
+                "requirements",
+                &[
+                    "missing_results",
+                    "table",
+                    "time_histories",
+                    "requirement_grid",
+                ],
             ),
             (
                 "derivation",

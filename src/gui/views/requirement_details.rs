@@ -144,7 +144,9 @@ impl DetailsBar {
         let use_couplings = offered_couplings(state)
             .map(|(assessment, _)| setting_table::COUPLINGS.to(assessment.couplings).into());
         let show_in_bode = match selected.row.requirement {
-            Requirement::Bandwidth(pair) | Requirement::PhaseDelay(pair) => {
+            Requirement::Bandwidth(pair)
+            | Requirement::PhaseDelay(pair)
+            | Requirement::Level(pair) => {
                 bode_commands(requirements, selected.condition, pair, display.role())
             }
             _ => Vec::new(),

@@ -13,3 +13,4 @@ pub mod executor;
 pub mod gui;
 pub mod message;
 pub mod message_codes;
+pub mod version;

@@ -15,7 +15,7 @@ use super::study_arguments::OpeningArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
-#[command(name = "gdcm", version, args_conflicts_with_subcommands = true)]
+#[command(name = "gdcm", version = gdcm_io::software::version(), args_conflicts_with_subcommands = true)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,

@@ -4,6 +4,7 @@
 
 use egui::{Context, Id, Modal, RichText, ScrollArea};
 
+use gdcm_io::software::software;
 use gdcm_study::Edit;
 use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_words::dataset_differences::dataset_difference_text;
@@ -73,7 +74,7 @@ fn shortcuts_ui(form: &mut Form<'_, '_>, state: &State) {
 }
 
 fn about_ui(form: &mut Form<'_, '_>) {
-    form.title(concat!("gdcm ", env!("CARGO_PKG_VERSION")));
+    form.title(&software());
     form.ui.label(
         "The Gain-Delay Correction Method: one gain and one delay for each input and output \
          channel, so that a physics-based helicopter model matches flight and holds the important \

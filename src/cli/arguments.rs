@@ -110,6 +110,22 @@ pub enum Command {
         #[arg(long)]
         force: bool,
     },
+    /// Print the licences of this program and of the libraries in it.
+    #[command(after_help = "Examples:\n  gdcm licences\n  gdcm licences --json")]
+    Licences,
+    /// Write the manual pages, for packages.
+    #[command(
+        hide = true,
+        after_help = "Examples:\n  gdcm man-pages man1\n  gdcm man-pages man1 --force"
+    )]
+    ManPages {
+        /// Directory for the files, created if missing.
+        #[arg(value_name = "DIR")]
+        directory: PathBuf,
+        /// Overwrite existing files.
+        #[arg(long)]
+        force: bool,
+    },
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
 //! Figures in the documentation: the commands given on the page reproduce them.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
 use roxmltree::Document;
 
 use crate::commands::Desk;
+use crate::structure::sources;
 
 /// Permitted displacement of a text \[pt\]: on another processor, a digit may be rounded
 /// differently.
@@ -93,4 +95,30 @@ fn every_figure_of_the_paper_has_a_picture_on_the_page() {
     shown.sort_unstable();
     shown.dedup();
     assert_eq!(shown, (1..=19).collect::<Vec<u32>>());
+}
+
+#[test]
+fn the_page_on_stability_lists_every_format() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut written = BTreeSet::new();
+    for folder in ["crates", "src"] {
+        for path in sources(&root.join(folder)) {
+            let text = fs::read_to_string(&path).unwrap();
+            // Only string literals that are a format's whole name.
+            for part in text.split('"').filter(|part| part.starts_with("gdcm-")) {
+                if part.bytes().all(|byte| byte == b'-' || byte.is_ascii_lowercase()) {
+                    written.insert(part.to_owned());
+                }
+            }
+        }
+    }
+    let page = fs::read_to_string(root.join("docs/reference/stability.md")).unwrap();
+    let mut listed = BTreeSet::new();
+    for row in page.lines().filter_map(|line| line.strip_prefix("| `")) {
+        let name = row.split('`').next().unwrap_or_default();
+        assert!(row[name.len()..].starts_with("` | 1 |"), "{row}");
+        listed.insert(name.to_owned());
+    }
+    assert!(written.len() > 8, "{written:?}");
+    assert_eq!(listed, written);
 }

@@ -21,15 +21,18 @@ mmdebstrap --quiet --variant=apt "$suite" "$chroot"
 cp "$package" "$chroot/tmp/gdcm.deb"
 mount -t proc proc "$chroot/proc"
 inside() { env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"; }
-inside chroot "$chroot" apt-get install -qq --no-install-recommends /tmp/gdcm.deb >/dev/null
+inside chroot "$chroot" apt-get install -qq -o Dpkg::Use-Pty=0 --no-install-recommends /tmp/gdcm.deb >/dev/null 2>&1
 inside chroot "$chroot" gdcm --version
 inside chroot "$chroot" sh -ec 'cd /root && gdcm example . >/dev/null && gdcm analyze example-dataset.json --reject-suggested --out results >/dev/null && ls results'
 inside chroot "$chroot" sh -ec 'cd /root && gdcm analyze example-dataset.json --reject-suggested --out results --force >/dev/null'
 inside chroot "$chroot" test -s /usr/share/man/man1/gdcm-analyze.1.gz
 echo "tried in a fresh Debian $suite: install, gdcm --version, example, analyze, analyze --force"
 
-# Installed again, with what the window needs.
-inside chroot "$chroot" apt-get install -qq --reinstall --install-recommends /tmp/gdcm.deb >/dev/null
+# Removed without a trace, and installed again with what the window needs: apt takes recommended packages the first time only.
+inside chroot "$chroot" apt-get purge -qq -o Dpkg::Use-Pty=0 gdcm >/dev/null
+inside chroot "$chroot" sh -c '! test -e /usr/bin/gdcm && ! test -e /usr/share/doc/gdcm'
+inside chroot "$chroot" apt-get update -qq
+inside chroot "$chroot" apt-get install -qq -o Dpkg::Use-Pty=0 --install-recommends /tmp/gdcm.deb >/dev/null 2>&1
 display=:$((RANDOM % 400 + 200))
 Xvfb "$display" -screen 0 1440x900x24 -nolisten tcp >/dev/null 2>&1 &
 running+=($!)

@@ -106,7 +106,10 @@ fn the_page_on_stability_lists_every_format() {
             let text = fs::read_to_string(&path).unwrap();
             // Only string literals that are a format's whole name.
             for part in text.split('"').filter(|part| part.starts_with("gdcm-")) {
-                if part.bytes().all(|byte| byte == b'-' || byte.is_ascii_lowercase()) {
+                if part
+                    .bytes()
+                    .all(|byte| byte == b'-' || byte.is_ascii_lowercase())
+                {
                     written.insert(part.to_owned());
                 }
             }

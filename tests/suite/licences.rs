@@ -44,7 +44,10 @@ fn built() -> Vec<(String, String)> {
             .get(2)
             .is_some_and(|word| word.starts_with('(') && word.contains(['/', '\\']));
         if !is_own && words.len() >= 2 {
-            found.push((words[0].to_owned(), words[1].trim_start_matches('v').to_owned()));
+            found.push((
+                words[0].to_owned(),
+                words[1].trim_start_matches('v').to_owned(),
+            ));
         }
     }
     found.sort();

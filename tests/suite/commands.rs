@@ -13,7 +13,7 @@ use gdcm_model::dataset::BundleKind;
 use gdcm_study::Study;
 use gdcm_study::decisions::setting;
 
-use crate::{entries, members};
+use crate::{entries, members, read_json};
 
 pub(crate) const SMALL: &str = include_str!("../data/small-dataset.json");
 

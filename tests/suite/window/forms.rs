@@ -1,5 +1,7 @@
 //! Forms, used from the keyboard.
 
+use gdcm::gui::state::forms::FormKind;
+
 use super::*;
 
 fn press(window: &mut Window, modifiers: Modifiers, key: Key) {

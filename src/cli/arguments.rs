@@ -111,7 +111,10 @@ pub enum Command {
         force: bool,
     },
     /// Print the licences of this program and of the libraries in it.
-    #[command(after_help = "Examples:\n  gdcm licences\n  gdcm licences --json")]
+    #[command(
+        after_help = "Examples:\n  gdcm licences\n  gdcm licences --json",
+        alias = "licenses"
+    )]
     Licences,
     /// Write the manual pages, for packages.
     #[command(

@@ -17,7 +17,7 @@ pub(super) fn write_man_pages(directory: &Path, existing: Existing) -> Result<()
     let mut outputs = OutputSet::new(existing, Vec::new());
     for page in man_pages() {
         let path = directory.join(page.get_filename());
-        outputs.add(&path, |mut file| page.render(&mut file))?;
+        outputs.add(&path, |file| page.render(file))?;
     }
     outputs.persist()?;
     Ok(())

@@ -3,7 +3,7 @@
 //! Windows decides by a mark in the file whether a program gets a console. `gdcm.exe` has the mark
 //! of a console program: the shell waits for it, shows what it prints and takes its exit status,
 //! which a program marked as a window could not offer (an attached console prints, but the shell
-//! does not wait). This program has the mark of a window; it starts `bin\\gdcm.exe` with its own
+//! does not wait). This program has the mark of a window; it starts `bin\gdcm.exe` with its own
 //! arguments and a hidden console, and shows an error message if the window cannot be opened.
 //! Python is installed on Windows in the same way, as `python.exe` and `pythonw.exe`.
 #![cfg_attr(windows, windows_subsystem = "windows")]

@@ -18,6 +18,7 @@ use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
 use gdcm_words::caution::failure_text;
+use gdcm_words::coupling_error::coupling_error_text;
 
 use super::dataset_lookup::{channel_names, condition_ids, condition_of, pairs_of};
 use super::failure::Failure;
@@ -55,7 +56,10 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     if arguments.view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
     }
-    if arguments.view == FigureKind::Physics {
+    if matches!(
+        arguments.view,
+        FigureKind::Physics | FigureKind::PhysicsChange
+    ) {
         request.physics = Some(assessed_physics(&analysis.study, &mut engine)?);
     }
     let figure = match condition {
@@ -87,7 +91,7 @@ fn assessed_couplings(
     match assessed {
         Some(Ok(assessment)) => Ok(assessment),
         Some(Err(why)) => Err(Failure::NoResult {
-            reason: why.words(&study.dataset.names_of_channels().0),
+            reason: coupling_error_text(&why, &study.dataset),
         }),
         None => Err(Failure::NoResult {
             reason: "there are no couplings to assess".to_owned(),

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches};
 
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Setting};
+use gdcm_study::decisions::setting::{Kind, Setting};
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_words::setting_words::setting_words;
 
 use super::channel_values::{ChannelSign, channel_sign};

@@ -9,7 +9,7 @@ use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
@@ -84,7 +84,7 @@ fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fa
         .settings
         .given
         .iter()
-        .any(|given| *given.setting == setting::PHYSICS);
+        .any(|given| *given.setting == setting_table::PHYSICS);
     apply_parameters(study, &arguments.parameter, is_physics_given)?;
     apply_signs(study, &arguments.sign)?;
     for &id in &arguments.hold_out {

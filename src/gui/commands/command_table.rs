@@ -4,8 +4,8 @@ use egui::{Key, Modifiers};
 
 use gdcm_plot::figure::FigureFormat;
 use gdcm_study::decisions::adopted_models::OfferedModels;
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Value};
+use gdcm_study::decisions::setting::{Kind, Value};
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_words::setting_words::setting_words;
 
 use super::command::Command;

@@ -5,11 +5,12 @@ use egui::{Frame, Label, Margin, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_study::CouplingCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::coupling_remark_search::coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
 
@@ -78,7 +79,7 @@ pub fn couplings_header_ui(
     };
     option.ui(ui, &mut chosen, &choices, palette);
     if chosen != shown {
-        commands.push(setting::COUPLINGS.to(chosen).into());
+        commands.push(setting_table::COUPLINGS.to(chosen).into());
     }
 }
 
@@ -93,7 +94,7 @@ pub fn couplings_view_ui(
     let assessment = match state.couplings().cloned() {
         Some(Ok(assessment)) => assessment,
         Some(Err(why)) => {
-            let why = why.words(&state.dataset().names_of_channels().0);
+            let why = coupling_error_text(&why, state.dataset());
             ui.add(Label::new(palette.dim(format!("No couplings: {why}"))).wrap());
             return;
         }
@@ -217,7 +218,7 @@ impl CouplingsWords<'_> {
             .on_hover_text("In every condition; can be undone")
             .clicked()
         {
-            commands.push(setting::COUPLINGS.to(couplings).into());
+            commands.push(setting_table::COUPLINGS.to(couplings).into());
         }
     }
 

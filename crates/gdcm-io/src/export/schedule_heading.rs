@@ -4,7 +4,7 @@
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
 use gdcm_words::lead_price::price_text;
-use gdcm_words::schedule::schedule_caution_text;
+use gdcm_words::schedule::{DELAYS_NOT_SCHEDULED, schedule_caution_text};
 
 use super::exported_schedule::{ExportedSchedule, LEAD_INTERVALS};
 use super::program_text::{comment, number};
@@ -87,7 +87,7 @@ impl ExportedSchedule<'_> {
         let (inputs, outputs) = self.dataset.names_of_channels();
         let mut notes = Vec::new();
         if !self.schedule.has_delays() {
-            notes.push("delays are not scheduled in this study: they are zero here".to_owned());
+            notes.push(DELAYS_NOT_SCHEDULED.to_owned());
         }
         if let Some(price) = self.schedule.lead_price() {
             notes.push(price_text(&price, &inputs, &outputs));

@@ -11,5 +11,7 @@
 pub mod cli;
 pub mod executor;
 pub mod gui;
+pub mod licences;
 pub mod message;
 pub mod message_codes;
+pub mod version;

@@ -13,7 +13,7 @@ use gdcm_model::dataset::BundleKind;
 use gdcm_study::Study;
 use gdcm_study::decisions::setting_table;
 
-use crate::{entries, members};
+use crate::{entries, members, read_json};
 
 pub(crate) const SMALL: &str = include_str!("../data/small-dataset.json");
 
@@ -969,6 +969,37 @@ fn help_and_version_are_status_0_on_standard_output() {
         ended.assert_done();
         assert!(ended.out.contains("gdcm"), "{}", ended.out);
     }
+}
+
+#[test]
+fn version_and_files_state_the_same_program_with_its_commit() {
+    let desk = Desk::new();
+    let version = desk.gdcm(&["--version"]).out;
+    let expected = format!(
+        "gdcm {} ({})",
+        env!("CARGO_PKG_VERSION"),
+        gdcm::version::BUILT_FROM
+    );
+    assert_eq!(version.trim(), expected);
+    assert!(gdcm::version::BUILT_FROM.starts_with("commit "));
+    desk.write("data.json", |_| {});
+    desk.gdcm(&["analyze", "data.json", "--out", "results"])
+        .assert_done();
+    let corrections = read_json(&desk.path("results/corrections.json"));
+    assert_eq!(corrections["software"], expected);
+    desk.gdcm(&[
+        "export",
+        "data.json",
+        "--as",
+        "table-csv",
+        "--out",
+        "table.csv",
+    ])
+    .assert_done();
+    assert!(desk.read("table.csv").contains(&expected));
+    desk.gdcm(&["report", "data.json", "--out", "report.html"])
+        .assert_done();
+    assert!(desk.read("report.html").contains(&expected));
 }
 
 #[test]

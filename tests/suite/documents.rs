@@ -8,6 +8,7 @@ use std::path::{Component, Path, PathBuf};
 use roxmltree::Document;
 
 use crate::commands::Desk;
+use crate::structure::sources;
 
 /// Permitted displacement of a text \[pt\]: on another processor, a digit may be rounded
 /// differently.
@@ -250,4 +251,33 @@ fn every_link_leads_to_a_file_and_a_heading() {
         }
     }
     assert!(count > 200, "{count}");
+}
+
+#[test]
+fn the_page_on_stability_lists_every_format() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut written = BTreeSet::new();
+    for folder in ["crates", "src"] {
+        for path in sources(&root.join(folder)) {
+            let text = fs::read_to_string(&path).unwrap();
+            // Only string literals that are a format's whole name.
+            for part in text.split('"').filter(|part| part.starts_with("gdcm-")) {
+                if part
+                    .bytes()
+                    .all(|byte| byte == b'-' || byte.is_ascii_lowercase())
+                {
+                    written.insert(part.to_owned());
+                }
+            }
+        }
+    }
+    let page = fs::read_to_string(root.join("docs/reference/stability.md")).unwrap();
+    let mut listed = BTreeSet::new();
+    for row in page.lines().filter_map(|line| line.strip_prefix("| `")) {
+        let name = row.split('`').next().unwrap_or_default();
+        assert!(row[name.len()..].starts_with("` | 1 |"), "{row}");
+        listed.insert(name.to_owned());
+    }
+    assert!(written.len() > 8, "{written:?}");
+    assert_eq!(listed, written);
 }

@@ -181,6 +181,7 @@ const FILE_MODULES: &[&str] = &[
     "relative_folder",
     "gzip",
     "file_reading",
+    "software",
     "output_set",
     "csv_text",
     "files",

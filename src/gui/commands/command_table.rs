@@ -177,11 +177,18 @@ fn help_entries() -> impl Iterator<Item = Entry> {
             LayoutCommand::StartTour,
         ),
     ];
-    let about = [Entry::new(
-        "About gdcm",
-        "Version and licence",
-        Command::show_form(FormKind::About),
-    )];
+    let about = [
+        Entry::new(
+            "Licences",
+            "Of the libraries in the program",
+            Command::show_form(FormKind::Licences),
+        ),
+        Entry::new(
+            "About gdcm",
+            "Version and licence",
+            Command::show_form(FormKind::About),
+        ),
+    ];
     group(Menu::Help, 0, help).chain(group(Menu::Help, 1, about))
 }
 

@@ -8,6 +8,7 @@ use gdcm_words::schedule::{DELAYS_NOT_SCHEDULED, schedule_caution_text};
 
 use super::exported_schedule::{ExportedSchedule, LEAD_INTERVALS};
 use super::program_text::{comment, number};
+use crate::software::software;
 
 impl ExportedSchedule<'_> {
     /// Returns the heading of a file with the schedule, line by line; `notes` are included.
@@ -29,7 +30,7 @@ impl ExportedSchedule<'_> {
             format!("Correction: {}", comment(&shortened(&self.source.name))),
             format!("Dataset: {}", comment(&shortened(self.dataset.name()))),
             format!("SHA-256 of the dataset: {}", comment(&self.source.sha256)),
-            concat!("Written by: gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
+            format!("Written by: {}", software()),
         ];
         lines.extend(self.lead_lines());
         if self.couplings.is_some() {

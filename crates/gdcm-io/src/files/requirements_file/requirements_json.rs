@@ -20,6 +20,8 @@ use gdcm_words::missing_results::{
     reversed_phase_text,
 };
 
+use crate::software::software;
+
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
 
@@ -53,7 +55,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
     let document = RequirementsDocument {
         format: NAME,
         version: VERSION,
-        software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
+        software: software(),
         dataset: DatasetName {
             name: results.dataset.name(),
             sha256: results.sha256,
@@ -72,7 +74,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
 struct RequirementsDocument<'a> {
     format: &'static str,
     version: u64,
-    software: &'static str,
+    software: String,
     dataset: DatasetName<'a>,
     #[serde(flatten)]
     requirements: &'a Requirements,

@@ -36,7 +36,7 @@ def without_source(corrections: dict) -> dict:
     corrections = json.loads(json.dumps(corrections))
     del corrections["dataset"]["sha256"]
     for condition in corrections["conditions"]:
-        del condition["sources"]
+        condition.pop("sources", None)
     return corrections
 
 
@@ -388,7 +388,7 @@ class Work(unittest.TestCase):
 
         gdcm.identify(records(), inputs="LON", outputs="Q", band=(0.5, 12), progress=hear)
         fractions = [fraction for fraction, _, _ in heard]
-        self.assertGreater(len(heard), 3)
+        self.assertGreater(len(heard), 1)
         self.assertTrue(all(0.0 <= fraction <= 1.0 for fraction in fractions))
         self.assertEqual(fractions[-1], 1.0)
         self.assertTrue(any(step for _, step, _ in heard))
@@ -541,7 +541,7 @@ class Arrays(Folder):
 
     def test_responses_are_those_of_the_matrices_with_exact_delays(self) -> None:
         fix = with_delays()
-        nominal = example().conditions[10].nominal
+        nominal = example().conditions[4].nominal
         identity = np.eye(nominal.order)
         plain = np.stack(
             [
@@ -550,16 +550,16 @@ class Arrays(Folder):
             ],
             axis=-1,
         )
-        np.testing.assert_allclose(example().response(10, OMEGA), plain, rtol=1e-8, atol=1e-12)
-        gains = fix[10].net_gain.array[:, :, np.newaxis]
-        delays_s = fix[10].net_delay_s.array[:, :, np.newaxis]
+        np.testing.assert_allclose(example().response(4, OMEGA), plain, rtol=1e-8, atol=1e-12)
+        gains = fix[4].net_gain.array[:, :, np.newaxis]
+        delays_s = fix[4].net_delay_s.array[:, :, np.newaxis]
         self.assertGreater(delays_s.max(), 0.0)
         expected = plain * gains * np.exp(-1j * OMEGA * delays_s)
-        found = fix[10].response(OMEGA)
+        found = fix[4].response(OMEGA)
         self.assertEqual((found.shape, found.dtype), ((6, 4, 50), np.dtype(complex)))
         np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-12)
-        scheduled = fix.schedule.at(fix[10].airspeed_kt)
-        corrected = fix[10].response(OMEGA, correction="scheduled")
+        scheduled = fix.schedule.at(fix[4].airspeed_kt)
+        corrected = fix[4].response(OMEGA, correction="scheduled")
         factor = scheduled.gains["Q"] * scheduled.gains["LON"]
         row, column = fix.outputs.index("Q"), fix.inputs.index("LON")
         delay_s = scheduled.delays_s["Q"] + scheduled.delays_s["LON"]
@@ -674,7 +674,7 @@ class Frames(unittest.TestCase):
         self.assertEqual(len(responses), 11 * 24)
         schedule = fix.schedule.to_frame()
         self.assertEqual(
-            schedule.loc[80.0, ("gain", "LON")], fix.schedule.at(80.0).gains["LON"]
+            schedule.loc[45.0, ("gain", "LON")], fix.schedule.at(45.0).gains["LON"]
         )
         measured = identified().to_frame()
         self.assertEqual(len(measured), identified().measured.omega.size)

@@ -27,13 +27,14 @@ from ._error import Error
 from ._figure import Figure
 from ._identification import Identification, IdentificationCaution, identify
 from ._messages import Message
-from ._models import Channel, FrequencyResponse, StateSpace
+from ._models import Bands, Channel, FrequencyResponse, StateSpace
 
 __version__: str = _gdcm.version
 
 __all__ = [
     "Analysis",
     "Assessment",
+    "Bands",
     "Channel",
     "ChannelTable",
     "Condition",

@@ -28,6 +28,27 @@ Channels = Union[Mapping[str, str], Sequence[Union[str, Tuple[str, str], Channel
 
 
 @dataclass(frozen=True, eq=False)
+class Bands:
+    """Standard deviations of the response of an identified model, from which error bars are made.
+
+    Attributes
+    ----------
+    omega : ndarray of float, shape (N,)
+        Frequencies [rad/s], increasing.
+    sd_db, sd_deg : ndarray of float, shape (p, m, N)
+        Standard deviations of magnitude [dB] and phase [deg].
+    """
+
+    omega: Floats
+    sd_db: Floats
+    sd_deg: Floats
+
+    def __post_init__(self) -> None:
+        for values in ("omega", "sd_db", "sd_deg"):
+            object.__setattr__(self, values, np.asarray(getattr(self, values), dtype=float))
+
+
+@dataclass(frozen=True, eq=False)
 class StateSpace:
     """A linear model, ``x' = A x + B u``, ``y = C x + D u``.
 
@@ -48,6 +69,10 @@ class StateSpace:
         Name of the model.
     notes : tuple of str
         Description of the model, such as the accuracy of its Pade approximants.
+    bands : Bands or None
+        Standard deviations of an identified model.
+    method : str
+        Method of the identification; empty where unknown.
     """
 
     A: Floats
@@ -62,6 +87,8 @@ class StateSpace:
     states: Tuple[str, ...] = ()
     name: str = ""
     notes: Tuple[str, ...] = ()
+    bands: Optional[Bands] = None
+    method: str = ""
 
     def __post_init__(self) -> None:
         for matrix in "ABCD":
@@ -256,7 +283,15 @@ def model_from_json(text: Dict[str, Any]) -> Union[StateSpace, FrequencyResponse
         states=tuple(text.get("states") or ()),
         name=text.get("name", ""),
         notes=tuple(text.get("notes") or ()),
+        bands=_bands(text.get("bands")),
+        method=text.get("method") or "",
     )
+
+
+def _bands(text: Optional[Dict[str, Any]]) -> Optional[Bands]:
+    if text is None:
+        return None
+    return Bands(text["omega_rad_s"], text["sd_db"], text["sd_deg"])
 
 
 def _optional(value: Any) -> Any:
@@ -328,6 +363,14 @@ def _matrices_json(model: StateSpace, where: str) -> Dict[str, Any]:
         text["D"] = _numbers(model.D, f"{where}, D")
     if len(model.states) == states and states:
         text["states"] = list(model.states)
+    if model.bands is not None:
+        text["bands"] = {
+            "omega_rad_s": _numbers(model.bands.omega, f"{where}, bands"),
+            "sd_db": _numbers(model.bands.sd_db, f"{where}, bands"),
+            "sd_deg": _numbers(model.bands.sd_deg, f"{where}, bands"),
+        }
+    if model.method:
+        text["method"] = model.method
     if model.sample_time_s is not None:
         text["sample_time_s"] = float(model.sample_time_s)
     if model.input_delays_s is not None:

@@ -23,7 +23,7 @@ use gdcm_model::dataset::{
 };
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PolarResponse};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::comparison::BundleMetrics;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::stages::compared_model::ComparisonGrid;
@@ -137,27 +137,27 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
     };
     let set = |study: &mut Study, edit: Edit| study.apply(&edit).expect("within its range");
     drag("alpha dragged", &|study, turn| {
-        set(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+        set(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
     });
     let under_lead = |study: &mut Study, edit: Edit| {
-        set(study, setting::PHASE.to(PhaseCorrection::Lead));
+        set(study, setting_table::PHASE.to(PhaseCorrection::Lead));
         set(study, edit);
     };
     drag("alpha dragged under lead", &|study, turn| {
-        under_lead(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+        under_lead(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
     });
     drag("alpha of the delays dragged under lead", &|study, turn| {
-        under_lead(study, setting::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
+        under_lead(study, setting_table::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
     });
     drag("n dragged under lead", &|study, turn| {
-        under_lead(study, setting::LEAD_POLE.to(3.0 + 1e-6 * turn))
+        under_lead(study, setting_table::LEAD_POLE.to(3.0 + 1e-6 * turn))
     });
     drag("R_max dragged under lead", &|study, turn| {
-        under_lead(study, setting::LEAD_LIMIT.to(10.0 + 1e-6 * turn))
+        under_lead(study, setting_table::LEAD_LIMIT.to(10.0 + 1e-6 * turn))
     });
     drag("band edge dragged", &|study, turn| {
         let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
-        set(study, setting::BAND.to(band));
+        set(study, setting_table::BAND.to(band));
     });
     drag("model rejected", &|study, turn| {
         let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
@@ -210,7 +210,7 @@ fn ratios(_: &mut Criterion) {
     let drag = shortest(50, || {
         alpha += 1e-6;
         dragged
-            .apply(&setting::ALPHA_GAIN.to(alpha))
+            .apply(&setting_table::ALPHA_GAIN.to(alpha))
             .expect("within its range");
         engine.analyze(&dragged, &Unobserved)
     });
@@ -313,7 +313,7 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
             turn += 1.0;
             // All substitutions depend on alpha, but no response does.
             study
-                .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+                .apply(&setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
                 .expect("within its range");
             let analysis = reps(&study, &mut engine);
             engine.uncertainty(&analysis, &Unobserved)
@@ -348,7 +348,7 @@ fn requirements(criterion: &mut Criterion) {
             .dataset,
     );
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
         .expect("a choice");
     let mut engine = Engine::with_executor(Box::new(Pool));
     let mut analysis = engine

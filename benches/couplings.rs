@@ -19,7 +19,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
 
 #[path = "stopwatch/mod.rs"]
@@ -40,10 +40,10 @@ fn example() -> Arc<Dataset> {
 fn study() -> Study {
     let mut study = Study::new(example());
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
         .expect("a choice");
     study
-        .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+        .apply(&setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
         .expect("a choice");
     study
 }
@@ -83,7 +83,7 @@ fn live_loop(criterion: &mut Criterion) {
     };
     again("alpha dragged", &|study, turn| {
         study
-            .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+            .apply(&setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
             .expect("within its range");
     });
     // The representative is rejected, because the fit depends on it.
@@ -106,7 +106,7 @@ fn live_loop(criterion: &mut Criterion) {
     again("model rejected, fitted again", &rejected);
     again("model rejected, without couplings", &|study, turn| {
         study
-            .apply(&setting::COUPLINGS.to(CouplingCorrection::None))
+            .apply(&setting_table::COUPLINGS.to(CouplingCorrection::None))
             .expect("a choice");
         rejected(study, turn);
     });

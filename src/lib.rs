@@ -12,14 +12,17 @@
 pub mod cli;
 pub mod executor;
 pub mod gui;
+pub mod licences;
 pub mod message;
 pub mod message_codes;
+pub mod version;
 
 use std::ffi::OsString;
 
 /// Runs the program: carries out a command, or opens the window. The first argument is the name of
 /// the program. Returns the exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    version::set_commit();
     gdcm_io::output_set::report_size_limit();
     cli::run(arguments, gui::app::open)
 }

@@ -17,6 +17,7 @@ use gdcm_words::assessment::{held_out_verdict, not_assessed_text};
 use gdcm_words::convention_doubt::doubt_text;
 use gdcm_words::coupling_remark::coupling_remark_text;
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
+use gdcm_words::gain_source::gain_source_text;
 
 use super::condition_summary::condition_section;
 use super::evidence_summary::evidence_section;
@@ -92,7 +93,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     );
     let mut text = line("Dataset", &dataset) + &line("Band", &band);
     if settings.gain_source != GainSource::default() {
-        text += &line("G from", &settings.gain_source_words());
+        text += &line("G from", &gain_source_text(settings));
     }
     for turned in study.turned_channels() {
         let channel = sanitized(&turned.channel);

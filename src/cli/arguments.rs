@@ -15,7 +15,7 @@ use super::study_arguments::OpeningArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
-#[command(name = "gdcm", version, args_conflicts_with_subcommands = true)]
+#[command(name = "gdcm", version = gdcm_io::software::version(), args_conflicts_with_subcommands = true)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
@@ -106,6 +106,25 @@ pub enum Command {
         /// Write the example Real aircraft: physics models, flight records and licences of two quadrotors.
         #[arg(long)]
         real: bool,
+        /// Overwrite existing files.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Print the licences of this program and of the libraries in it.
+    #[command(
+        after_help = "Examples:\n  gdcm licences\n  gdcm licences --json",
+        alias = "licenses"
+    )]
+    Licences,
+    /// Write the manual pages, for packages.
+    #[command(
+        hide = true,
+        after_help = "Examples:\n  gdcm man-pages man1\n  gdcm man-pages man1 --force"
+    )]
+    ManPages {
+        /// Directory for the files, created if missing.
+        #[arg(value_name = "DIR")]
+        directory: PathBuf,
         /// Overwrite existing files.
         #[arg(long)]
         force: bool,

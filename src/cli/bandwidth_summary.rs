@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use gdcm_method::requirements::LevelBoundaries;
+use gdcm_method::requirements::level_boundary::AssessedLevel;
 use gdcm_model::message_text::sanitized;
 use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::s_to_ms;
@@ -11,6 +13,7 @@ use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
 use gdcm_words::missing_results::no_bandwidth_text;
+use gdcm_words::requirements::has_levels;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::printed_lines::{decimals_or_dash, indented, line};
@@ -26,16 +29,22 @@ pub(super) fn bandwidth_section(study: &Study, requirements: &Requirements) -> S
             findings,
         })
         .collect();
-    let table = bandwidth_table(&responses);
+    let levels = &study.requirements.levels;
+    let table = bandwidth_table(&responses, levels);
     let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
     let star = if is_marked {
         "; * depends on the response above the band"
     } else {
         ""
     };
+    let level = if has_levels(requirements, levels) {
+        " / level"
+    } else {
+        ""
+    };
     let mut text = line(
         "Bandwidth",
-        &format!("of the attitude [rad/s] / phase delay [ms]{star}:"),
+        &format!("of the attitude [rad/s] / phase delay [ms]{level}{star}:"),
     );
     if !table.rows.is_empty() {
         text += &indented(&table, 2);
@@ -138,7 +147,7 @@ fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<
 
 /// Returns a table with a row for each response that has a bandwidth or a phase delay, and a column
 /// for each role.
-fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
+fn bandwidth_table(responses: &[ResponseBandwidths], levels: &LevelBoundaries) -> Table {
     let mut headings = vec!["condition", "response"];
     headings.extend(RequirementRole::ALL.map(RequirementRole::name));
     let mut table = Table::new("", headings);
@@ -151,7 +160,7 @@ fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
         for role in RequirementRole::ALL {
             let finding = findings.iter().find(|finding| finding.role == role);
             cells.push(match finding {
-                Some(finding) => bandwidth_cell(finding),
+                Some(finding) => bandwidth_cell(finding, levels),
                 None => NO_VALUE.to_owned(),
             });
         }
@@ -160,16 +169,27 @@ fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
     table
 }
 
-/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response; a star marks a
-/// value that depends on the response above the band.
-fn bandwidth_cell(finding: &BandwidthFinding) -> String {
-    format!(
+/// Formats "2.13 / 112* / 2": bandwidth \[rad/s\] and phase delay \[ms\] of a response, and its level
+/// if boundaries give one; a star marks a value that depends on the response above the band.
+fn bandwidth_cell(finding: &BandwidthFinding, levels: &LevelBoundaries) -> String {
+    let mut text = format!(
         "{}{} / {}{}",
         decimals_or_dash(finding.omega_bw_rad_s, 2),
         above_mark(finding, "omega_bw_rad_s"),
         decimals_or_dash(finding.phase_delay_s.map(s_to_ms), 0),
         above_mark(finding, "phase_delay_s")
-    )
+    );
+    if let Some(level) = finding.level(levels) {
+        text += &format!(" / {}", level_cell(level));
+    }
+    text
+}
+
+fn level_cell(level: AssessedLevel) -> String {
+    match level.number() {
+        Some(number) => number.to_string(),
+        None => NO_VALUE.to_owned(),
+    }
 }
 
 fn above_mark(finding: &BandwidthFinding, quantity: &str) -> &'static str {

@@ -5,8 +5,8 @@ use std::ffi::{OsStr, OsString};
 
 use clap::error::{ContextKind, ContextValue};
 
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::Kind;
+use gdcm_study::decisions::setting::Kind;
+use gdcm_study::decisions::setting_table::SETTINGS;
 
 use super::terminal::OutputFormat;
 

@@ -18,6 +18,7 @@ use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
 use gdcm_words::caution::failure_text;
+use gdcm_words::coupling_error::coupling_error_text;
 
 use super::dataset_lookup::{channel_names, condition_ids, condition_of, pairs_of};
 use super::failure::Failure;
@@ -98,7 +99,7 @@ pub(super) fn drawn_figure(
     if view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, engine, receiver)?);
     }
-    if view == FigureKind::Physics {
+    if matches!(view, FigureKind::Physics | FigureKind::PhysicsChange) {
         request.physics = Some(assessed_physics(&analysis.study, engine, receiver)?);
     }
     let figure = match condition {
@@ -125,7 +126,7 @@ fn assessed_couplings(
     match assessed {
         Some(Ok(assessment)) => Ok(assessment),
         Some(Err(why)) => Err(Failure::NoResult {
-            reason: why.words(&study.dataset.names_of_channels().0),
+            reason: coupling_error_text(&why, &study.dataset),
         }),
         None => Err(Failure::NoResult {
             reason: "there are no couplings to assess".to_owned(),

@@ -14,7 +14,7 @@ use gdcm_model::number_format::counted;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{CautionNote, Identification, IdentificationError};
 use gdcm_sysid::records::RecordChannels;
-use gdcm_sysid::spectra::record_use::RecordUse;
+use gdcm_words::record_use::input_limit_texts;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::failure::Failure;
@@ -139,7 +139,7 @@ impl<'a> Identifications<'a> {
         let facts: Vec<String> = found
             .record_uses
             .iter()
-            .flat_map(RecordUse::facts)
+            .flat_map(input_limit_texts)
             .collect();
         for fact in &facts {
             note("record-preparation", fact);

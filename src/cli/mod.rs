@@ -32,6 +32,7 @@ mod identify;
 mod identify_arguments;
 mod interruption;
 mod leave_one_out;
+mod man_pages;
 mod misspelling;
 mod model_arguments;
 mod option_values;
@@ -142,6 +143,10 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
             real,
             force,
         } => write_example(chosen_example(*real), directory, existing(*force)),
+        Command::Licences => print(crate::licences::TEXT),
+        Command::ManPages { directory, force } => {
+            man_pages::write_man_pages(directory, existing(*force))
+        }
     }
 }
 

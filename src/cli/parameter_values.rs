@@ -2,7 +2,7 @@
 
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::physics_settings::{ParameterDecision, PhysicsCorrection};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Edit, Study};
 
 use super::failure::Failure;
@@ -99,7 +99,7 @@ pub(super) fn apply_parameters(
         decide(study, &edit)?;
     }
     if !is_physics_given && study.settings.physics == PhysicsCorrection::Off {
-        decide(study, &setting::PHYSICS.to(PhysicsCorrection::ByHand))?;
+        decide(study, &setting_table::PHYSICS.to(PhysicsCorrection::ByHand))?;
     }
     Ok(())
 }

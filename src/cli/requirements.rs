@@ -1,7 +1,7 @@
 //! `gdcm requirements`: computes the metrics required for a qualification for the models of every
 //! condition, writes them to files and prints a short table.
 
-use gdcm_io::files::levels_and_tolerances::add_tolerances;
+use gdcm_io::files::levels_and_tolerances::{add_levels, add_tolerances};
 use gdcm_io::files::requirements_file::{
     REQUIREMENT_FILES, RequirementResults, requirement_paths, write_requirements,
 };
@@ -35,7 +35,7 @@ use super::terminal::{caution_for, note, print};
 use super::time_histories::{read_histories, simulated_histories};
 use crate::message::Message;
 
-/// Writes the tolerance table if requested; analyses the study, writes the requirements, and prints
+/// Writes the tolerance table and the level boundaries if requested; analyses the study, writes the requirements, and prints
 /// a short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
     let CommandStudy {
@@ -44,10 +44,11 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         outputs,
     } = CommandStudy::open(&arguments.study, arguments.force)?;
     let mut outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
-    let tolerances = tolerance_line(arguments, &study, &mut outputs)?;
+    let mut tables = tolerance_line(arguments, &study, &mut outputs)?;
+    tables += &level_line(arguments, &study, &mut outputs)?;
     let Some(out) = &arguments.out else {
         outputs.persist()?;
-        return print(&tolerances);
+        return print(&tables);
     };
     outputs.check(&requirement_paths(out))?;
     make_directory(out)?;
@@ -82,7 +83,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     text += &history_section(&histories);
     text += &line("", "these values do not replace a qualification");
     text += &line("Written", &files);
-    text += &tolerances;
+    text += &tables;
     print(&text)?;
     records.into_outcome()
 }
@@ -101,6 +102,24 @@ fn tolerance_line(
     let rows = counted(tolerances.rows().len(), "row");
     let words = format!("{rows} in {}", sanitized_path(path));
     Ok(line("Tolerances", &words))
+}
+
+/// Adds the file of level boundaries to the outputs if requested, and returns a line about it.
+fn level_line(
+    arguments: &RequirementsArguments,
+    study: &Study,
+    outputs: &mut OutputSet,
+) -> Result<String, Failure> {
+    let Some(path) = &arguments.write_levels else {
+        return Ok(String::new());
+    };
+    let levels = &study.requirements.levels;
+    add_levels(levels, path, outputs)?;
+    let mut words = sanitized_path(path);
+    for boundary in levels.as_slice() {
+        words += &sanitized(&format!("; {} of {}", boundary.name, boundary.axis));
+    }
+    Ok(line("Levels", &words))
 }
 
 fn report_cautions(requirements: &Requirements, dataset: &Dataset) {

@@ -123,8 +123,11 @@ pub struct RequirementsArguments {
     /// Write the table of tolerances as a file to edit; without --out, nothing else is computed.
     #[arg(long, value_name = "FILE")]
     pub write_tolerances: Option<PathBuf>,
+    /// Write the boundaries of levels as a file to edit; without --out, nothing else is computed.
+    #[arg(long, value_name = "FILE", requires = "levels")]
+    pub write_levels: Option<PathBuf>,
     /// Directory for requirements.json and requirements.csv, created if missing.
-    #[arg(long, value_name = "DIR", required_unless_present = "write_tolerances")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["write_tolerances", "write_levels"])]
     pub out: Option<PathBuf>,
     /// Overwrite existing files.
     #[arg(long)]

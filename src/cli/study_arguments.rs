@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches};
 
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Setting};
+use gdcm_study::decisions::setting::{Kind, Setting};
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_words::setting_words::setting_words;
 
 use super::channel_values::{ChannelSign, channel_sign};
@@ -129,9 +129,10 @@ pub struct StudyArguments {
     /// Outputs whose attitude the stick commands, separated by commas: only the phase determines their bandwidth (ADS-33E-PRF).
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub attitude_command: Vec<String>,
-    /// File with the boundaries of levels to be drawn in the plot of bandwidth and phase delay (docs/requirements.md).
-    #[arg(long, value_name = "FILE")]
-    pub levels: Option<PathBuf>,
+    /// Boundaries of levels in the plane of bandwidth and phase delay: a file (docs/requirements.md),
+    /// ads-33e-prf-yaw-tracking or ads-33e-prf-yaw-other-tasks. They replace those of the same axis. May be repeated.
+    #[arg(long, value_name = "FILE or NAME")]
+    pub levels: Vec<PathBuf>,
     /// File with the tolerances of time histories [default: those of the study, initially 14 CFR part 60, appendix C, table C2A]
     /// (docs/requirements.md).
     #[arg(long, value_name = "FILE")]

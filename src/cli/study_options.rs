@@ -1,15 +1,18 @@
 //! The study analysed by a command, as modified by the options on the command line.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use gdcm_io::files::levels_and_tolerances::{load_tolerances, read_levels};
+use gdcm_io::files::standard_levels::StandardLevels;
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::{LoadedDataset, embedded_example};
+use gdcm_io::{FileError, LoadedDataset, embedded_example};
 use gdcm_method::correction;
-use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm_method::requirements::LevelBoundaries;
+use gdcm_model::dataset::{BundleKind, Channel, ConditionId, ModelId};
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSettings};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
@@ -49,9 +52,10 @@ impl CommandStudy {
             caution(found.code(), &format!("{}: {found}", loaded.origin));
         }
         apply_options(&mut study, arguments)?;
-        let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]
+        let inputs = [&arguments.file, &arguments.tolerances]
             .into_iter()
             .flatten()
+            .chain(&arguments.levels)
             .cloned()
             .chain(loaded.origin.file())
             .collect();
@@ -84,7 +88,7 @@ pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Re
         .settings
         .given
         .iter()
-        .any(|given| *given.setting == setting::PHYSICS);
+        .any(|given| *given.setting == setting_table::PHYSICS);
     apply_parameters(study, &arguments.parameter, is_physics_given)?;
     apply_signs(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
@@ -123,17 +127,18 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
         }
         settings.attitude_command.insert(name.clone());
     }
-    if let Some(path) = &arguments.levels {
-        settings.levels = read_levels(path)?;
-        let unknown = settings.levels.unknown_axes(&outputs);
-        if !unknown.is_empty() {
-            let text = format!(
-                "levels of {} are not drawn: the outputs are {}",
-                unknown.join(", "),
-                outputs.join(", ")
-            );
-            caution("levels-of-unknown-channel", &sanitized(&text));
-        }
+    for path in &arguments.levels {
+        let levels = read_levels_or_standard(path, study.dataset.outputs())?;
+        settings.levels = settings.levels.replaced_by(&levels);
+    }
+    let unknown = settings.levels.unknown_axes(&outputs);
+    if !arguments.levels.is_empty() && !unknown.is_empty() {
+        let text = format!(
+            "levels of {} are not drawn: the outputs are {}",
+            unknown.join(", "),
+            outputs.join(", ")
+        );
+        caution("levels-of-unknown-channel", &sanitized(&text));
     }
     if let Some(path) = &arguments.tolerances {
         let (tolerances, cautions) = load_tolerances(path)?;
@@ -147,6 +152,14 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
         apply(study, "--levels", &edit)?;
     }
     Ok(())
+}
+
+/// Returns the level boundaries with this name, or those in this file.
+fn read_levels_or_standard(path: &Path, outputs: &[Channel]) -> Result<LevelBoundaries, FileError> {
+    match path.to_str().and_then(StandardLevels::named) {
+        Some(standard) => standard.boundaries(outputs),
+        None => read_levels(path),
+    }
 }
 
 /// Rejects a second variable for which a scheduled condition has no value. Checked in advance,

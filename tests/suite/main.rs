@@ -15,6 +15,7 @@ mod couplings;
 mod documents;
 mod exports;
 mod file_cycles;
+mod licences;
 #[path = "../../crates/gdcm-io/tests/suite/made_up.rs"]
 mod made_up;
 mod messages;

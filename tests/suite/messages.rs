@@ -15,9 +15,9 @@ use gdcm_model::message_text::sanitized;
 use gdcm_model::units::number;
 use gdcm_study::Study;
 use gdcm_study::decisions::edit_refusal::EditRefusal;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::Kind;
+use gdcm_study::decisions::setting::Kind;
+use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_table::SETTINGS;
 
 use crate::commands::{Desk, SMALL};
 
@@ -135,7 +135,7 @@ fn the_bounds_that_a_message_names_are_those_that_are_refused() {
     let bounds = |lower, upper| {
         study
             .clone()
-            .apply(&setting::GAIN_BOUNDS.to(Some(GainBounds { lower, upper })))
+            .apply(&setting_table::GAIN_BOUNDS.to(Some(GainBounds { lower, upper })))
     };
     assert_eq!(bounds(1e-6, 1e6), Ok(()));
     let refusal = bounds(0.5, 0.4).unwrap_err();

@@ -234,7 +234,7 @@ fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
         "1",
         "9",
     ];
-    let commands: [&[&str]; 11] = [
+    let commands: [&[&str]; 12] = [
         &["report", "small.json", "--out", "pipe.html"],
         &[
             "figure",
@@ -261,6 +261,14 @@ fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
             "requirements",
             "small.json",
             "--write-tolerances",
+            "pipe.json",
+        ],
+        &[
+            "requirements",
+            "small.json",
+            "--levels",
+            "ads-33e-prf-yaw-tracking",
+            "--write-levels",
             "pipe.json",
         ],
         &["example", "learn"],

@@ -1,8 +1,18 @@
 //! Physics parameters on the command line: printed text and files (M18.5).
 
 use std::fs;
+use std::path::Path;
+
+use gdcm_io::load_dataset;
+use gdcm_model::dataset::BundleKind;
+use gdcm_model::progress::Unobserved;
+use gdcm_model::response::evaluate;
+use gdcm_study::decisions::setting_table;
+use gdcm_study::{Engine, PhysicsCorrection, Study};
+use gdcm_words::physics::{LIKE_EFFECT, naming_words};
 
 use crate::commands::Desk;
+use crate::exports::octave;
 use crate::{entries, read_json};
 
 /// The dataset with known truth: tail lift +11 %, swashplate phase +1.6 deg, inflow mass -12 %.
@@ -24,13 +34,9 @@ fn analyze_names_parameters_and_writes_them() {
     let desk = Desk::new();
     let told = desk.messages(&line(&["--physics", "named", "--out", "named"]));
     told.assert_success();
-    for words in [
-        "tail_lift",
-        "would have to move by",
-        "not offered",
-        "physics.csv",
-    ] {
-        assert!(told.text.contains(words), "{words}: {}", told.text);
+    let printed = told.text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in ["tail_lift", naming_words(None), LIKE_EFFECT, "physics.csv"] {
+        assert!(printed.contains(words), "{words}: {printed}");
     }
     let found = read_json(&desk.path("named/corrections.json"));
     assert_eq!(found["settings"]["physics"], "named");
@@ -110,4 +116,66 @@ fn wrong_values_are_refused_with_codes() {
     desk.messages(&line(&[&twice[..], &["--out", "wrong"]].concat()))
         .assert_code("given-twice", &[]);
     assert!(!desk.path("wrong").exists());
+}
+
+/// Octave computes `|C (j omega I - A)^-1 B + D|` of the exported models; the program, the response
+/// of the moved physics models times the net gains. Delays do not change magnitudes.
+#[test]
+fn octave_computes_the_responses_of_models_with_moved_parameters() {
+    let desk = Desk::new();
+    let export = [
+        "export",
+        DATASET,
+        "--points",
+        "40",
+        "--physics",
+        "named",
+        "--correction",
+        "own",
+        "--as",
+        "state-space",
+        "--out",
+        "m.mat",
+    ];
+    desk.gdcm(&export).assert_done();
+    let program = "load m.mat; for m = models, H = m.C * ((3i * eye(size(m.A)) - m.A) \\ m.B) + m.D; \
+                   printf('%.17g ', m.condition, abs(H)'); assert(numel(m.contains.physics) == 2); end";
+    let Some(found) = octave(&desk, program) else {
+        return;
+    };
+    let mut study = Study::new(load_dataset(Path::new(DATASET)).unwrap().dataset);
+    for edit in [
+        setting_table::POINTS.to(40_usize),
+        setting_table::PHYSICS.to(PhysicsCorrection::Named),
+    ] {
+        study.apply(&edit).unwrap();
+    }
+    let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+    let mut expected = Vec::new();
+    let mut unmoved = Vec::new();
+    for (id, result) in &analysis.conditions {
+        let result = result.as_ref().unwrap();
+        for (values, condition) in [
+            (&mut expected, &result.condition),
+            (&mut unmoved, result.file_condition()),
+        ] {
+            values.push(id.0 as f64);
+            let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+            let response = evaluate(nominal.state_space().unwrap(), &[3.0]);
+            for (pair, curve) in response.curves().iter() {
+                values.push(curve[0].norm() * result.correction.net_gain(pair));
+            }
+        }
+    }
+    assert_eq!(found.len(), expected.len());
+    let are_near = [&expected, &unmoved].map(|values| {
+        let pairs = found.iter().zip(values);
+        // Two solutions of the same linear equations, conditioned to about 1e6.
+        pairs
+            .map(|(a, b)| (a - b).abs() <= 1e-9 * b.abs())
+            .collect::<Vec<bool>>()
+    });
+    assert!(are_near[0].iter().all(|is_near| *is_near));
+    let moved = are_near[1].iter().filter(|is_near| !**is_near).count();
+    assert!(moved > found.len() / 2, "{moved}");
 }

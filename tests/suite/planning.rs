@@ -74,7 +74,7 @@ fn a_plan_has_a_table_for_each_input_and_the_ways_to_each_target() {
     ];
     let ended = desk.run(&line, &CHANNELS);
     assert_eq!(ended.status, 0, "{ended:?}");
-    for words in ["LAT → P", "PED → R", "after 4 sweeps", "not within"] {
+    for words in ["LAT → P", "PED → R", "after 4 sweeps", " 16 "] {
         assert!(ended.out.contains(words), "{words}: {}", ended.out);
     }
     let file = read_json(&desk.path("plan.json"));

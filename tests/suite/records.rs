@@ -11,8 +11,11 @@ use gdcm_io::{Example, embedded_example, load_dataset};
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::dataset::{BundleKind, ConditionId};
 use gdcm_model::names::standard_patterns;
+use gdcm_model::progress::Unobserved;
+use gdcm_study::jobs::identification_jobs::IdentificationRequest;
+use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::record_guess::RecordGuess;
-use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordLayout, TimeWish};
 
 use crate::commands::{Desk, Messages};
 use crate::window::records::late_dataset;
@@ -71,6 +74,50 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
             "the record inside the program is the one beside it"
         );
     }
+}
+
+/// Identifies condition 10 of the example after every sample was changed by a relative amount of up
+/// to `change`; returns the order and `J` per degree of freedom.
+fn order_and_cost_of_condition_10(change: f64) -> (usize, f64) {
+    let dataset = embedded_example().unwrap().dataset;
+    let channels = RecordChannels::of_dataset(&dataset).of_named_records();
+    let mut records = Vec::new();
+    for mut table in example_records(Example::Simulated, 10).unwrap() {
+        for (number, column) in table.columns.iter_mut().enumerate() {
+            for (k, value) in column.values.iter_mut().enumerate() {
+                if number > 0 {
+                    *value *= 1.0 + change * (1.7 * k as f64 + number as f64).sin();
+                }
+            }
+        }
+        records.push(LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0);
+    }
+    let (inputs, outputs) = dataset.names_of_channels();
+    let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+    let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
+    let band = dataset.band();
+    let request = IdentificationRequest::from_used(
+        records.iter(),
+        Preparation::of(&inputs, &outputs),
+        [band.min(), band.max()],
+    );
+    let found = request
+        .unwrap()
+        .identify(&gdcm::executor::Pool, &Unobserved)
+        .unwrap();
+    (found.refined.order().unwrap(), found.cost)
+}
+
+#[test]
+fn the_order_does_not_depend_on_rounding() {
+    let (order, cost) = order_and_cost_of_condition_10(0.0);
+    // A thousand times more than the libraries of mathematics of different systems differ.
+    let (changed_order, changed_cost) = order_and_cost_of_condition_10(1e-12);
+    assert_eq!(changed_order, order);
+    assert!(
+        (changed_cost / cost - 1.0).abs() < 1e-5,
+        "{cost}, {changed_cost}"
+    );
 }
 
 /// Options with the record units of the late dataset, which its files do not state.

@@ -244,10 +244,7 @@ fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
         .expect("a delay cannot provide the phase");
     let words = remark_text(lead, &FEW.dataset);
     assert!(REPORT.contains(&words), "{words}");
-    assert!(
-        REPORT.contains(&FEW.sha256)
-            && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION")))
-    );
+    assert!(REPORT.contains(&FEW.sha256) && REPORT.contains(&gdcm_io::software::software()));
 }
 
 #[test]

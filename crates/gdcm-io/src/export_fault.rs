@@ -79,7 +79,7 @@ pub enum ExportFault {
         condition: ConditionId,
         model: String,
         /// Reason, from
-        /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
+        /// [`CoupledModelError`](gdcm_method::couplings::CoupledModelError).
         words: String,
     },
     #[error("the contents of the file cannot be written: {reason}")]

@@ -36,6 +36,7 @@ pub mod output_set;
 pub mod reading_budget;
 pub mod relative_folder;
 pub mod report;
+pub mod software;
 mod unknown_keys;
 pub mod user_paths;
 pub mod variable_fault;

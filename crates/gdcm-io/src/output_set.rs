@@ -14,7 +14,9 @@ use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use self::set_lock::SetLock;
-use self::temporary_files::{directory_of, kept_aside, remove_leftovers, write_temporary_file};
+use self::temporary_files::{
+    KeptAs, directory_of, kept_aside, read_temporary_file, remove_leftovers, write_temporary_file,
+};
 use super::file_error::FileError;
 use super::file_reading::kind_of;
 
@@ -32,7 +34,7 @@ pub enum Existing {
 /// ```text
 /// check    reject paths that must not be written to      (before any work)
 /// add      write each file beside its path, to the disk  (a full disk shows here)
-/// persist  wait for other sets in the same directory; keep the existing files under second names;
+/// persist  wait for other sets in the same directory; keep the existing files aside;
 ///          rename the new files, in the order in which they were added;
 ///          on an error restore the existing files
 /// ```
@@ -139,7 +141,7 @@ impl OutputSet {
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let mut lines = String::new();
         for staged in &self.staged {
-            let bytes = fs::read(staged.temporary.path())
+            let bytes = read_temporary_file(&staged.temporary)
                 .map_err(|error| FileError::writing(path, &error))?;
             let name = staged.path.file_name().unwrap_or_default();
             lines.push_str(&checksum(&name.to_string_lossy(), &bytes));
@@ -212,7 +214,7 @@ fn checksum(name: &str, bytes: &[u8]) -> String {
 /// A file that has been renamed to its path.
 struct Placed {
     target: PathBuf,
-    /// The file that it replaced, under a second name.
+    /// The file that it replaced, under a second name or as a copy.
     earlier: Option<NamedTempFile>,
 }
 
@@ -226,7 +228,7 @@ impl Placed {
             });
         }
         let earlier = if target.exists() {
-            Some(kept_aside(&target)?)
+            Some(kept_aside(&target, KeptAs::of_system())?)
         } else {
             None
         };
@@ -367,6 +369,48 @@ mod tests {
                 "nothing is left behind"
             );
         }
+    }
+
+    #[test]
+    fn a_copy_kept_aside_leaves_the_replaced_file_closed_and_can_take_its_place_again() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.json");
+        for (way, is_same) in [(KeptAs::SecondName, true), (KeptAs::Copy, false)] {
+            fs::write(&path, "before").unwrap();
+            let kept = kept_aside(&path, way).unwrap();
+            assert_eq!(
+                same_file::is_same_file(kept.path(), &path).unwrap(),
+                is_same,
+                "{way:?}"
+            );
+            fs::remove_file(&path).unwrap();
+            fs::write(&path, "after").unwrap();
+            let placed = Placed {
+                target: path.clone(),
+                earlier: Some(kept),
+            };
+            placed.take_back();
+            assert_eq!(fs::read_to_string(&path).unwrap(), "before", "{way:?}");
+            assert_eq!(names(directory.path()), ["a.json"], "{way:?}");
+        }
+    }
+
+    #[test]
+    fn checksums_are_read_through_the_handles_that_hold_the_locks() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.json");
+        let mut set = set_of(Existing::Keep, &[(&path, "text")]).unwrap();
+        // No other handle can be opened: the names are gone.
+        for name in names(directory.path()) {
+            fs::remove_file(directory.path().join(name)).unwrap();
+        }
+        let checksums = directory.path().join(CHECKSUMS);
+        set.add_checksums(&checksums).unwrap();
+        let written = read_temporary_file(&set.staged[1].temporary).unwrap();
+        assert_eq!(
+            String::from_utf8(written).unwrap(),
+            checksum("a.json", b"text")
+        );
     }
 
     #[cfg(unix)]

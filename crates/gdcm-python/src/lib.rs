@@ -24,6 +24,8 @@ use crate::identification::Identification;
 /// Module `gdcm._gdcm`.
 #[pymodule]
 fn _gdcm(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    // Results state the commit, as those of the program do.
+    gdcm::version::set_commit();
     module.add("version", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<Data>()?;
     module.add_class::<Analysis>()?;

@@ -14,17 +14,16 @@ use gdcm_study::results::coupling_remark::{
 };
 use gdcm_study::results::couplings_assessment::{NoPoles, UnstablePole};
 
+use crate::coupling_error::coupling_error_text;
+
 /// Returns a remark on couplings in a sentence: "LAT receives 4.7 % of LON, equivalent to a
 /// swashplate phase of 2.7°."
 pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> String {
     match remark {
-        CouplingRemark::Unavailable(error) => {
-            let (inputs, _) = dataset.names_of_channels();
-            format!(
-                "Couplings are unavailable: {}. All results are computed without couplings.",
-                error.words(&inputs)
-            )
-        }
+        CouplingRemark::Unavailable(error) => format!(
+            "Couplings are unavailable: {}. All results are computed without couplings.",
+            coupling_error_text(error, dataset)
+        ),
         CouplingRemark::Mixing(share) => mixing_words(dataset, share),
         CouplingRemark::Feedback { share, meaning } => feedback_words(dataset, share, *meaning),
         CouplingRemark::Costs(benefit) => benefit_words(benefit),

@@ -6,9 +6,8 @@ use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Channel, Dataset};
 use gdcm_model::number_format::{NO_VALUE, conjugate_pair, counted, with_minus_sign};
 use gdcm_model::units::{number, telling};
-use gdcm_study::results::couplings_assessment::{
-    AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment,
-};
+use gdcm_study::results::correction_costs::{AxisCost, CorrectionCost, CorrectionCosts};
+use gdcm_study::results::couplings_assessment::{CouplingEntry, CouplingsAssessment};
 
 use crate::table::Table;
 
@@ -25,6 +24,16 @@ pub fn couplings_heading(assessment: &CouplingsAssessment) -> String {
 
 /// Tabulates J on-axis and off-axis, without and with couplings.
 pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
+    cost_table(&assessment.costs, AxisCost::default())
+}
+
+/// Headings of the table of J for narrow panels: "with" stands after each value without the
+/// correction.
+pub const NARROW_COST_COLUMNS: [&str; 5] = ["mean J", "on-axis", "with", "others", "with"];
+
+/// Tabulates J on-axis and off-axis, without and with a correction; `with_uncorrected` is J of the
+/// models with it and without gains and delays.
+pub(crate) fn cost_table(costs: &CorrectionCosts, with_uncorrected: AxisCost) -> Table {
     let columns = [
         "mean J",
         "on-axis, without",
@@ -33,10 +42,9 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
         "others, with",
     ];
     let mut table = Table::new("", columns);
-    let costs = &assessment.costs;
-    let uncorrected = CouplingCost {
+    let uncorrected = CorrectionCost {
         without: costs.uncorrected,
-        with: AxisCost::default(),
+        with: with_uncorrected,
     };
     table.row(cost_cells("uncorrected", uncorrected));
     table.row(cost_cells("own correction", costs.own));
@@ -47,7 +55,7 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
     table
 }
 
-pub(crate) fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
+fn cost_cells(name: &str, cost: CorrectionCost) -> [String; 5] {
     let cell = |cost: Option<f64>| match cost {
         Some(cost) => format!("{cost:.1}"),
         None => NO_VALUE.to_owned(),

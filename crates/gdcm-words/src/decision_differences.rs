@@ -9,7 +9,7 @@ use gdcm_model::units::number;
 use gdcm_study::Study;
 use gdcm_study::decisions::choices::BundleChoice;
 use gdcm_study::decisions::physics_settings::PhysicsSettings;
-use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_table::SETTINGS;
 
 /// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -252,5 +252,57 @@ fn representative_words(choice: &BundleChoice) -> String {
     match &choice.pinned {
         Some(model) => model.clone(),
         None => "the medoid".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use gdcm_model::dataset::ModelId;
+    use gdcm_study::Edit;
+    use gdcm_study::decisions::setting_table;
+
+    use super::*;
+    use crate::reference_tests::reference_dataset;
+
+    #[test]
+    fn differences_have_their_subject_and_both_values() {
+        let before = Study::new(Arc::new(reference_dataset()));
+        let mut after = before.clone();
+        assert_eq!(decision_differences(&before, &after), []);
+        let pair = before.dataset.find_pair("Q", "LON").unwrap();
+        for edit in [
+            setting_table::ALPHA_GAIN.to(0.1),
+            Edit::Hold(pair, false),
+            Edit::RejectBecause {
+                model: ModelId::new(ConditionId(10), BundleKind::Physics, "nominal"),
+                reason: "step".to_owned(),
+            },
+            Edit::SetScheduled {
+                condition: ConditionId(3),
+                scheduled: false,
+            },
+            Edit::KeepVariant {
+                name: "kept".to_owned(),
+            },
+            setting_table::DELAY_UPPER.to(Some(0.02)),
+        ] {
+            after.apply(&edit).unwrap();
+        }
+        let words: Vec<String> = decision_differences(&before, &after)
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        assert_eq!(
+            words,
+            [
+                "α of the gains: 1 → 0.1",
+                "upper delay bound: by the quantile → 20 ms",
+                "LON → Q: held → free",
+                "condition 3: in the schedule → left out of the schedule",
+                "nominal (condition 10): kept → rejected (step)",
+            ]
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Analysis, Engine, PhaseCorrection, Study, Unobserved};
 
 use crate::reference_tests::reference_dataset;
@@ -11,7 +11,7 @@ use crate::reference_tests::reference_dataset;
 pub(crate) static EXAMPLE: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(Arc::new(reference_dataset()));
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
         .unwrap();
     Engine::default().analyze(&study, &Unobserved).unwrap()
 });

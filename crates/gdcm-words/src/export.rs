@@ -7,6 +7,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::results::export_note::{ExportNote, ExportRemedy, FileSummary};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 
+use super::coupling_error::coupling_error_text;
 use super::lead_price::limit_text;
 use super::schedule::delayed_channel_text;
 
@@ -125,6 +126,7 @@ pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
         }
         ExportNote::NoSchedule { .. } => "No schedule".to_owned(),
         ExportNote::NoErrorBars => "No error bars".to_owned(),
+        ExportNote::NoPhysicsParameters => "Physics parameters: none".to_owned(),
     }
 }
 
@@ -152,7 +154,7 @@ pub fn export_note_detail(
             ),
             None => String::new(),
         },
-        ExportNote::CouplingsLeftOut { why } => why.words(&dataset.names_of_channels().0),
+        ExportNote::CouplingsLeftOut { why } => coupling_error_text(why, dataset),
         ExportNote::GainTableError { .. } | ExportNote::TimeTableError { .. } => {
             "functions are exact".to_owned()
         }
@@ -173,6 +175,7 @@ pub fn export_note_detail(
         | ExportNote::ConditionsWithoutResult { conditions } => listed(conditions),
         ExportNote::NoSchedule { why } => why.to_string(),
         ExportNote::NoErrorBars => "still being computed, or stopped".to_owned(),
+        ExportNote::NoPhysicsParameters => "the table has only its headings".to_owned(),
     }
 }
 

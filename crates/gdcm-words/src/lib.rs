@@ -8,13 +8,14 @@
 //!
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
-//! suspected faults; [`missing_results`] for results that do not exist; [`coupling_remark`],
-//! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
-//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files;
-//! [`identification_caution`] for identified models; [`flight_plan`] for further flights,
-//! [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`]. Tables:
-//! [`table`], [`requirements`], [`requirement_grid`],
-//! [`time_histories`]. Explained results: [`derivation`].
+//! suspected faults; [`missing_results`] for results that do not exist; [`coupling_error`],
+//! [`coupled_model_error`], [`coupling_remark`], [`couplings`], [`physics`], [`assessment`],
+//! [`schedule`], [`uncertainty`] for a study; [`edit`], [`decision_differences`] and [`dataset_differences`]; [`export`] for
+//! exported files; [`identification_caution`] for identified models,
+//! [`record_use`] for their records; [`flight_plan`] for further
+//! flights, [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`],
+//! [`gain_source`]. Tables: [`table`], [`requirements`], [`requirement_grid`], [`time_histories`].
+//! Explained results: [`derivation`].
 //!
 //! # Example
 //!
@@ -31,6 +32,8 @@ pub mod caution;
 pub mod channel_time_skew;
 pub mod conflict_text;
 pub mod convention_doubt;
+pub mod coupled_model_error;
+pub mod coupling_error;
 pub mod coupling_remark;
 pub mod couplings;
 pub mod dataset_differences;
@@ -39,11 +42,13 @@ pub mod derivation;
 pub mod edit;
 pub mod export;
 pub mod flight_plan;
+pub mod gain_source;
 pub mod identification_caution;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
 pub mod physics;
+pub mod record_use;
 pub mod remark;
 pub mod requirement_grid;
 pub mod requirements;

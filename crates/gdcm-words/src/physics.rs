@@ -5,7 +5,7 @@
 
 use gdcm_method::physics::identifiability::WeakDirection;
 use gdcm_method::physics::{OfferedParameter, RunRefusal, Verdict, WhyNotNamed};
-use gdcm_model::number_format::{counted, decimals, signed, telling, with_minus_sign};
+use gdcm_model::number_format::{NO_VALUE, counted, decimals, signed, telling, with_minus_sign};
 use gdcm_model::units::number;
 use gdcm_study::results::applied_physics::{AppliedPhysics, AppliedValue};
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
@@ -14,7 +14,7 @@ use gdcm_study::results::physics_findings::{
 };
 use gdcm_study::results::rerun_check::{RerunCheck, RerunRefusal, RerunVerdict};
 
-use crate::couplings::cost_cells;
+use crate::couplings::cost_table;
 use crate::table::Table;
 
 /// Stands beside every verdict.
@@ -448,26 +448,7 @@ pub fn refusal_text(refusal: &RunRefusal) -> String {
 
 /// Tabulates mean J without and with the parameters.
 pub fn physics_cost_table(assessment: &PhysicsAssessment) -> Table {
-    let columns = [
-        "mean J",
-        "on-axis, without",
-        "on-axis, with",
-        "others, without",
-        "others, with",
-    ];
-    let mut table = Table::new("", columns);
-    let costs = &assessment.costs;
-    let uncorrected = gdcm_study::results::couplings_assessment::CouplingCost {
-        without: costs.uncorrected,
-        with: assessment.moved_uncorrected,
-    };
-    table.row(cost_cells("uncorrected", uncorrected));
-    table.row(cost_cells("own correction", costs.own));
-    table.row(cost_cells("scheduled", costs.scheduled));
-    if let Some(left_out) = costs.left_out {
-        table.row(cost_cells("condition left out", left_out));
-    }
-    table
+    cost_table(&assessment.costs, assessment.moved_uncorrected)
 }
 
 /// Tabulates the channels' mean signed delays \[ms\] without and with the parameters: what a
@@ -505,7 +486,7 @@ pub fn rerun_text(check: &RerunCheck) -> String {
     };
     let mean = |value: Option<f64>| match value {
         Some(value) => telling(value, 2),
-        None => "-".to_owned(),
+        None => NO_VALUE.to_owned(),
     };
     let figures = format!(
         "J of the prediction against it {} on-axis, {} others (it differs from its base by {} and {})",

@@ -1,6 +1,7 @@
 //! The grid of the requirements in words: names, values, limits, verdicts, and the grid as a table
 //! (M17.5).
 
+use gdcm_method::requirements::level_boundary::AssessedLevel;
 use gdcm_method::requirements::mode_comparison::ModeTolerance;
 use gdcm_method::requirements::{Tolerance, ToleranceTable};
 use gdcm_model::dataset::{Dataset, Pair};
@@ -34,6 +35,7 @@ impl RequirementNames<'_> {
         match requirement {
             Requirement::Bandwidth(pair) => format!("{} bandwidth", self.axis(pair)),
             Requirement::PhaseDelay(pair) => format!("{} phase delay", self.axis(pair)),
+            Requirement::Level(pair) => format!("{} level", self.axis(pair)),
             Requirement::PeakError(row) => match self.tolerances.rows().get(row) {
                 Some(tolerance) => capitalized(&tolerance.quantity),
                 None => String::new(),
@@ -100,7 +102,7 @@ pub fn unit_text(unit: RequirementUnit) -> &'static str {
     match unit {
         RequirementUnit::Percent => "%",
         RequirementUnit::Milliseconds => "ms",
-        RequirementUnit::Cost => "",
+        RequirementUnit::Cost | RequirementUnit::Level => "",
     }
 }
 
@@ -109,7 +111,7 @@ pub fn shown_value(unit: RequirementUnit, value: f64) -> f64 {
     match unit {
         RequirementUnit::Percent => 100.0 * value,
         RequirementUnit::Milliseconds => s_to_ms(value),
-        RequirementUnit::Cost => value,
+        RequirementUnit::Cost | RequirementUnit::Level => value,
     }
 }
 
@@ -129,9 +131,10 @@ pub fn value_text(requirement: Requirement, cell: &RoleCell) -> String {
             decimals(shown.ceil(), 0)
         }
         Requirement::MuadShareOnAxis => decimals(shown.floor(), 0),
-        Requirement::PeakError(_) | Requirement::MeanJOnAxis | Requirement::MeanJAll => {
-            decimals(shown, 0)
-        }
+        Requirement::PeakError(_)
+        | Requirement::MeanJOnAxis
+        | Requirement::MeanJAll
+        | Requirement::Level(_) => decimals(shown, 0),
         Requirement::Bandwidth(_) | Requirement::PhaseDelay(_) if is_outside => {
             signed(shown.signum() * shown.abs().ceil(), 0)
         }
@@ -146,11 +149,22 @@ pub fn value_with_unit_text(requirement: Requirement, cell: &RoleCell) -> String
     let value = value_text(requirement, cell);
     let unit = unit_text(requirement.unit());
     if cell.value.is_none() || unit.is_empty() {
-        return value;
+        return match requirement {
+            Requirement::Level(_) if cell.value.is_some() => format!("Level {value}"),
+            _ => value,
+        };
     }
     match requirement {
         Requirement::PeakError(_) => format!("{value} {unit} of the tolerance"),
         _ => format!("{value} {unit}"),
+    }
+}
+
+/// Formats a level: "2", or an en dash if the boundaries do not determine it.
+pub fn level_text(level: Option<AssessedLevel>) -> String {
+    match level.and_then(AssessedLevel::number) {
+        Some(number) => number.to_string(),
+        None => NONE.to_owned(),
     }
 }
 
@@ -165,6 +179,7 @@ pub fn limit_text(requirement: Requirement, limit: &RequirementLimit) -> String 
         RequirementLimit::AtLeast(limit) => {
             format!("\u{2265} {}", rounded(shown_value(unit, *limit)))
         }
+        RequirementLimit::IdentifiedLevel => "as flown".to_owned(),
         RequirementLimit::Tolerance(tolerance) => short_tolerance_text(tolerance),
         RequirementLimit::Mode(tolerance) => tolerance.entry.clone(),
         RequirementLimit::None => "none".to_owned(),
@@ -185,6 +200,7 @@ pub fn limit_description(requirement: Requirement, limit: &RequirementLimit) -> 
                 format!("{limit} {unit}")
             }
         }
+        RequirementLimit::IdentifiedLevel => "the level of the identified model".to_owned(),
         RequirementLimit::Tolerance(tolerance) => {
             let mut words = tolerance_text(tolerance);
             if tolerance.relative.is_some() {
@@ -247,6 +263,9 @@ pub fn verdict_text(requirement: Requirement, limit: &RequirementLimit, cell: &R
             RequirementLimit::AtMost(_) | RequirementLimit::AtLeast(_) => {
                 format!("not {}", limit_description(requirement, limit))
             }
+            RequirementLimit::IdentifiedLevel => {
+                format!("not {}", limit_description(requirement, limit))
+            }
             RequirementLimit::Tolerance(_) | RequirementLimit::Mode(_) | RequirementLimit::None => {
                 "outside".to_owned()
             }
@@ -264,6 +283,9 @@ pub fn not_determined_text(why: &NotDetermined) -> String {
         NotDetermined::NoModel(role) => format!("there is no {} model", role.name()),
         NotDetermined::Bandwidth { role, why } => {
             format!("{} model: {}", role.name(), no_bandwidth_text(why))
+        }
+        NotDetermined::AboveBoundaries(role) => {
+            format!("{} model: above the end of a level boundary", role.name())
         }
         NotDetermined::NoHeldOutRecord => {
             "no flight record of this condition is held out".to_owned()
@@ -385,6 +407,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_level_is_a_number_in_the_grid_and_has_its_word_in_the_details() {
+        let level = Requirement::Level(Pair::new(0, 0));
+        let outside = RoleCell {
+            value: Some(2.0),
+            verdict: CellVerdict::Outside,
+        };
+        assert_eq!(value_text(level, &outside), "2");
+        assert_eq!(value_with_unit_text(level, &outside), "Level 2");
+        assert_eq!(level_text(Some(AssessedLevel::Level(3))), "3");
+        assert_eq!(level_text(Some(AssessedLevel::AboveBoundaries)), NONE);
     }
 
     #[test]

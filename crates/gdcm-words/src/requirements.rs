@@ -1,6 +1,6 @@
 //! Requirements as tables (M17): bandwidths, modes and summary costs.
 
-use gdcm_method::requirements::{BandwidthRule, ModeVerdict, NamedBy};
+use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::number_format::{NO_VALUE, decimals_or_dash};
 use gdcm_model::units::{s_to_ms, telling};
@@ -12,15 +12,22 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 
 use crate::missing_results::no_bandwidth_text;
+use crate::requirement_grid::level_text;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text};
 
 /// Heading of the columns with the modulus of a pole.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
-/// Tabulates every on-axis bandwidth and phase delay, with cautions.
-pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table {
-    let columns = [
+/// Tabulates every on-axis bandwidth and phase delay, with cautions; with the level if boundaries
+/// give levels for any of the axes.
+pub fn bandwidth_table(
+    requirements: &Requirements,
+    dataset: &Dataset,
+    levels: &LevelBoundaries,
+) -> Table {
+    let has_levels = has_levels(requirements, levels);
+    let mut columns = vec![
         "condition",
         "airspeed [kt]",
         "response",
@@ -30,11 +37,14 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
         "ω_gain [rad/s]",
         "ω180 [rad/s]",
         "τ_p [ms]",
-        "remark",
     ];
+    if has_levels {
+        columns.push("level");
+    }
+    columns.push("remark");
     let mut table = Table::new("Bandwidth and phase delay of the attitudes", columns);
     for finding in &requirements.bandwidth {
-        table.row([
+        let mut cells = vec![
             finding.condition.to_string(),
             telling(finding.airspeed_kt, 0),
             dataset.pair_name(finding.pair),
@@ -44,10 +54,22 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
             decimals_or_dash(finding.omega_gain_rad_s, 2),
             decimals_or_dash(finding.omega_180_rad_s, 2),
             decimals_or_dash(finding.phase_delay_s.map(s_to_ms), 0),
-            bandwidth_remark(finding),
-        ]);
+        ];
+        if has_levels {
+            cells.push(level_text(finding.level(levels)));
+        }
+        cells.push(bandwidth_remark(finding));
+        table.row(cells);
     }
     table
+}
+
+/// Whether boundaries give levels for any of the axes with a finding.
+pub fn has_levels(requirements: &Requirements, levels: &LevelBoundaries) -> bool {
+    requirements
+        .bandwidth
+        .iter()
+        .any(|finding| levels.assesses(&finding.output))
 }
 
 /// Returns the cautions about a bandwidth, or the reason why it has no value.

@@ -7,6 +7,9 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::units::{s_to_ms, signed, told_apart};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 
+/// Note in exported files whose schedule has no delays.
+pub const DELAYS_NOT_SCHEDULED: &str = "delays are not scheduled in this study: they are zero here";
+
 /// Describes a caution about the schedule, with these channel names.
 pub fn schedule_caution_text(
     caution: &ScheduleCaution,

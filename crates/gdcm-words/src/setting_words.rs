@@ -1,7 +1,7 @@
 //! Captions, help texts and meanings of the choices of every setting, for the window and the
 //! command line.
 
-use gdcm_study::decisions::setting_row::Setting;
+use gdcm_study::decisions::setting::Setting;
 
 /// Texts of a setting.
 #[derive(Clone, Copy, Debug)]
@@ -335,8 +335,8 @@ static SETTING_WORDS: [SettingWords; 30] = [
 
 #[cfg(test)]
 mod tests {
-    use gdcm_study::decisions::setting::SETTINGS;
-    use gdcm_study::decisions::setting_row::Kind;
+    use gdcm_study::decisions::setting::Kind;
+    use gdcm_study::decisions::setting_table::SETTINGS;
 
     use super::*;
 

@@ -9,7 +9,7 @@ use gdcm_io::Example;
 use gdcm_io::export::export_set::CHECKSUMS;
 use gdcm_model::dataset::{BundleKind, ModelId};
 use gdcm_study::decisions::export_choices::ExportChoices;
-use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_study::{Edit, Study};
 
 use super::document_files::DocumentFiles;

@@ -12,8 +12,8 @@ use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
 use gdcm_study::Analysis;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::decisions::setting::Value;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::export_note::ExportRemedy;
 
 use super::GdcmApp;
@@ -133,10 +133,10 @@ impl GdcmApp {
         }
         match remedy {
             ExportRemedy::ScheduleDelays => {
-                self.decide(&setting::SCHEDULE_DELAYS.to(DelayScheduling::Always));
+                self.decide(&setting_table::SCHEDULE_DELAYS.to(DelayScheduling::Always));
             }
             ExportRemedy::SignedDelaysOverAirspeed => {
-                self.decide(&setting::TAU_DEGREE.to(Value::Choice(SIGNED_DELAY_DEGREE)));
+                self.decide(&setting_table::TAU_DEGREE.to(Value::Choice(SIGNED_DELAY_DEGREE)));
             }
             _ => {}
         }

@@ -12,7 +12,8 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 use eframe::NativeOptions;
-use egui::ViewportBuilder;
+use eframe::icon_data::from_png_bytes;
+use egui::{IconData, ViewportBuilder};
 
 use gdcm_io::Opened;
 use gdcm_io::files::opened_file::holds_models;
@@ -152,6 +153,7 @@ fn run(
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
         .with_app_id(APP_ID)
+        .with_icon(icon())
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
     // Dithering is off: there are no colour gradients to smooth, and without a graphics processor
@@ -174,6 +176,13 @@ fn run(
             Ok(Box::new(app))
         }),
     )
+}
+
+/// Returns the program's icon, for the window's frame and the list of windows.
+fn icon() -> Arc<IconData> {
+    let icon = from_png_bytes(include_bytes!("../../../assets/icon/gdcm-256.png"));
+    // Without pixels, the window has no icon of its own.
+    Arc::new(icon.unwrap_or_default())
 }
 
 /// Creates the window with the loaded file; then opens the last file, or imports the models, if so
@@ -253,6 +262,15 @@ mod tests {
             message: "no libxkbcommon".to_owned(),
             place: None,
         }
+    }
+
+    #[test]
+    fn the_icon_is_a_picture_with_transparent_corners() {
+        let icon = icon();
+        assert_eq!((icon.width, icon.height), (256, 256));
+        assert_eq!(icon.rgba[3], 0, "the corner is transparent");
+        let middle = 4 * (128 * 256 + 128);
+        assert_eq!(icon.rgba[middle + 3], 255, "the middle is not");
     }
 
     #[test]

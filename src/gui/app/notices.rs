@@ -117,7 +117,7 @@ impl GdcmApp {
         let report = FaultReport {
             work: work.to_owned(),
             dataset: self.files.loaded.origin.to_string(),
-            version: env!("CARGO_PKG_VERSION"),
+            version: gdcm_io::software::version(),
             fault: fault.words(),
         };
         self.state

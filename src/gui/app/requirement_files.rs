@@ -72,7 +72,7 @@ fn read_table_into(
 ) -> Result<Vec<String>, FileError> {
     match table {
         RequirementTable::Levels => {
-            settings.levels = read_levels(path)?;
+            settings.levels = settings.levels.replaced_by(&read_levels(path)?);
             Ok(Vec::new())
         }
         RequirementTable::Tolerances => {

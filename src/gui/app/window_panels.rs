@@ -19,6 +19,7 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::assembling::assembling_ui;
+use crate::gui::views::physics::parameter_list_ui;
 use crate::gui::views::records::{records_panel_ui, records_sheet_ui};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
@@ -75,7 +76,7 @@ const CONDITIONS_PART: f32 = 0.365;
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     let layout = &state.display.layout;
-    if !layout.left_open.unwrap_or(layout.is_wide) {
+    if !layout.has_left_panel() {
         let frame = side.inner_margin(Margin {
             left: 4,
             right: 2,
@@ -112,7 +113,8 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             });
             frame.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
-                let has_records = state.display.layout.arrangement.view() == View::Records;
+                let view = state.display.layout.arrangement.view();
+                let has_records = view == View::Records;
                 let most = CONDITIONS_PART * ui.available_height();
                 ScrollArea::vertical()
                     .id_salt("conditions")
@@ -130,6 +132,8 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
                     settings_panel::settings_ui(ui, state, palette, commands);
                 } else if has_records {
                     records_panel_ui(ui, state, palette, commands);
+                } else if view == View::Physics {
+                    parameter_list_ui(ui, state, palette, commands);
                 } else {
                     models_panel::models_ui(ui, state, palette, commands);
                 }

@@ -4,8 +4,8 @@ use egui::{Key, Modifiers};
 
 use gdcm_plot::figure::FigureFormat;
 use gdcm_study::decisions::adopted_models::OfferedModels;
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Value};
+use gdcm_study::decisions::setting::{Kind, Value};
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_words::setting_words::setting_words;
 
 use super::command::Command;
@@ -177,11 +177,18 @@ fn help_entries() -> impl Iterator<Item = Entry> {
             LayoutCommand::StartTour,
         ),
     ];
-    let about = [Entry::new(
-        "About gdcm",
-        "Version and licence",
-        Command::show_form(FormKind::About),
-    )];
+    let about = [
+        Entry::new(
+            "Licences",
+            "Of the libraries in the program",
+            Command::show_form(FormKind::Licences),
+        ),
+        Entry::new(
+            "About gdcm",
+            "Version and licence",
+            Command::show_form(FormKind::About),
+        ),
+    ];
     group(Menu::Help, 0, help).chain(group(Menu::Help, 1, about))
 }
 

@@ -167,7 +167,7 @@ fn neighbour_entries(state: &State) -> [Entry; 2] {
 /// Returns the entries for the left side, the settings, the dock, the reasons and the layout.
 fn fold_entries(state: &State) -> [Entry; 6] {
     let display = &state.display;
-    let is_left_open = display.layout.left_open.unwrap_or(display.layout.is_wide);
+    let is_left_open = display.layout.has_left_panel();
     let is_dock_open = display.layout.arrangement.is_dock_open(true);
     let is_dock_enlarged = display.layout.arrangement.is_dock_enlarged();
     [

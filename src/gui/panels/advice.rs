@@ -4,10 +4,10 @@ use gdcm_method::correction::Channel;
 use gdcm_method::correction::remedy::Remedy;
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_model::units::telling;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::decisions::setting::Value;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::decisions::signs::SignRole;
-use gdcm_study::results::couplings_assessment::CouplingCost;
+use gdcm_study::results::correction_costs::CorrectionCost;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
 
 use super::sign_reversal::sign_reversal_entry;
@@ -142,7 +142,10 @@ impl Advice {
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
         if let Some((assessment, cost)) = offered_couplings(state) {
-            let use_them = Step::new(USE_COUPLINGS, setting::COUPLINGS.to(assessment.couplings));
+            let use_them = Step::new(
+                USE_COUPLINGS,
+                setting_table::COUPLINGS.to(assessment.couplings),
+            );
             return Some(Self {
                 steps: vec![use_them, look],
                 note: off_axis_note(cost),
@@ -155,7 +158,7 @@ impl Advice {
         }
         let leave_them = Step::new(
             "Switch couplings off",
-            setting::COUPLINGS.to(CouplingCorrection::None),
+            setting_table::COUPLINGS.to(CouplingCorrection::None),
         );
         Some(Self {
             steps: vec![leave_them, look],
@@ -165,7 +168,7 @@ impl Advice {
 }
 
 /// "off-axis J 41→12".
-fn off_axis_note(cost: CouplingCost) -> String {
+fn off_axis_note(cost: CorrectionCost) -> String {
     match (cost.without.others, cost.with.others) {
         (Some(without), Some(with)) => {
             format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
@@ -197,7 +200,10 @@ fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     let mut steps = Vec::new();
     if let Some(remedy) = &shown.gains.remedy {
         if let Some(range) = widened(remedy, shown) {
-            steps.push(Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
+            steps.push(Step::new(
+                "Widen the bound",
+                setting_table::GAIN_BOUNDS.to(range),
+            ));
         }
         if let Some(pair) = remedy.free.first() {
             steps.push(release_step(state, *pair));
@@ -219,7 +225,7 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
 }
 
 fn phase_step(phase: PhaseCorrection) -> Step {
-    Step::new(phase_step_label(phase), setting::PHASE.to(phase))
+    Step::new(phase_step_label(phase), setting_table::PHASE.to(phase))
 }
 
 /// Returns the steps to take while the phase is uncorrected or not matched.

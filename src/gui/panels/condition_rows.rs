@@ -379,7 +379,7 @@ fn flight_state_words(state: &FlightState) -> String {
 #[cfg(test)]
 mod tests {
     use gdcm_io::embedded_example;
-    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_table;
     use gdcm_study::{CouplingCorrection, Study};
 
     use super::*;
@@ -387,7 +387,7 @@ mod tests {
     #[test]
     fn the_frame_of_a_cell_does_not_reach_the_cells_beside_it() {
         let mut study = Study::new(embedded_example().unwrap().dataset);
-        let with_off_column = setting::COUPLINGS.to(CouplingCorrection::Mixing);
+        let with_off_column = setting_table::COUPLINGS.to(CouplingCorrection::Mixing);
         for edit in [None, Some(with_off_column)] {
             if let Some(edit) = edit {
                 study.apply(&edit).unwrap();

@@ -4,6 +4,7 @@
 
 use egui::{Context, Id, Modal, RichText, ScrollArea};
 
+use gdcm_io::software::software;
 use gdcm_study::Edit;
 use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_words::dataset_differences::dataset_difference_text;
@@ -11,6 +12,7 @@ use gdcm_words::dataset_differences::dataset_difference_text;
 use super::export_dialog::export_dialog_ui;
 use super::form_parts::Form;
 use super::keys_page::keys_page_ui;
+use super::licences_page::licences_ui;
 use super::messages_page::messages_ui;
 use super::path_forms::path_ui;
 use super::record_dataset_form::record_dataset_ui;
@@ -58,6 +60,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::Reason => reason_ui(form, state),
             FormKind::RecordDataset => record_dataset_ui(form, &mut state.records.wanted),
             FormKind::About => about_ui(form),
+            FormKind::Licences => licences_ui(form),
             _ => path_ui(form, kind, state),
         }
     });
@@ -73,7 +76,7 @@ fn shortcuts_ui(form: &mut Form<'_, '_>, state: &State) {
 }
 
 fn about_ui(form: &mut Form<'_, '_>) {
-    form.title(concat!("gdcm ", env!("CARGO_PKG_VERSION")));
+    form.title(&software());
     form.ui.label(
         "The Gain-Delay Correction Method: one gain and one delay for each input and output \
          channel, so that a physics-based helicopter model matches flight and holds the important \
@@ -86,7 +89,14 @@ fn about_ui(form: &mut Form<'_, '_>) {
          MattiaDiMauro, MIT. gdcm example --real writes the licences.",
     );
     form.explain("MIT OR Apache-2.0");
-    form.button_ui("Close", true, FormCommand::ShowForm(None));
+    form.line(|form| {
+        form.button_ui("Close", true, FormCommand::ShowForm(None));
+        form.button_ui(
+            "Licences of the libraries",
+            false,
+            FormCommand::ShowForm(Some(FormKind::Licences)),
+        );
+    });
 }
 
 /// Asks whether to overwrite files; Cancel returns to the form.

@@ -15,6 +15,7 @@ mod export_dialog;
 mod form_parts;
 pub mod forms;
 mod keys_page;
+mod licences_page;
 mod matrix_cell;
 pub mod matrix_panel;
 pub mod menu_bar;

@@ -7,7 +7,7 @@ use gdcm_method::correction::sensitivity::kkt_residual;
 use gdcm_method::correction::{GainObjective, Outcome, Quantity};
 use gdcm_model::statistics::median;
 use gdcm_model::units::{s_to_ms, telling};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::coupling_remark::CouplingRemark;
 use gdcm_study::results::coupling_remark_search::{coupling_consequences, coupling_offer};
@@ -251,7 +251,13 @@ fn remarks_ui(
         }
         if let Some(phase) = remark.suggested_phase() {
             let button = Button::new(phase_step_label(phase)).small();
-            button_ui(ui, button, EVERYWHERE, setting::PHASE.to(phase), commands);
+            button_ui(
+                ui,
+                button,
+                EVERYWHERE,
+                setting_table::PHASE.to(phase),
+                commands,
+            );
         }
     }
 }
@@ -331,7 +337,7 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     }
     ui.horizontal(|ui| {
         let button = Button::new(USE_COUPLINGS).small();
-        let use_them = setting::COUPLINGS.to(couplings);
+        let use_them = setting_table::COUPLINGS.to(couplings);
         button_ui(ui, button, EVERYWHERE, use_them, commands);
         let show = Command::Layout(LayoutCommand::ShowView(View::Couplings));
         entries_ui(ui, [(INSPECT, show)], commands);

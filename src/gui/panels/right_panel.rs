@@ -7,8 +7,8 @@ use gdcm_method::correction::delta::GainSource;
 use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::Setting;
+use gdcm_study::decisions::setting::Setting;
+use gdcm_study::decisions::setting_table;
 
 use super::advice::export;
 use super::matrix_panel::MatrixSpace;
@@ -195,17 +195,17 @@ fn settings_parts(state: &State) -> Vec<LinePart> {
     let mut parts = vec![
         LinePart::new(
             alpha,
-            &[&setting::ALPHA_GAIN, &setting::ALPHA_DELAY],
+            &[&setting_table::ALPHA_GAIN, &setting_table::ALPHA_DELAY],
             &mut changed,
         ),
-        LinePart::new(band_words(state), &[&setting::BAND], &mut changed),
-        LinePart::new(phase.to_owned(), &[&setting::PHASE], &mut changed),
+        LinePart::new(band_words(state), &[&setting_table::BAND], &mut changed),
+        LinePart::new(phase.to_owned(), &[&setting_table::PHASE], &mut changed),
     ];
     if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
-        let source = setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings));
+        let source = setting_table::GAIN_SOURCE.text(setting_table::GAIN_SOURCE.value(settings));
         parts.push(LinePart::new(
             source,
-            &[&setting::GAIN_SOURCE],
+            &[&setting_table::GAIN_SOURCE],
             &mut changed,
         ));
     }
@@ -260,7 +260,7 @@ fn export_ui(
     region_ui(ui, Region::Export, |ui| {
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
             let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
-            let hint = "Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)";
+            let hint = "Choose formats, conditions and folder; nothing is written before (Ctrl+E)";
             export_button.on_hover_text(hint).asks(export(), commands);
         });
     });

@@ -4,9 +4,9 @@
 use egui::{Button, Grid, Label, Rect, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
 use gdcm_model::number_format::counted;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Place, Setting};
+use gdcm_study::decisions::setting::{Kind, Place, Setting};
+use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_study::decisions::settings::Settings;
 
 use super::trade_off_plot::{TRADE_OFF_HEIGHT, trade_off_ui};
@@ -89,7 +89,7 @@ type Line = Vec<&'static Setting>;
 
 fn is_frequent(line: &Line) -> bool {
     let place = line[0].control.place;
-    matches!(place, Place::Slider | Place::Top) || *line[0] == setting::BAND
+    matches!(place, Place::Slider | Place::Top) || *line[0] == setting_table::BAND
 }
 
 /// Returns the place of a line among the frequent settings: sliders, segmented controls, others.
@@ -120,7 +120,7 @@ fn body_ui(
     for line in first {
         if line[0].control.place == Place::Slider {
             let rail = controls(ui, state, palette, commands, help).slider_ui(line[0]);
-            if *line[0] == setting::ALPHA_GAIN
+            if *line[0] == setting_table::ALPHA_GAIN
                 && let Some(rail) = rail
             {
                 let size = vec2(ui.available_width(), TRADE_OFF_HEIGHT);

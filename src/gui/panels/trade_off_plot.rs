@@ -4,8 +4,8 @@
 use egui::{Align2, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use gdcm_model::number_format::decimals;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::decisions::setting::Value;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::jobs::trade_off_job::{TradeOff, TradeOffPoint};
 
 use crate::gui::state::window_state::State;
@@ -127,7 +127,7 @@ impl TradeOffPlot<'_> {
         painter.extend(Shape::dashed_line(&costs, dashed, 4.0, 3.0));
         let deviations = self.path(top_deviation, |point| 100.0 * point.output_deviation);
         painter.line(deviations, Stroke::new(1.5, palette.text));
-        if let Some(Value::Number(previous)) = state.previous_setting(&setting::ALPHA_GAIN) {
+        if let Some(Value::Number(previous)) = state.previous_setting(&setting_table::ALPHA_GAIN) {
             let x = slider_place(self.rail, previous);
             painter.vline(
                 x,

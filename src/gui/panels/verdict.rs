@@ -258,8 +258,8 @@ mod tests {
 
     use gdcm_model::dataset::Pair;
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::decisions::setting;
-    use gdcm_study::decisions::setting_row::Value;
+    use gdcm_study::decisions::setting::Value;
+    use gdcm_study::decisions::setting_table;
     use gdcm_study::results::couplings_assessment::UnstablePole;
     use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
 
@@ -338,7 +338,7 @@ mod tests {
             phase.message.text
         );
         assert!(!verdict.is_met() && verdict.caution.is_none());
-        let leads = setting::PHASE.to(PhaseCorrection::Lead).into();
+        let leads = setting_table::PHASE.to(PhaseCorrection::Lead).into();
         let reasons = LayoutCommand::ShowSheet(Some(Sheet::Reasons)).into();
         assert_eq!(commands(&verdict), [&leads, &reasons]);
     }
@@ -347,7 +347,7 @@ mod tests {
     fn leads_are_met_and_say_their_price() {
         let verdict = Verdict::new(&state_of(&[
             reject(),
-            setting::PHASE.to(PhaseCorrection::Lead),
+            setting_table::PHASE.to(PhaseCorrection::Lead),
         ]));
         assert!(verdict.is_met(), "{verdict:?}");
         let caution = verdict.caution.clone().expect("leads have a price");
@@ -358,10 +358,10 @@ mod tests {
 
     #[test]
     fn poles_that_couplings_make_unstable_in_the_band_keep_the_verdict_from_being_good() {
-        let couplings = setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback);
+        let couplings = setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback);
         let mut state = state_of(&[
             reject(),
-            setting::PHASE.to(PhaseCorrection::Lead),
+            setting_table::PHASE.to(PhaseCorrection::Lead),
             couplings,
         ]);
         let study = state.study.clone();
@@ -413,7 +413,7 @@ mod tests {
         );
         assert_eq!(
             within.steps[0].command,
-            setting::COUPLINGS.to(CouplingCorrection::None).into()
+            setting_table::COUPLINGS.to(CouplingCorrection::None).into()
         );
     }
 
@@ -483,7 +483,7 @@ mod tests {
 
     #[test]
     fn a_bound_that_is_in_the_way_can_be_widened() {
-        let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
+        let bounds = setting_table::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
         let verdict = Verdict::new(&state_of(&[reject(), bounds]));
         assert!(
             !verdict.rows[0].is_met && verdict.rows[0].message.code == "stops-at-bound",
@@ -492,7 +492,7 @@ mod tests {
         let Command::Study(StudyCommand::Edit(widen)) = &verdict.steps[0].command else {
             panic!("{verdict:?}")
         };
-        let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
+        let bounds = setting_table::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
         assert!(Verdict::new(&state_of(&[reject(), bounds, widen.clone()])).rows[0].is_met);
     }
 }

@@ -26,7 +26,7 @@ pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Messag
         .analysis()
         .is_some_and(|analysis| analysis.asked_physics().is_err())
     {
-        let text = "Physics parameters could not be applied";
+        let text = "Physics parameters not applied";
         return Some(Message::new("no-physics", text));
     }
     lead_caution(shown)

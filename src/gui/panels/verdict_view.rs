@@ -14,6 +14,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
+use crate::gui::views::view_content;
 use crate::gui::widgets::controls::{Asks, hint_left_of, named};
 use crate::gui::widgets::elision::{elided, leading_parts, text_width};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
@@ -42,6 +43,8 @@ pub(super) struct ShownVerdict {
     pub(super) is_older: bool,
     /// Whether the spinner in the heading turns.
     pub(super) spins: bool,
+    /// Whether the step is the primary button of the window; not while the view in front has it.
+    pub(super) is_primary: bool,
 }
 
 /// Returns the verdict to be displayed. While results are being computed, the verdict on the
@@ -51,6 +54,8 @@ pub(super) fn shown_verdict(ui: &Ui, state: &State) -> ShownVerdict {
     let now = ui.input(|input| input.time);
     let results = &state.results;
     let condition = state.condition().id();
+    let view = state.display.layout.arrangement.view();
+    let is_primary = !(view_content(view).has_primary)(state);
     if results.is_waiting() && state.outcome().is_some() {
         let kept: Option<Verdict> = ui.ctx().data(|data| data.get_temp(id));
         if let Some(verdict) = kept
@@ -60,6 +65,7 @@ pub(super) fn shown_verdict(ui: &Ui, state: &State) -> ShownVerdict {
                 verdict,
                 is_older: results.is_stale(now),
                 spins: results.spins(now),
+                is_primary,
             };
         }
     }
@@ -72,6 +78,7 @@ pub(super) fn shown_verdict(ui: &Ui, state: &State) -> ShownVerdict {
         verdict,
         is_older: results.is_stale(now),
         spins: results.spins(now),
+        is_primary,
     }
 }
 
@@ -110,7 +117,7 @@ pub(super) fn verdict_ui(
         row_ui(ui, place, row, verdict.is_met(), palette);
     }
     ui.scope(|ui| {
-        let line = StepsLine::new(verdict);
+        let line = StepsLine::new(verdict, shown.is_primary);
         if shown.is_older {
             // The steps keep the focus but have no effect: others may be recommended in a moment.
             ui.multiply_opacity(OLDER);
@@ -219,10 +226,12 @@ struct StepsLine<'a> {
     note: &'a str,
     /// Opens the reasons, or lists the notes.
     reasons: Option<Step>,
+    /// Whether the first step is the primary button of the window.
+    is_primary: bool,
 }
 
 impl<'a> StepsLine<'a> {
-    fn new(verdict: &'a Verdict) -> Self {
+    fn new(verdict: &'a Verdict, is_primary: bool) -> Self {
         // Skip the export step: the primary button at the foot of the panel already exports.
         let primary = verdict
             .steps
@@ -251,6 +260,7 @@ impl<'a> StepsLine<'a> {
             caution: verdict.caution_text(),
             note: &verdict.note,
             reasons,
+            is_primary,
         }
     }
 
@@ -265,7 +275,7 @@ impl<'a> StepsLine<'a> {
         if let Some(step) = self.primary {
             let width = text_width(ui, &step.label, medium(BODY_SIZE)) + 24.0;
             let place = Rect::from_min_size(pos2(left, line.top()), vec2(width, STEPS));
-            primary_ui(ui, place, step, palette, commands);
+            self.primary_ui(ui, place, step, palette, commands);
             left = place.right() + GAP;
         }
         // An alternative that leaves no room for the caution is omitted: the sheet of reasons and
@@ -293,6 +303,29 @@ impl<'a> StepsLine<'a> {
         if let Some(step) = &self.reasons {
             link_ui(ui, reasons_place, step, palette, commands);
         }
+    }
+
+    /// Draws the recommended step, filled with the accent if it is the primary button.
+    fn primary_ui(
+        &self,
+        ui: &mut Ui,
+        place: Rect,
+        step: &Step,
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
+        let label = RichText::new(&step.label).font(medium(BODY_SIZE));
+        let button = if self.is_primary {
+            Button::new(label.color(palette.on_accent())).fill(palette.accent)
+        } else {
+            Button::new(label)
+        };
+        // The identifier does not depend on the step, so that the next step inherits the focus.
+        let builder = UiBuilder::new().id_salt("primary").max_rect(place);
+        ui.scope_builder(builder, |ui| {
+            ui.put(place, button.min_size(place.size()))
+                .asks(step.command.clone(), commands);
+        });
     }
 }
 
@@ -342,26 +375,6 @@ fn note_ui(ui: &Ui, place: Rect, note: &str, palette: &Palette) {
     if shown != note {
         hint_left_of(response, subject, note);
     }
-}
-
-/// Draws the recommended step, the only primary button in the window.
-fn primary_ui(
-    ui: &mut Ui,
-    place: Rect,
-    step: &Step,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let label = RichText::new(&step.label)
-        .font(medium(BODY_SIZE))
-        .color(palette.on_accent());
-    // The identifier does not depend on the step, so that the next step inherits the focus.
-    let builder = UiBuilder::new().id_salt("primary").max_rect(place);
-    ui.scope_builder(builder, |ui| {
-        let button = Button::new(label).fill(palette.accent);
-        ui.put(place, button.min_size(place.size()))
-            .asks(step.command.clone(), commands);
-    });
 }
 
 /// Draws a step as a link.

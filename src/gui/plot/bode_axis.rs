@@ -8,6 +8,9 @@ use super::drawn_curves::Pane;
 use super::ticks::Ticks;
 use crate::message::Message;
 
+/// Message about typed limits that do not increase.
+pub(super) const NOT_INCREASING: &str = "the lower limit must be below the upper limit";
+
 /// Axis of a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BodeAxis {
@@ -63,10 +66,7 @@ impl BodeAxis {
         if min < max {
             Ok(Range { min, max })
         } else {
-            Err(Message::new(
-                "limits-not-increasing",
-                "the lower limit must be below the upper limit",
-            ))
+            Err(Message::new("limits-not-increasing", NOT_INCREASING))
         }
     }
 

@@ -57,6 +57,8 @@ pub enum FormKind {
     Differences,
     Shortcuts,
     About,
+    /// Licences of the libraries.
+    Licences,
 }
 
 /// Search in the open palette.

@@ -24,6 +24,11 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Returns whether the left panel is shown in full, not as a rail.
+    pub fn has_left_panel(&self) -> bool {
+        self.left_open.unwrap_or(self.is_wide)
+    }
+
     /// Opens a sheet, or closes the open one. A list closes the settings: beside the rail of a narrow
     /// window, only one of them has room.
     pub fn show_sheet(&mut self, sheet: Option<Sheet>) {

@@ -29,7 +29,7 @@ pub struct FaultReport {
     /// Origin of the dataset.
     pub dataset: String,
     /// Version of the program.
-    pub version: &'static str,
+    pub version: String,
     /// Message and place of the panic.
     pub fault: String,
 }

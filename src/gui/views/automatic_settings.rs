@@ -3,8 +3,8 @@
 
 use egui::Role;
 
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting_table;
 use gdcm_words::setting_words::setting_words;
 
 use super::setting_controls::{SettingControls, number_field};
@@ -141,9 +141,9 @@ impl SettingControls<'_, '_> {
 /// Returns the value that the program determines for an automatic setting; `None` without a result.
 fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;
-    if *setting == setting::GAIN_BOUNDS {
+    if *setting == setting_table::GAIN_BOUNDS {
         Some(Value::from(Some(shown.gain_bounds())))
-    } else if *setting == setting::DELAY_UPPER {
+    } else if *setting == setting_table::DELAY_UPPER {
         Some(shown.delay_upper_s().into())
     } else {
         None

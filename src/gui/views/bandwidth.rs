@@ -13,6 +13,7 @@ use gdcm_plot::figure::requirements::{
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::missing_results::no_bandwidth_text;
+use gdcm_words::requirement_grid::level_text;
 
 use super::requirement_cards::role_color;
 use crate::gui::commands::command::Command;
@@ -107,11 +108,16 @@ pub(super) fn bandwidth_numbers_ui(
 ) {
     let condition = state.condition().id();
     let pair = state.display.selection.pair;
+    let levels = &state.study.requirements.levels;
+    let has_levels = levels.assesses(&state.dataset().outputs()[pair.output].name);
     Grid::new("bandwidths of the response")
-        .num_columns(3)
+        .num_columns(4)
         .show(ui, |ui| {
             for heading in ["", "bandwidth, rad/s", "phase delay, ms"] {
                 ui.label(palette.small(heading));
+            }
+            if has_levels {
+                ui.label(palette.small("level"));
             }
             ui.end_row();
             for role in RequirementRole::ALL {
@@ -121,6 +127,9 @@ pub(super) fn bandwidth_numbers_ui(
                 ui.colored_label(role_color(palette, role), role.name());
                 ui.label(decimals_or_dash(finding.omega_bw_rad_s, 2));
                 ui.label(decimals_or_dash(finding.phase_delay_s.map(s_to_ms), 0));
+                if has_levels {
+                    ui.label(level_text(finding.level(levels)));
+                }
                 ui.end_row();
             }
         });
@@ -175,14 +184,20 @@ impl FigureWords for BandwidthWords<'_> {
         };
         let mut words = vec![format!("condition {id}")];
         for role in RequirementRole::ALL {
-            let finding = self.requirements.bandwidth_of(*id, self.pair, role);
-            if let Some([bandwidth_rad_s, delay_ms]) = finding.and_then(bandwidth_place) {
-                words.push(format!(
+            let Some(finding) = self.requirements.bandwidth_of(*id, self.pair, role) else {
+                continue;
+            };
+            if let Some([bandwidth_rad_s, delay_ms]) = bandwidth_place(finding) {
+                let mut text = format!(
                     "{} {} rad/s, {} ms",
                     role.name(),
                     telling(bandwidth_rad_s, 2),
                     telling(delay_ms, 0)
-                ));
+                );
+                if let Some(level) = finding.level(&self.state.study.requirements.levels) {
+                    text += &format!(", Level {}", level_text(Some(level)));
+                }
+                words.push(text);
             }
         }
         Some(words.join(" · "))

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::{Button, Ui};
 
+use gdcm_io::files::standard_levels::STANDARD_LEVELS;
 use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries};
 use gdcm_study::decisions::requirement_settings::RequirementPart;
 
@@ -80,7 +81,39 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             },
         ));
     }
-    let hint = "Reads levels from a file. None are built in, because they depend on the task and the category (docs/requirements.md)";
+    let hint =
+        "Reads levels from a file; they replace those of the same axis (docs/requirements.md)";
     let ask = FileCommand::AskRequirementTable(RequirementTable::Levels);
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
+}
+
+/// Draws a check box for each set of boundaries of the standard whose axis the dataset has.
+pub(super) fn standard_levels_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let outputs = state.dataset().outputs();
+    for standard in &STANDARD_LEVELS {
+        if standard.output(outputs).is_none() {
+            continue;
+        }
+        let Ok(boundaries) = standard.boundaries(outputs) else {
+            continue;
+        };
+        let is_on = state.study.requirements.levels.contains(&boundaries);
+        let hint = match boundaries.as_slice().first() {
+            Some(boundary) => boundary.source.as_str(),
+            None => "",
+        };
+        if let Some(is_on) = check_ui(ui, is_on, standard.title, hint) {
+            commands.push(requirement_edit(
+                state,
+                RequirementPart::Levels,
+                |settings| {
+                    settings.levels = if is_on {
+                        settings.levels.replaced_by(&boundaries)
+                    } else {
+                        settings.levels.without(&boundaries)
+                    };
+                },
+            ));
+        }
+    }
 }

@@ -5,13 +5,16 @@ use egui::{Frame, Label, Margin, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_study::CouplingCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::coupling_remark_search::coupling_remarks;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_words::Table;
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::{coupling_remark_text, no_poles_text};
-use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, pole_table};
+use gdcm_words::couplings::{
+    NARROW_COST_COLUMNS, coupling_cost_table, coupling_matrix_tables, pole_table,
+};
 
 use super::PageEntry;
 use super::axis_updates::axis_update;
@@ -78,7 +81,7 @@ pub fn couplings_header_ui(
     };
     option.ui(ui, &mut chosen, &choices, palette);
     if chosen != shown {
-        commands.push(setting::COUPLINGS.to(chosen).into());
+        commands.push(setting_table::COUPLINGS.to(chosen).into());
     }
 }
 
@@ -93,7 +96,7 @@ pub fn couplings_view_ui(
     let assessment = match state.couplings().cloned() {
         Some(Ok(assessment)) => assessment,
         Some(Err(why)) => {
-            let why = why.words(&state.dataset().names_of_channels().0);
+            let why = coupling_error_text(&why, state.dataset());
             ui.add(Label::new(palette.dim(format!("No couplings: {why}"))).wrap());
             return;
         }
@@ -217,13 +220,14 @@ impl CouplingsWords<'_> {
             .on_hover_text("In every condition; can be undone")
             .clicked()
         {
-            commands.push(setting::COUPLINGS.to(couplings).into());
+            commands.push(setting_table::COUPLINGS.to(couplings).into());
         }
     }
 
     fn costs_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let costs = Table {
             title: "J, mean over the conditions".to_owned(),
+            columns: NARROW_COST_COLUMNS.map(str::to_owned).to_vec(),
             ..coupling_cost_table(self.assessment)
         };
         self.table_ui(ui, &costs, TableLook::PLAIN, commands);

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use gdcm_method::couplings::LEAST_CONDITIONS;
 use gdcm_study::jobs::analysis_jobs::CouplingsJob;
-use gdcm_study::results::couplings_assessment::{CouplingCost, CouplingsAssessment};
+use gdcm_study::results::correction_costs::CorrectionCost;
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::{CouplingCorrection, PhaseCorrection};
 
 use crate::gui::state::window_state::State;
@@ -47,7 +48,7 @@ pub fn are_couplings_judged(state: &State) -> bool {
 
 /// Returns the assessment of unused couplings and their off-axis cost, if J in left-out conditions
 /// shows them to be worthwhile.
-pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
+pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CorrectionCost)> {
     if are_couplings_used(state) || !are_couplings_judged(state) {
         return None;
     }

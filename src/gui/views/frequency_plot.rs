@@ -7,7 +7,7 @@ use egui::Ui;
 
 use gdcm_model::dataset::{Band, ModelId};
 use gdcm_study::Edit;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 
 use super::cursor_readout::ReadoutSource;
 use super::curve_chips::CurveChips;
@@ -112,7 +112,7 @@ fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::BandDragged { min, max } => {
             // A dragged band limit beyond the other limit is ignored.
             let band = Band::new(min, max).ok()?;
-            Some(setting::BAND.to(band).into())
+            Some(setting_table::BAND.to(band).into())
         }
         BodeEvent::BandReleased => Some(StudyCommand::EndEdit.into()),
         BodeEvent::Display(command) => Some(command.into()),

@@ -94,6 +94,7 @@ use net_gain_pairs::net_gain_pairs;
 use overview::{overview_pages, overview_view_ui};
 use physics::{
     physics_evidence_ui, physics_header_ui, physics_job, physics_pages, physics_view_ui,
+    unused_named,
 };
 use poles::{poles_header_ui, poles_pages, poles_view_ui};
 use records::{
@@ -149,6 +150,8 @@ pub struct ViewContent {
     pub needs: fn(&State) -> Vec<Need>,
     /// Content of the right panel below the verdict; `None` for the result and the constraint matrix.
     pub side: Option<SideUi>,
+    /// Whether the page bar has the primary button, because the view has results that are not used.
+    pub has_primary: fn(&State) -> bool,
     /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
@@ -161,6 +164,7 @@ impl ViewContent {
         pages: |_| Vec::new(),
         tools: |_, _, _, _| {},
         tools_width: 0.0,
+        has_primary: |_| false,
         needs: |_| Vec::new(),
         side: None,
         figure_pairs: |_| Vec::new(),
@@ -253,6 +257,7 @@ const PHYSICS: ViewContent = ViewContent {
     tools: physics_header_ui,
     tools_width: 240.0,
     side: Some(physics_evidence_ui),
+    has_primary: |state| unused_named(state) > 0,
     needs: |state| vec![Need::Physics(physics_job(state))],
     ..ViewContent::PLAIN
 };
@@ -274,6 +279,7 @@ const RECORDS: ViewContent = ViewContent {
     tools_width: 380.0,
     pages: records_pages,
     side: Some(records_side_ui),
+    has_primary: |state| !state.unused_fits().is_empty(),
     needs: |state| {
         simulation_jobs(state)
             .into_iter()

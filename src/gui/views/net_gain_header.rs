@@ -5,7 +5,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Label, PopupCloseBehavior, RichText, Role, Ui, WidgetInfo, vec2};
 
 use gdcm_plot::figure::condition_source::schedule_words;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_words::setting_words::setting_words;
 
 use super::error_bars::error_bars_switch_ui;
@@ -110,12 +110,12 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 /// Draws the settings of the schedule, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
-        &setting::SCHEDULE,
-        &setting::SCHEDULED_QUANTITY,
-        &setting::SECOND_VARIABLE,
-        &setting::SCHEDULE_DELAYS,
-        &setting::TAU_DEGREE,
-        &setting::AIRSPEED_TOLERANCE,
+        &setting_table::SCHEDULE,
+        &setting_table::SCHEDULED_QUANTITY,
+        &setting_table::SECOND_VARIABLE,
+        &setting_table::SCHEDULE_DELAYS,
+        &setting_table::TAU_DEGREE,
+        &setting_table::AIRSPEED_TOLERANCE,
     ];
     let mut help = None;
     Grid::new("form of the schedule")

@@ -3,7 +3,8 @@
 
 use egui::{Rect, Ui, UiBuilder, vec2};
 
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
+use gdcm_study::results::grid_cell::CellVerdict;
 use gdcm_study::results::grid_requirement::Requirement;
 use gdcm_study::results::requirement_grid::RequirementGrid;
 use gdcm_study::results::requirements::Requirements;
@@ -57,6 +58,9 @@ pub(super) fn details_ui(
         name: "requirement details",
         title: &title,
         verdict: &verdict,
+        is_warning: selected
+            .cell
+            .is_some_and(|cell| cell.corrected.verdict == CellVerdict::Outside),
         default_height: HEIGHT,
         min_height: HEIGHT.min(0.5 * ui.available_height()),
     };
@@ -138,9 +142,11 @@ impl DetailsBar {
     fn new(state: &State, selected: &SelectedCell<'_>, requirements: &Requirements) -> Self {
         let display = state.display.judging.requirements;
         let use_couplings = offered_couplings(state)
-            .map(|(assessment, _)| setting::COUPLINGS.to(assessment.couplings).into());
+            .map(|(assessment, _)| setting_table::COUPLINGS.to(assessment.couplings).into());
         let show_in_bode = match selected.row.requirement {
-            Requirement::Bandwidth(pair) | Requirement::PhaseDelay(pair) => {
+            Requirement::Bandwidth(pair)
+            | Requirement::PhaseDelay(pair)
+            | Requirement::Level(pair) => {
                 bode_commands(requirements, selected.condition, pair, display.role())
             }
             _ => Vec::new(),

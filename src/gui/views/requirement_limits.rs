@@ -9,7 +9,7 @@ use gdcm_method::requirements::{ModeName, ModeToleranceTable, Tolerance, Toleran
 use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementPart};
 use gdcm_study::results::grid_requirement::Requirement;
 
-use super::bandwidth_settings::bandwidth_inputs_ui;
+use super::bandwidth_settings::{bandwidth_inputs_ui, standard_levels_ui};
 use super::limit_field::LimitField;
 use super::requirement_edits::requirement_edit;
 use super::requirement_selection::requirement_names;
@@ -81,6 +81,10 @@ impl LimitEditor<'_> {
                     ui,
                     "from the identified model's phase delay, for every axis",
                 );
+            }
+            Requirement::Level(_) => {
+                self.note_ui(ui, "met at the level of the identified model");
+                self.note_ui(ui, "levels: menu Limits");
             }
             Requirement::MeanJOnAxis => {
                 let field = LimitField::new("Limit of J");
@@ -291,6 +295,7 @@ fn menu_content_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     });
     ui.separator();
     bandwidth_inputs_ui(ui, state, palette, commands);
+    standard_levels_ui(ui, state, commands);
 }
 
 /// Returns the command that changes the tolerances of time histories.

@@ -71,7 +71,7 @@ impl ScatterBars<'_> {
         );
         let left = rect.left() + LABEL_WIDTH;
         let right = (rect.right() - TEXT_WIDTH).max(left + LEAST_BAR);
-        painter.text(
+        let values = painter.text(
             pos2(right + 8.0, rect.center().y),
             Align2::LEFT_CENTER,
             &words,
@@ -81,7 +81,9 @@ impl ScatterBars<'_> {
         let top = rect.top() + 1.0;
         let bar = Rect::from_x_y_ranges(left..=right, top..=top + BAR_HEIGHT);
         self.paint_shares(painter, bar, split);
-        response.on_hover_text(format!("{name}: {words}"));
+        if values.right() > rect.right() {
+            response.on_hover_text(format!("{name}: {words}"));
+        }
     }
 
     /// Paints the shares of trim, identification and unexplained variance, from left to right.

@@ -12,7 +12,7 @@ use gdcm_method::schedule::lead_degree_comparison::LeadDegreeFit;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::number_format::NO_VALUE;
 use gdcm_model::units::{s_to_ms, signed};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_words::Table;
 
 use super::net_gain_pairs::net_gain_pairs;
@@ -77,7 +77,7 @@ impl FormsTable<'_> {
         if let Some(click) = click
             && let Some(form) = fits.get(click.row)
         {
-            commands.push(setting::SCHEDULE.to(form.kind).into());
+            commands.push(setting_table::SCHEDULE.to(form.kind).into());
         }
     }
 }

@@ -9,10 +9,8 @@ use egui::{
     WidgetInfo, vec2,
 };
 
-use gdcm_method::correction::delta::GainSource;
-use gdcm_study::PhaseCorrection;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting_table;
 use gdcm_words::setting_words::setting_words;
 
 use crate::gui::commands::command::Command;
@@ -144,10 +142,8 @@ impl SettingControls<'_, '_> {
 
     /// Draws the note beside a setting's value.
     pub fn note_ui(&mut self, setting: &Setting) {
-        let settings = &self.state.study.settings;
-        let is_idle = settings.gain_source == GainSource::MeanOfPairs
-            && settings.phase == PhaseCorrection::Lead;
-        if *setting == setting::GAIN_SOURCE && is_idle {
+        let is_idle = self.state.study.settings.is_gain_source_idle();
+        if *setting == setting_table::GAIN_SOURCE && is_idle {
             self.ui.label("");
             let text = self.palette.small_warning("No effect with leads");
             self.explained(IDLE_SOURCE, |ui| ui.label(text));

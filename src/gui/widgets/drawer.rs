@@ -14,8 +14,10 @@ pub struct Drawer<'a> {
     pub name: &'static str,
     /// The item whose details are shown.
     pub title: &'a str,
-    /// Result about the item in a few words, drawn dim; empty for none.
+    /// Result about the item in a few words; empty for none.
     pub verdict: &'a str,
+    /// Whether the verdict is drawn in the colour of warnings, otherwise dim.
+    pub is_warning: bool,
     /// Height when the drawer is opened for the first time \[pt\].
     pub default_height: f32,
     /// Minimum height \[pt\].
@@ -87,7 +89,13 @@ fn bar_ui(
     let rest = inner.with_max_x(right.response.rect.left() - 8.0);
     in_line_ui(ui, rest, false, |ui| {
         ui.label(RichText::new(drawer.title).font(medium(BODY_SIZE)));
-        ui.add(egui::Label::new(palette.dim(drawer.verdict)).truncate());
+        let color = if drawer.is_warning {
+            palette.warning
+        } else {
+            palette.dim_text
+        };
+        let verdict = RichText::new(drawer.verdict).color(color);
+        ui.add(egui::Label::new(verdict).truncate());
     });
     right.inner
 }

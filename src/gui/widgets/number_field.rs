@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 use egui::{Context, DragValue, Id, Key, Response, Role, Ui, WidgetInfo, vec2};
 
 use gdcm_model::number_format::{gain_text, number, significant};
-use gdcm_study::decisions::setting_row::Digits;
+use gdcm_study::decisions::setting::Digits;
 
 use super::controls::hint_ui;
 use crate::message::Message;

@@ -123,7 +123,7 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     assert_eq!(report.work, "the computation");
     for part in [
         report.fault.as_str(),
-        report.version,
+        report.version.as_str(),
         report.dataset.as_str(),
     ] {
         window.get_by_label_contains(part);

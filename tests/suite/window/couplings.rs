@@ -13,7 +13,7 @@ use gdcm::gui::views::figures::figure_of;
 use gdcm::gui::views::offered_couplings;
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::Mark;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{CouplingCorrection, Edit, PhaseCorrection};
 use gdcm_words::coupling_remark::coupling_remark_text;
 
@@ -114,7 +114,7 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
         offered_couplings(state(&window)).is_none(),
         "nothing is computed before leads are used"
     );
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
     assessed(&mut window);
     let (offered, cost) =
         offered_couplings(state(&window)).expect("worth it on the example (M16.5)");
@@ -164,7 +164,7 @@ fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
     });
     give(
         &mut window,
-        setting::COUPLINGS.to(CouplingCorrection::Mixing),
+        setting_table::COUPLINGS.to(CouplingCorrection::Mixing),
     );
     settle(&mut window);
     let caution = Verdict::new(state(&window)).caution.unwrap();

@@ -8,7 +8,7 @@ use gdcm_io::csv_text::csv_text;
 use gdcm_io::export::figure_file::write_as;
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 use gdcm_study::PhaseCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 
 use super::views::{give, show};
 use super::*;
@@ -45,7 +45,7 @@ fn every_view_is_saved_from_its_header() {
     for view in views_with_figure() {
         if view == View::Leads {
             // The dock has this page only while there are leads.
-            give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+            give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
             wait_for_bars(&mut window);
         }
         show(&mut window, view);

@@ -1,5 +1,7 @@
 //! Forms, used from the keyboard.
 
+use gdcm::gui::state::forms::FormKind;
+
 use super::*;
 
 fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
@@ -108,4 +110,36 @@ fn escape_closes_each_form_and_decides_nothing() {
         assert_eq!(state(&window).forms.shown, None, "{key:?}");
     }
     assert!(state(&window).study == before && state(&window).unsaved);
+}
+
+#[test]
+fn the_licences_are_opened_and_scrolled_with_keys() {
+    let mut window = few_window();
+    press(&mut window, Modifiers::COMMAND, Key::K);
+    type_text(&mut window, "Licences");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    wait_until(&mut window, "the licences", |window| {
+        state(window).forms.shown == Some(FormKind::Licences)
+    });
+    window.run_steps(2);
+    let mut lines = gdcm::licences::TEXT.lines();
+    let first = lines.next().unwrap();
+    let last = lines.rfind(|line| !line.is_empty()).unwrap();
+    window.get_by_label(first);
+    assert!(window.query_by_label(last).is_none());
+    press(&mut window, Modifiers::NONE, Key::PageDown);
+    wait_until(&mut window, "the next page", |window| {
+        window.query_by_label(first).is_none()
+    });
+    press(&mut window, Modifiers::NONE, Key::End);
+    wait_until(&mut window, "the last page", |window| {
+        window.query_by_label(last).is_some()
+    });
+    press(&mut window, Modifiers::NONE, Key::Home);
+    wait_until(&mut window, "the first page", |window| {
+        window.query_by_label(first).is_some()
+    });
+    // The button Close has the focus.
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    assert_eq!(state(&window).forms.shown, None);
 }

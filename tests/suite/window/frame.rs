@@ -10,7 +10,7 @@ use gdcm::gui::state::view_pages::{CouplingsPage, EvidencePage, PolesPage};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_plot::figure::Range;
 use gdcm_study::PhaseCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 
 use super::lists::texts_in;
 use super::views::{give, show};
@@ -146,7 +146,9 @@ fn error_bars_of_values_stay_until_the_new_ones_are_computed() {
     };
     let is_older = |window: &Window| state(window).older_uncertainty().is_some();
     assert!(bar(&window) > 0.0 && !is_older(&window));
-    window.state_mut().dispatch(setting::ALPHA_GAIN.to(3.0));
+    window
+        .state_mut()
+        .dispatch(setting_table::ALPHA_GAIN.to(3.0));
     window.run_steps(1);
     let mut was_older = false;
     while state(&window).uncertainty().is_none() || state(&window).results.is_behind() {
@@ -173,9 +175,9 @@ fn chips_selections_and_small_decisions_leave_the_axes() {
     window.hover_at(bode_frame(&window, Pane::Magnitude).center());
     window.run_steps(3);
     assert_eq!(bode_ranges(&window), before, "the pointer");
-    give(&mut window, setting::ALPHA_GAIN.to(1.2));
+    give(&mut window, setting_table::ALPHA_GAIN.to(1.2));
     assert_eq!(bode_ranges(&window), before, "a small change");
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
     wait_until(&mut window, "curves above the band", |window| {
         state(window).display.frequency.bode.omega_range().1 > 100.0
     });
@@ -198,7 +200,7 @@ fn numbers(window: &Window, area: Rect) -> Vec<f64> {
 fn each_bode_axis_has_five_ticks_on_a_small_screen() {
     let mut window = window_of(SMALL);
     for phase in [PhaseCorrection::Delay, PhaseCorrection::Lead] {
-        give(&mut window, setting::PHASE.to(phase));
+        give(&mut window, setting_table::PHASE.to(phase));
         for response in ["LON → Q", "LAT → P", "PED → R", "COL → NZ"] {
             click(&mut window, &format!("Response {response}"));
             window.run_steps(3);
@@ -269,7 +271,7 @@ fn leads_are_a_page_of_the_dock_while_there_are_leads() {
         found.expect("the palette has it")
     };
     assert!(!entry(&window).enabled && entry(&window).meaning.contains("Use leads"));
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
     assert!(entry(&window).enabled);
     click(&mut window, "Page Leads");
     assert!(
@@ -278,7 +280,7 @@ fn leads_are_a_page_of_the_dock_while_there_are_leads() {
             .any(|(text, _)| text.starts_with("No leads")),
         "their plots are drawn"
     );
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Delay));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Delay));
     window.run_steps(2);
     assert!(window.query_by_label("Page Leads").is_none());
     let transform = state(&window).display.figures[&View::NetGain].transform(0);

@@ -6,7 +6,7 @@ use gdcm::gui::state::sheet::Sheet;
 use gdcm::gui::state::view::View;
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_model::units::signed;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{AssessedCorrection, PhaseCorrection};
 use gdcm_words::leads::lead_words;
 
@@ -48,7 +48,7 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     // Curves are drawn up to 1.7 times the upper end of the band, 12 rad/s.
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
     let before = state(&window).display.frequency.bode.omega_range().1;
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
     wait_until(&mut window, "curves up to ten times the band", |window| {
         (last(window, CurveRole::Corrected) - 120.0).abs() < 1e-6
     });
@@ -92,10 +92,10 @@ fn nothing_that_leads_say_makes_the_answer_wider_than_its_panel() {
         .build_eframe(warm_example);
     settle(&mut window);
     let before = last_cell(&window);
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
     window.get_by_label("Find the cause");
     assert_eq!(last_cell(&window), before);
-    give(&mut window, setting::PHASE.to(PhaseCorrection::Delay));
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Delay));
     assert_eq!(last_cell(&window), before, "and back");
     assert!(before.right() < 1280.0);
 }

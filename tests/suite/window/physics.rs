@@ -1,6 +1,7 @@
 //! The view of named physics parameters.
 
 use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::view::View;
 use gdcm_io::load_dataset;
@@ -109,4 +110,33 @@ fn a_parameter_that_is_switched_off_takes_no_part_in_the_fit() {
             .off
             .contains("tail_lift")
     );
+}
+
+#[test]
+fn the_parameter_list_at_the_left_counts_runs_and_shows_a_parameter() {
+    let mut window = physics_window();
+    let parameters = state(&window).dataset().parameters().to_vec();
+    assert!(!parameters.is_empty());
+    for parameter in parameters {
+        let name = parameter.name;
+        window.get_by_label(&format!("Runs of {name}")).click();
+        window.run_steps(3);
+        let selected = state(&window).display.physics.selected.as_deref();
+        assert_eq!(selected, Some(name.as_str()));
+    }
+}
+
+#[test]
+fn responses_before_and_after_are_those_of_the_condition_in_front() {
+    let mut window = physics_window();
+    let found = assessment(&mut window);
+    for (id, effect) in &found.conditions {
+        give(&mut window, SelectionCommand::SelectCondition(*id));
+        settle(&mut window);
+        let most = &effect.responses[0];
+        let name = state(&window).dataset().pair_name(most.pair);
+        let title = format!("{name}, J {:.1} → {:.1}", most.cost.without, most.cost.with);
+        let panels = window.get_all_by_label_contains(&title).count();
+        assert!(panels > 0, "no plot {title} in condition {id}");
+    }
 }

@@ -24,7 +24,7 @@ use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::simulation::Signal;
 use gdcm_study::decisions::adopted_models::OfferedModels;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::records::LaidOutRecord;
 
@@ -152,6 +152,8 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         click(&mut window, &format!("Page {}", page.words().name));
         assert_eq!(state(&window).records.page, page);
     }
+    click(&mut window, "Page Order");
+    assert_next_flight(&window);
     click(&mut window, "Page Fit");
     let pair = Pair {
         output: 5,
@@ -234,6 +236,29 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     assert_eq!(identified_models(&window), taken);
 }
 
+/// The page begins with the table of the first input; further sweeps of each input narrow the
+/// intervals.
+fn assert_next_flight(window: &Window) {
+    let records = &state(window).records.conditions[&CONDITION_10_ID];
+    let (job, _) = records.found.as_ref().unwrap();
+    let plan = job.news().next_flight.expect("a plan");
+    let dataset = state(window).dataset();
+    assert_eq!(plan.sweeps.len(), dataset.inputs().len());
+    let title = format!("sweep of {} (amplitude", dataset.inputs()[0].name);
+    window.get_by_label_contains(&title);
+    for sweep in &plan.sweeps {
+        let input = &dataset.inputs()[sweep.sweep.sweep.input].name;
+        let mut narrowed = 0;
+        for response in &sweep.responses {
+            let now = response.now.half_db;
+            let after = response.after.last().unwrap().half_db;
+            assert!(0.0 < after && after <= now, "{after} {now}");
+            narrowed += usize::from(after < now);
+        }
+        assert!(narrowed > 0, "{input}");
+    }
+}
+
 /// Limits the search of these conditions, because only the end of the identification matters.
 fn search_little(window: &mut Window, ids: &[ConditionId]) {
     let search = SearchSpace {
@@ -310,7 +335,10 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
     window.get_by_label("Identify 1 of 2");
     step(&mut window, UNDO);
     assert!(is_finished(&window, 10));
-    give(&mut window, setting::BAND.to(Band::new(0.6, 9.0).unwrap()));
+    give(
+        &mut window,
+        setting_table::BAND.to(Band::new(0.6, 9.0).unwrap()),
+    );
     assert_eq!(
         [status(&window, 3), status(&window, 10)],
         [FitStatus::Outdated; 2]
@@ -749,10 +777,10 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
     };
     let edits: Vec<Action> = vec![
         RecordsCommand::SetUsed(2, false).into(),
-        setting::ALPHA_GAIN.to(3.0).into(),
+        setting_table::ALPHA_GAIN.to(3.0).into(),
         RecordsCommand::AddPart(0, [5.0, 25.0]).into(),
         RecordsCommand::SetHeldOut(1, true).into(),
-        setting::ALPHA_GAIN.to(7.0).into(),
+        setting_table::ALPHA_GAIN.to(7.0).into(),
         RecordsCommand::SetKind(3, RecordKind::Multisine).into(),
         RecordsCommand::SetLayout(0, other).into(),
         RecordsCommand::SetDelay(q, 0.05).into(),
@@ -893,7 +921,8 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     wait_until(&mut window, "the archive", |window| {
         used_rows(window) == (99, 11)
     });
-    window.get_by_label("81 records of 9 conditions added; 18 already loaded");
+    let counts = ["81", "9", "18"];
+    assert_notice(&window, NoticeKind::Done, "records-added", &counts);
     let records = &state(&window).records;
     assert!(
         records
@@ -1550,7 +1579,10 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     assert!(is_at(&window, of_study), "{} Hz", rate_hz(&window));
     give(&mut window, RecordsCommand::SetBand(Some([0.5, 3.0])));
     assert!(is_at(&window, 3.0), "{} Hz", rate_hz(&window));
-    give(&mut window, setting::BAND.to(Band::new(0.5, 6.0).unwrap()));
+    give(
+        &mut window,
+        setting_table::BAND.to(Band::new(0.5, 6.0).unwrap()),
+    );
     assert!(is_at(&window, 3.0), "its own band goes before the study's");
     give(&mut window, RecordsCommand::SetBand(None));
     assert!(is_at(&window, 6.0), "{} Hz", rate_hz(&window));

@@ -449,6 +449,55 @@ fn attitude_commands_and_levels_are_decided_undone_and_drawn() {
 }
 
 #[test]
+fn levels_of_the_standard_are_chosen_in_the_menu_and_shown_for_every_model() {
+    let mut window = few_window();
+    show(&mut window, View::Requirements);
+    let yaw = pair(&window, "R", "PED");
+    assert!(grid(&mut window).row(Requirement::Level(yaw)).is_none());
+    click(&mut window, "Limits of the requirements");
+    click(&mut window, "ADS-33E-PRF, yaw: all other tasks");
+    let with_levels = grid(&mut window);
+    let row = with_levels.row(Requirement::Level(yaw)).unwrap();
+    assert_eq!(row.cells.len(), with_levels.conditions.len());
+    let levels = &state(&window).study.requirements.levels;
+    let requirements = state(&window).requirements().unwrap();
+    for (condition, cell) in with_levels.conditions.iter().zip(&row.cells) {
+        let finding = requirements
+            .bandwidth_of(condition.id, yaw, RequirementRole::Corrected)
+            .unwrap();
+        let level = finding.level(levels).and_then(|level| level.number());
+        assert_eq!(cell.corrected.value, level.map(f64::from));
+    }
+    // The other category of the axis replaces this one.
+    click(
+        &mut window,
+        "ADS-33E-PRF, yaw: target acquisition and tracking",
+    );
+    let names: Vec<f64> = state(&window)
+        .study
+        .requirements
+        .levels
+        .as_slice()
+        .iter()
+        .map(|boundary| boundary.points[0][0])
+        .collect();
+    assert_eq!(names, [3.5, 2.0]);
+    window.key_press(Key::Escape);
+    window.run_steps(3);
+    let condition = state(&window).condition().id();
+    window
+        .get_by_label_contains(&format!("Yaw level, condition {condition}: "))
+        .click();
+    settle(&mut window);
+    assert_eq!(state(&window).display.selection.pair, yaw);
+    window.get_by_label(&format!("Yaw level, condition {condition}"));
+    window.get_by_label_contains("Phase delay over bandwidth of PED → R");
+    give(&mut window, StudyCommand::Undo);
+    give(&mut window, StudyCommand::Undo);
+    assert!(grid(&mut window).row(Requirement::Level(yaw)).is_none());
+}
+
+#[test]
 fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     fn answers(window: &mut Window) -> Arc<gdcm_study::results::test_input_responses::TestAnswers> {
         wait_until(window, "the answers", |window| {

@@ -5,7 +5,7 @@ use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::across_display::AcrossPage;
 use gdcm::gui::state::view::View;
 use gdcm_plot::figure::marks::Mark;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Edit, PhaseCorrection};
 
 use super::layout::{SMALL, window_of};
@@ -113,8 +113,8 @@ fn closing_the_settings_makes_one_undo_step_and_revert_none() {
     let mut window = window();
     let before = state(&window).study.clone();
     open(&mut window);
-    set(&mut window, setting::ALPHA_GAIN.to(8.0));
-    set(&mut window, setting::ALPHA_DELAY.to(3.0));
+    set(&mut window, setting_table::ALPHA_GAIN.to(8.0));
+    set(&mut window, setting_table::ALPHA_DELAY.to(3.0));
     assert_eq!(state(&window).changed_settings().len(), 2);
     close(&mut window);
     assert!(matches!(
@@ -124,8 +124,8 @@ fn closing_the_settings_makes_one_undo_step_and_revert_none() {
     assert_eq!(undo_steps(&mut window), 1);
     assert_eq!(state(&window).study, before);
     open(&mut window);
-    set(&mut window, setting::ALPHA_GAIN.to(8.0));
-    set(&mut window, setting::PHASE.to(PhaseCorrection::None));
+    set(&mut window, setting_table::ALPHA_GAIN.to(8.0));
+    set(&mut window, setting_table::PHASE.to(PhaseCorrection::None));
     click(&mut window, "Revert the settings");
     settle(&mut window);
     assert_eq!(state(&window).study, before);
@@ -139,7 +139,7 @@ fn the_result_and_the_dock_keep_the_values_at_the_opening() {
     let mut window = window();
     let before = state(&window).shown().unwrap().gains.outputs.clone();
     open(&mut window);
-    set(&mut window, setting::ALPHA_GAIN.to(1000.0));
+    set(&mut window, setting_table::ALPHA_GAIN.to(1000.0));
     let state_now = state(&window);
     let previous = state_now.previous_result().unwrap();
     assert_eq!(previous.gains.outputs, before);
@@ -168,7 +168,7 @@ fn error_bars_wait_until_the_slider_rests() {
     open(&mut window);
     window
         .state_mut()
-        .dispatch(StudyCommand::Edit(setting::ALPHA_GAIN.to(8.0)));
+        .dispatch(StudyCommand::Edit(setting_table::ALPHA_GAIN.to(8.0)));
     window.state_mut().dispatch(StudyCommand::DragEdit);
     settle(&mut window);
     assert!(state(&window).is_setting_dragged());
@@ -196,7 +196,7 @@ fn the_trade_off_of_alpha_is_computed_once_and_serves_every_alpha() {
     });
     assert_eq!(state(&window).trade_off().unwrap().points.len(), 25);
     let first = state(&window).results.trade_off.as_ref().unwrap().1.clone();
-    set(&mut window, setting::ALPHA_GAIN.to(8.0));
+    set(&mut window, setting_table::ALPHA_GAIN.to(8.0));
     let second = state(&window).results.trade_off.as_ref().unwrap().1.clone();
     assert!(Arc::ptr_eq(&first.unwrap(), &second.unwrap()));
 }

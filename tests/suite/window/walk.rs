@@ -12,7 +12,7 @@ use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::view::View;
 use gdcm_model::progress::Unobserved;
 use gdcm_study::Engine;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 
 use super::*;
 use crate::made_up::tries;
@@ -59,11 +59,11 @@ pub(super) fn stays_within(command: &Action) -> bool {
 fn random_command(window: &Window, dice: &mut Dice) -> Option<Action> {
     match dice.below(12) {
         0 => Some(
-            setting::ALPHA_GAIN
+            setting_table::ALPHA_GAIN
                 .to(10f64.powi(dice.below(5) as i32 - 2))
                 .into(),
         ),
-        1 => Some(setting::POINTS.to(20 + dice.below(60)).into()),
+        1 => Some(setting_table::POINTS.to(20 + dice.below(60)).into()),
         2 => Some(Action::Study(StudyCommand::Undo)),
         3 => Some(Action::Study(StudyCommand::Redo)),
         _ => {

@@ -1,14 +1,16 @@
-//! Exports of all analysis results: `corrections.json`, `corrections.csv`, `assessment.csv`, and a
-//! MATLAB struct with the content of `corrections.json`.
+//! Exports of all analysis results: `corrections.json`, `corrections.csv`, `assessment.csv`,
+//! `physics.csv`, and a MATLAB struct with the content of `corrections.json`.
 
-use gdcm_study::results::export_note::FileSummary;
+use std::sync::Arc;
+
+use gdcm_study::results::export_note::{ExportNote, FileSummary};
 
 use super::corrections_struct::corrections_struct;
 use super::file_head::variables_head;
 use super::{Export, ExportFormat, Exported, FormatGroup};
 use crate::export_fault::ExportFault;
 use crate::files::corrections_file::{
-    corrections, write_assessment_csv, write_corrections, write_corrections_csv,
+    corrections, write_assessment_csv, write_corrections, write_corrections_csv, write_physics_csv,
 };
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
@@ -75,6 +77,35 @@ pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
         Ok(Exported::bytes(rows_summary(&text), text)
             .with(export.price_remarks())
             .with_notes(export.result_notes()))
+    },
+    ..JSON
+};
+
+/// Export as `physics.csv`; only the headings if the study applies no physics parameters.
+pub(super) const PHYSICS: ExportFormat = ExportFormat {
+    name: "physics",
+    extension: "csv",
+    stem: "physics",
+    title: "One row per physics parameter",
+    words: "physics.csv alone",
+    options: &[],
+    contents: |analysis, _| ExportContents::of_physics(analysis),
+    export: |export| {
+        let requested =
+            export
+                .analysis
+                .asked_physics()
+                .map_err(|failure| ExportFault::NoPhysics {
+                    why: failure.to_string(),
+                })?;
+        let mut notes = Vec::new();
+        if requested.is_none() {
+            notes.push(ExportNote::NoPhysicsParameters);
+        }
+        let mut text = Vec::new();
+        write_physics_csv(requested.map(Arc::as_ref), &mut text)
+            .map_err(|error| ExportFault::contents(&error))?;
+        Ok(Exported::bytes(rows_summary(&text), text).with_notes(notes))
     },
     ..JSON
 };

@@ -186,8 +186,9 @@ mod tests {
     use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics};
     use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+    use gdcm_model::units::telling;
     use gdcm_study::decisions::physics_settings::ParameterDecision;
-    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_table;
     use gdcm_study::{
         AssessedCorrection, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection,
         Study,
@@ -197,6 +198,7 @@ mod tests {
     use super::numpy::row_of_texts;
     use super::*;
     use crate::export::ExportRequest;
+    use crate::export::exported_model::{ModelAccuracy, ModelCouplings};
     use crate::export::matlab_values::matrix;
     use crate::files::dataset_file::embedded_example;
     use crate::files::export_contents::{LeftOutPart, PartSource};
@@ -219,11 +221,7 @@ mod tests {
                     "condition {id}: {own_s} s"
                 );
                 assert_eq!(model.phase_error_deg(), 0.0);
-                assert!(
-                    model.words().contains("gains exact, without delays"),
-                    "{}",
-                    model.words()
-                );
+                assert_eq!(model.accuracy(), ModelAccuracy::WithoutDelays);
                 continue;
             };
             assert_eq!((id, left_out.channel), (ConditionId(4), nx));
@@ -232,13 +230,8 @@ mod tests {
                 (model.phase_error_deg() - phase_deg).abs() < 1e-9 && phase_deg > 0.1,
                 "{phase_deg}"
             );
-            assert!(
-                model
-                    .words()
-                    .contains("are left out, which causes a phase error of up to"),
-                "{}",
-                model.words()
-            );
+            let error_deg = format!(" {} deg", telling(model.left_out_deg, 3));
+            assert!(model.words().contains(&error_deg), "{}", model.words());
         }
         let own = ExportRequest {
             correction: AssessedCorrection::Own,
@@ -314,9 +307,9 @@ mod tests {
             .dataset;
         let mut study = Study::new(dataset.clone());
         for edit in [
-            setting::PHASE.to(PhaseCorrection::None),
-            setting::POINTS.to(40_usize),
-            setting::PHYSICS.to(PhysicsCorrection::ByHand),
+            setting_table::PHASE.to(PhaseCorrection::None),
+            setting_table::POINTS.to(40_usize),
+            setting_table::PHYSICS.to(PhysicsCorrection::ByHand),
             Edit::DecideParameter {
                 name: "Ixx".to_owned(),
                 decision: ParameterDecision::Value(Some(5.0)),
@@ -353,10 +346,10 @@ mod tests {
     fn a_corrected_model_with_couplings_has_the_response_of_the_analysis() {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         study
-            .apply(&setting::PHASE.to(PhaseCorrection::None))
+            .apply(&setting_table::PHASE.to(PhaseCorrection::None))
             .unwrap();
         study
-            .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+            .apply(&setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
             .unwrap();
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let own = ExportRequest {
@@ -365,11 +358,7 @@ mod tests {
         };
         let grid = FrequencyGrid::logarithmic(study.settings.band, 12);
         for model in exported_models(&analysis, &own).unwrap() {
-            assert!(
-                model.words().contains("with mixing and feedback, exact"),
-                "{}",
-                model.words()
-            );
+            assert_eq!(model.couplings, ModelCouplings::MixingAndFeedback);
             let result = analysis.condition(model.condition).unwrap();
             let bundle = result.condition.bundle(BundleKind::Physics);
             let physics = FrequencyResponse::from_dynamics(

@@ -188,7 +188,7 @@ mod tests {
     use gdcm_method::schedule::SecondVariable;
     use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_table;
     use gdcm_study::{Edit, Engine, PhaseCorrection, Study};
 
     use super::*;
@@ -255,7 +255,7 @@ mod tests {
             .unwrap();
         let mut leads = Study::new(embedded_example().unwrap().dataset);
         leads
-            .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+            .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
             .unwrap();
         let mut engine = Engine::default();
         let mut of_json = BTreeSet::new();

@@ -391,7 +391,7 @@ pub fn proposed_prefix(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_table;
     use gdcm_study::results::export_note::ExportRemedy;
     use gdcm_study::{Engine, PhaseCorrection, Study};
 
@@ -401,7 +401,7 @@ mod tests {
 
     fn analysis(phase: PhaseCorrection) -> Analysis {
         let mut study = Study::new(embedded_example().unwrap().dataset);
-        study.apply(&setting::PHASE.to(phase)).unwrap();
+        study.apply(&setting_table::PHASE.to(phase)).unwrap();
         Engine::default().analyze(&study, &Unobserved).unwrap()
     }
 

@@ -5,7 +5,7 @@
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::{ConditionId, StateSpace};
 
-use crate::files::export_contents::ExportContents;
+use crate::files::export_contents::{ExportContents, PartSource};
 
 /// A corrected model, with the facts that describe it.
 pub(super) struct ExportedModel {
@@ -36,8 +36,40 @@ pub(super) struct ExportedModel {
     pub(super) band_top_rad_s: f64,
     /// Cost of the lead filters; `None` without lead filters.
     pub(super) price: Option<DescribedPrice>,
-    /// Description of the couplings; empty without couplings.
-    pub(super) couplings: &'static str,
+    pub(super) couplings: ModelCouplings,
+}
+
+/// Couplings in an exported model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ModelCouplings {
+    None,
+    /// Mixing, exact.
+    Mixing,
+    /// Mixing and feedback, exact.
+    MixingAndFeedback,
+    /// Mixing and feedback; the model's own delays are Padé approximants inside the loop.
+    FeedbackAroundDelays,
+}
+
+/// Accuracy of the parts in an exported model. A part is exact unless it is approximated: in
+/// discrete time (`pade_order` 0), lead filters by Tustin's rule; in continuous time, delays by Padé
+/// approximants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ModelAccuracy {
+    /// Gains and delays are exact, lead filters follow Tustin's rule.
+    SampledLeads,
+    /// Gains and lead filters are exact.
+    ExactLeads,
+    /// Gains and delays are exact.
+    ExactDelays,
+    /// Gains are exact; there are no delays.
+    WithoutDelays,
+    /// Gains and the model's own delays are exact: in discrete time, these are whole samples.
+    ExactOwnDelays,
+    /// Delays are Padé approximants, everything else is exact.
+    PadeDelays,
+    /// The model's own delays are Padé approximants, everything else is exact.
+    PadeOwnDelays,
 }
 
 /// Cost of lead filters, with its description.
@@ -51,6 +83,27 @@ impl ExportedModel {
     /// is, to Padé approximants and omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
+    }
+
+    /// Returns the accuracy of the parts; omitted delays do not count.
+    pub(super) fn accuracy(&self) -> ModelAccuracy {
+        let has_delays = self.contents.delays != PartSource::None;
+        let has_leads = self.lead_states > 0;
+        if self.pade_order == 0 && has_leads {
+            ModelAccuracy::SampledLeads
+        } else if has_leads && self.delay_states == 0 {
+            ModelAccuracy::ExactLeads
+        } else if self.pade_order == 0 || self.delay_states == 0 {
+            match (has_delays, self.delay_states) {
+                (true, _) => ModelAccuracy::ExactDelays,
+                (false, 0) => ModelAccuracy::WithoutDelays,
+                (false, _) => ModelAccuracy::ExactOwnDelays,
+            }
+        } else if has_delays {
+            ModelAccuracy::PadeDelays
+        } else {
+            ModelAccuracy::PadeOwnDelays
+        }
     }
 
     /// Returns the frequency \[rad/s\] above which the lead filters make the model invalid;

@@ -70,6 +70,7 @@ pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> V
     for (name, source) in contents.parts() {
         fields.add(name, Value::text(source.word()));
     }
+    fields.add("physics", cell_of_texts(contents.physics.clone()));
     fields.add("left_out", cell_of_texts(contents.left_out_words(dataset)));
     fields.record()
 }

@@ -32,6 +32,7 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_study::decisions::export_choices::ExportChoices;
 use gdcm_study::results::export_note::{ExportNote, FileSummary};
 use gdcm_study::{Analysis, AssessedCorrection};
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::lead_price::price_text;
 
 pub use self::corrected_models::corrected_models_json;
@@ -99,10 +100,11 @@ pub struct ExportFormat {
 }
 
 /// All export formats, in display order; the first is the default.
-pub static EXPORTERS: [ExportFormat; 12] = [
+pub static EXPORTERS: [ExportFormat; 13] = [
     all_results::JSON,
     all_results::CSV,
     all_results::ASSESSMENT,
+    all_results::PHYSICS,
     all_results::MAT,
     programs::MATLAB,
     programs::PYTHON,
@@ -253,7 +255,7 @@ impl<'e> Export<'e> {
         let couplings = analysis
             .asked_couplings()
             .map_err(|error| ExportFault::NoCouplings {
-                why: error.words(&analysis.study.dataset.names_of_channels().0),
+                why: coupling_error_text(error, &analysis.study.dataset),
             })?;
         Ok(ExportedSchedule {
             schedule,

@@ -4,8 +4,7 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::units::{number, telling};
 use gdcm_study::{Analysis, AssessedCorrection, CouplingCorrection};
 
-use super::exported_model::ExportedModel;
-use crate::files::export_contents::PartSource;
+use super::exported_model::{ExportedModel, ModelAccuracy, ModelCouplings};
 
 impl ExportedModel {
     /// Describes the model and its accuracy in a single line.
@@ -21,7 +20,7 @@ impl ExportedModel {
             self.correction,
             self.delay_words(),
             self.left_out_words(),
-            self.couplings
+            self.couplings.words()
         ) + &self.physics_words()
     }
 
@@ -48,44 +47,38 @@ impl ExportedModel {
     }
 
     /// Describes the parts in the model and their accuracy; omitted delays are not mentioned.
-    ///
-    /// A part is exact unless it is approximated: in discrete time (`pade_order` 0), lead filters
-    /// by Tustin's rule; in continuous time, delays by Padé approximants.
     fn delay_words(&self) -> String {
-        let has_delays = self.contents.delays != PartSource::None;
-        let has_leads = self.lead_states > 0;
-        if self.pade_order == 0 && has_leads {
-            return format!(
-                "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
-                bound_words(self.approximation_error_deg),
-                number(self.band_top_rad_s)
-            );
+        match self.accuracy() {
+            ModelAccuracy::SampledLeads => format!(
+                "gains and delays exact, lead filters by Tustin's rule, {}",
+                self.phase_error_words()
+            ),
+            ModelAccuracy::ExactLeads => "gains and lead filters exact".to_owned(),
+            ModelAccuracy::ExactDelays => "gains and delays exact".to_owned(),
+            ModelAccuracy::WithoutDelays => "gains exact, without delays".to_owned(),
+            ModelAccuracy::ExactOwnDelays => "gains and the model's own delays exact".to_owned(),
+            ModelAccuracy::PadeDelays => self.pade_words("delays"),
+            ModelAccuracy::PadeOwnDelays => self.pade_words("the model's own delays"),
         }
-        if has_leads && self.delay_states == 0 {
-            return "gains and lead filters exact".to_owned();
-        }
-        if self.pade_order == 0 || self.delay_states == 0 {
-            let words = match (has_delays, self.delay_states) {
-                (true, _) => "gains and delays exact",
-                (false, 0) => "gains exact, without delays",
-                // In discrete time, the model's own delays are whole samples, and therefore exact.
-                (false, _) => "gains and the model's own delays exact",
-            };
-            return words.to_owned();
-        }
-        let exact = if has_leads {
+    }
+
+    /// Describes Padé approximants of `approximated`.
+    fn pade_words(&self, approximated: &str) -> String {
+        let exact = if self.lead_states > 0 {
             "gains and lead filters"
         } else {
             "gains"
         };
-        let approximated = if has_delays {
-            "delays"
-        } else {
-            "the model's own delays"
-        };
         format!(
-            "{exact} exact, {approximated} by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
+            "{exact} exact, {approximated} by Pade approximants of order {}, {}",
             self.pade_order,
+            self.phase_error_words()
+        )
+    }
+
+    fn phase_error_words(&self) -> String {
+        format!(
+            "phase error up to {} deg at {} rad/s",
             bound_words(self.approximation_error_deg),
             number(self.band_top_rad_s)
         )
@@ -114,20 +107,34 @@ pub(super) fn correction_words(correction: AssessedCorrection) -> &'static str {
     }
 }
 
-/// Describes the couplings in a model; empty if there are none.
-pub(super) fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
-    let has_delays =
-        !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
-    match (
-        analysis.fitted_couplings(),
-        analysis.study.settings.couplings,
-    ) {
-        (None, _) => "",
-        (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
-            "; with mixing and feedback; the model's own delays are inside the loop, as Pade \
-            approximants"
+impl ModelCouplings {
+    /// Returns the couplings in a model with the matrices `dynamics`.
+    pub(super) fn new(analysis: &Analysis, dynamics: &StateSpace) -> Self {
+        let has_delays =
+            !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
+        match (
+            analysis.fitted_couplings(),
+            analysis.study.settings.couplings,
+        ) {
+            (None, _) => Self::None,
+            (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
+                Self::FeedbackAroundDelays
+            }
+            (Some(_), CouplingCorrection::MixingAndFeedback) => Self::MixingAndFeedback,
+            (Some(_), _) => Self::Mixing,
         }
-        (Some(_), CouplingCorrection::MixingAndFeedback) => "; with mixing and feedback, exact",
-        (Some(_), _) => "; with mixing, exact",
+    }
+
+    /// Describes the couplings; empty if there are none.
+    fn words(self) -> &'static str {
+        match self {
+            Self::None => "",
+            Self::Mixing => "; with mixing, exact",
+            Self::MixingAndFeedback => "; with mixing and feedback, exact",
+            Self::FeedbackAroundDelays => {
+                "; with mixing and feedback; the model's own delays are inside the loop, as Pade \
+                approximants"
+            }
+        }
     }
 }

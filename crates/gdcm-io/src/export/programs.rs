@@ -189,7 +189,12 @@ impl Language {
         for words in scheduled.contents.left_out_words(scheduled.dataset) {
             left_out.push((self.text)(&words));
         }
-        context! { parts, left_out }
+        let mut physics = Vec::new();
+        for words in &scheduled.contents.physics {
+            physics.push((self.text)(words));
+        }
+        let moved = (self.text)(&scheduled.contents.physics.join(", "));
+        context! { parts, physics, moved, left_out }
     }
 
     /// Returns the template values of the couplings: the mixing `M~(V)` and the feedback `K`, both

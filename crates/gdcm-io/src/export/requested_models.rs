@@ -8,10 +8,12 @@ use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model, P
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis};
 use gdcm_words::caution::failure_text;
+use gdcm_words::coupled_model_error::coupled_model_error_text;
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::lead_price::price_text;
 
-use super::exported_model::{DescribedPrice, ExportedModel};
-use super::model_description::{correction_words, couplings_words};
+use super::exported_model::{DescribedPrice, ExportedModel, ModelCouplings};
+use super::model_description::correction_words;
 use super::state_names::state_names;
 use super::{ExportRequest, ExportedRole};
 use crate::export_fault::ExportFault;
@@ -84,7 +86,7 @@ fn check_available(analysis: &Analysis) -> Result<(), ExportFault> {
     analysis
         .asked_couplings()
         .map_err(|error| ExportFault::NoCouplings {
-            why: error.words(&dataset.names_of_channels().0),
+            why: coupling_error_text(error, dataset),
         })?;
     analysis
         .asked_physics()
@@ -124,7 +126,7 @@ fn exported_model(
         .map_err(|error| ExportFault::Model {
             condition: id,
             model: model.name.clone(),
-            words: error.words(&inputs, &outputs),
+            words: coupled_model_error_text(&error, &analysis.study.dataset),
         })?;
     let price = correction.leads.as_ref().and_then(LeadPrice::new);
     let band_top_rad_s = analysis.study.settings.band.max();
@@ -152,7 +154,7 @@ fn exported_model(
             words: price_text(&price, &inputs, &outputs),
             price,
         }),
-        couplings: couplings_words(analysis, dynamics),
+        couplings: ModelCouplings::new(analysis, dynamics),
         model: corrected.model,
     })
 }

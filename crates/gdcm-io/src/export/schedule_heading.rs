@@ -4,10 +4,11 @@
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
 use gdcm_words::lead_price::price_text;
-use gdcm_words::schedule::schedule_caution_text;
+use gdcm_words::schedule::{DELAYS_NOT_SCHEDULED, schedule_caution_text};
 
 use super::exported_schedule::{ExportedSchedule, LEAD_INTERVALS};
 use super::program_text::{comment, number};
+use crate::software::software;
 
 impl ExportedSchedule<'_> {
     /// Returns the heading of a file with the schedule, line by line; `notes` are included.
@@ -29,7 +30,7 @@ impl ExportedSchedule<'_> {
             format!("Correction: {}", comment(&shortened(&self.source.name))),
             format!("Dataset: {}", comment(&shortened(self.dataset.name()))),
             format!("SHA-256 of the dataset: {}", comment(&self.source.sha256)),
-            concat!("Written by: gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
+            format!("Written by: {}", software()),
         ];
         lines.extend(self.lead_lines());
         if self.couplings.is_some() {
@@ -86,7 +87,7 @@ impl ExportedSchedule<'_> {
         let (inputs, outputs) = self.dataset.names_of_channels();
         let mut notes = Vec::new();
         if !self.schedule.has_delays() {
-            notes.push("delays are not scheduled in this study: they are zero here".to_owned());
+            notes.push(DELAYS_NOT_SCHEDULED.to_owned());
         }
         if let Some(price) = self.schedule.lead_price() {
             notes.push(price_text(&price, &inputs, &outputs));

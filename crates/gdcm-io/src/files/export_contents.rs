@@ -7,6 +7,7 @@ use gdcm_method::schedule::{Schedule, ScheduleError};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::physics::applied_value_list;
 use gdcm_words::schedule::delayed_channel_text;
 
@@ -197,12 +198,21 @@ impl ExportContents {
         self
     }
 
+    /// Returns the contents of the table of physics parameters, which has no part of the corrections.
+    pub fn of_physics(analysis: &Analysis) -> Self {
+        let mut contents = Self::of_none(analysis);
+        contents.couplings = PartSource::None;
+        contents
+            .left_out
+            .retain(|part| matches!(part, LeftOutPart::Physics(_)));
+        contents
+    }
+
     fn of_none(analysis: &Analysis) -> Self {
         let (couplings, mut left_out) = match analysis.asked_couplings() {
             Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
             Err(error) => {
-                let (inputs, _) = analysis.study.dataset.names_of_channels();
-                let why = error.words(&inputs);
+                let why = coupling_error_text(error, &analysis.study.dataset);
                 (PartSource::None, vec![LeftOutPart::Couplings(why)])
             }
         };

@@ -14,6 +14,7 @@ use gdcm_words::flight_plan::PlannedChannels;
 use crate::file_error::FileError;
 use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
+use crate::software::software;
 
 /// The plan of a condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +56,12 @@ fn flight_plans_json(plans: &[ConditionPlan], channels: &PlannedChannels) -> Val
             "targets": targets,
         }));
     }
-    json!({ "format": "gdcm-plan", "version": 1, "plans": conditions })
+    json!({
+        "format": "gdcm-plan",
+        "version": 1,
+        "software": software(),
+        "plans": conditions,
+    })
 }
 
 fn sweep_plan_json(plan: &SweepPlan, channels: &PlannedChannels) -> Value {

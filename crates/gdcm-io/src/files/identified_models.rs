@@ -26,6 +26,7 @@ use crate::json_empty_members::without_empty;
 use crate::json_reading::Nested;
 use crate::json_writing::write_compact;
 use crate::output_set::OutputSet;
+use crate::software::software;
 
 /// Identification results and the records on which they are based, as written to a file.
 pub struct IdentifiedModels<'f> {
@@ -43,6 +44,7 @@ pub struct IdentifiedModels<'f> {
 struct IdentifiedText<'m> {
     format: &'static str,
     version: u64,
+    software: String,
     models: Vec<ModelText>,
     measured: MeasuredText,
     poles: Vec<Value>,
@@ -105,6 +107,7 @@ fn identified_text<'m>(results: &IdentifiedModels<'m>) -> IdentifiedText<'m> {
     IdentifiedText {
         format: IDENTIFIED.name,
         version: IDENTIFIED.version,
+        software: software(),
         models,
         measured: measured_text(&found.measured),
         poles: found.poles.iter().map(pole_json).collect(),

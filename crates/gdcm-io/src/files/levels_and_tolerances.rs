@@ -31,16 +31,29 @@ struct TolerancesText {
     tolerances: Vec<Tolerance>,
 }
 
-/// Reads level boundaries from a file, `[{"name": "Level 1", "axis": "P", "points": [[rad/s, s],
-/// ...]}]` (M17.1).
+/// Reads level boundaries from a file, `[{"name": "Level 1", "level": 1, "axis": "P", "points":
+/// [[rad/s, s], ...], "source": "..."}]` (M17.1); level and source are optional.
 ///
 /// # Errors
 /// [`FileError`] with the line if the file cannot be read, or a boundary is invalid.
 pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
     let source = Source::read(path, &ReadingBudget::default())?;
-    let text = source.text();
+    levels_from_text(source.text(), path)
+}
+
+/// Reads level boundaries from the content of a file; `path` is named in errors.
+pub(super) fn levels_from_text(text: &[u8], path: &Path) -> Result<LevelBoundaries, FileError> {
     serde_json::from_slice(text)
         .map_err(|error| json_error(text, path, Location::default(), &error))
+}
+
+/// Adds a file with level boundaries to `outputs`.
+pub fn add_levels(
+    levels: &LevelBoundaries,
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
+    outputs.add(path, |file| write_pretty(levels, file))
 }
 
 /// Reads a tolerance table, with cautions about unknown keys.
@@ -78,6 +91,7 @@ pub fn add_tolerances(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::standard_levels::STANDARD_LEVELS;
     use crate::output_set::Existing;
 
     #[test]
@@ -115,6 +129,17 @@ mod tests {
             assert!(message.contains("levels.json"), "{message}");
             assert!(message.contains(value), "{message}");
         }
+    }
+
+    #[test]
+    fn levels_are_read_as_they_are_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("levels.json");
+        let levels = STANDARD_LEVELS[0].boundaries(&[]).unwrap();
+        let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
+        add_levels(&levels, &path, &mut outputs).unwrap();
+        outputs.persist().unwrap();
+        assert_eq!(read_levels(&path).unwrap(), levels);
     }
 
     fn written(table: &ToleranceTable) -> (tempfile::TempDir, std::path::PathBuf) {

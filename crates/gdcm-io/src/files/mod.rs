@@ -15,4 +15,5 @@ pub mod recent_files;
 pub mod recovery_file;
 pub mod requirements_file;
 pub mod rules_file;
+pub mod standard_levels;
 pub mod study_file;

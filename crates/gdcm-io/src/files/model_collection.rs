@@ -23,6 +23,7 @@ use crate::json_reading::{Format, Limited, list};
 use crate::json_writing::write_compact;
 use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
+use crate::software::software;
 
 /// Format and version of a model file.
 pub(crate) const MODELS: Format = Format {
@@ -40,6 +41,9 @@ struct ModelsText {
     format: String,
     #[serde(deserialize_with = "whole")]
     version: u64,
+    /// Program that wrote the file; empty in files of earlier versions.
+    #[serde(default)]
+    software: String,
     #[serde(deserialize_with = "list::<MOST_MODELS_IN_ALL, _, _>")]
     models: Vec<ModelText>,
 }
@@ -57,6 +61,7 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     let text = ModelsText {
         format: MODELS.name.to_owned(),
         version: MODELS.version,
+        software: software(),
         models: models.iter().map(model_text).collect(),
     };
     write_compact(&text, file)
@@ -80,6 +85,7 @@ struct ModelWithContentsText {
 struct ModelsWithContentsText {
     format: &'static str,
     version: u64,
+    software: String,
     models: Vec<ModelWithContentsText>,
 }
 
@@ -98,6 +104,7 @@ pub(crate) fn write_models_with_contents(
     let text = ModelsWithContentsText {
         format: MODELS.name,
         version: MODELS.version,
+        software: software(),
         models: texts,
     };
     write_compact(&text, file)

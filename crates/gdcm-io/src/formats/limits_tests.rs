@@ -7,8 +7,8 @@ use gdcm_model::dataset::limits::{
 };
 use gdcm_model::dataset::state_space::GREATEST_CHANNEL_DELAY_S;
 use gdcm_model::units::number;
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Setting};
+use gdcm_study::decisions::setting::{Kind, Setting};
+use gdcm_study::decisions::setting_table::SETTINGS;
 
 use crate::files::study_file::MOST_VARIANTS;
 use crate::formats::file_import::LARGEST_FILE;

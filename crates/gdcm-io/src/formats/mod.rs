@@ -26,6 +26,7 @@ pub(crate) mod mat73;
 pub mod npy;
 pub(crate) mod octave;
 pub mod reading_note;
+pub mod reading_reason;
 pub(crate) mod recorded_columns;
 pub(crate) mod sparse_matrix;
 pub(crate) mod stored_number;

@@ -5,6 +5,7 @@ use std::fmt::{Display, Formatter, Result};
 use gdcm_model::number_format::counted;
 use gdcm_sysid::records::ModeSpan;
 
+use crate::formats::reading_reason::{QuantityReason, UnitReason};
 use crate::variable_fault::column_place::ColumnPlace;
 
 /// Maximum number of numbered words that are listed in a note.
@@ -56,12 +57,14 @@ pub enum ReadingNote {
     OneOfTables { count: usize, line: usize },
 
     // Frequency responses in columns.
-    #[error("{place} is read as {reading}: {reason}")]
+    #[error("{place} is read as {reading}: {quantity}{unit}")]
     ReadAs {
         place: ColumnPlace,
         reading: ColumnReading,
-        /// Reason, from the name, the unit and the numbers of the column.
-        reason: String,
+        /// Reason for the quantity.
+        quantity: QuantityReason,
+        /// Reason for the unit.
+        unit: UnitReason,
     },
     #[error("{place} is ignored: its name is not recognised")]
     UnknownName { place: ColumnPlace },

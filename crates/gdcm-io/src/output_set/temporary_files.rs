@@ -5,7 +5,7 @@
 //! run, and is removed by the next write into its directory.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use tempfile::NamedTempFile;
@@ -33,17 +33,7 @@ pub(super) fn write_temporary_file(
 /// process ends, for whatever reason.
 fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = temporary_name();
-    // Use the permissions of the replaced file; for a new file, reading and writing for all,
-    // reduced by the process's mask.
-    #[cfg(unix)]
-    builder.permissions(
-        fs::metadata(target)
-            .map(|found| found.permissions())
-            .unwrap_or_else(|_| {
-                use std::os::unix::fs::PermissionsExt;
-                fs::Permissions::from_mode(0o666)
-            }),
-    );
+    set_permissions(&mut builder, target);
     loop {
         // Keep only the kind of the error: the builder's message would name the temporary file.
         let temporary = builder
@@ -59,13 +49,56 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
     }
 }
 
-/// Creates a second name for a file, or a copy if the file system has no hard links; removed when
-/// dropped.
-pub(super) fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
+/// Gives a new file the permissions of the file that it replaces; if it replaces none, reading and
+/// writing for all, reduced by the process's mask.
+#[cfg(unix)]
+fn set_permissions(builder: &mut tempfile::Builder<'_, '_>, target: &Path) {
+    use std::os::unix::fs::PermissionsExt;
+    let permissions = match fs::metadata(target) {
+        Ok(found) => found.permissions(),
+        Err(_) => fs::Permissions::from_mode(0o666),
+    };
+    builder.permissions(permissions);
+}
+
+/// Elsewhere a file has the permissions of its directory.
+#[cfg(not(unix))]
+fn set_permissions(_: &mut tempfile::Builder<'_, '_>, _: &Path) {}
+
+/// How the content of a file that is about to be replaced is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum KeptAs {
+    /// A second name of the file, or a copy if the file system has no hard links.
+    SecondName,
+    /// A copy. Windows does not replace a file that is open under any of its names, and the lock
+    /// keeps a second name open.
+    Copy,
+}
+
+impl KeptAs {
+    /// Returns the way that works on this system.
+    pub(super) fn of_system() -> Self {
+        if cfg!(windows) {
+            Self::Copy
+        } else {
+            Self::SecondName
+        }
+    }
+}
+
+/// Keeps the content of `target` in a temporary file, removed when dropped.
+pub(super) fn kept_aside(target: &Path, way: KeptAs) -> io::Result<NamedTempFile> {
     temporary_name().make_in(directory_of(target), |path| {
-        match fs::hard_link(target, path) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
-            linked => linked?,
+        match way {
+            KeptAs::SecondName => match fs::hard_link(target, path) {
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                    fs::copy(target, path)?;
+                }
+                linked => linked?,
+            },
+            KeptAs::Copy => {
+                fs::copy(target, path)?;
+            }
         }
         // Before the lock is taken, another process may remove the file as a leftover. Its absence
         // is returned as `AlreadyExists`, so that `make_in` tries another name.
@@ -81,6 +114,16 @@ pub(super) fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
             Err(removed.into())
         }
     })
+}
+
+/// Reads a whole temporary file through its own handle: on Windows the lock keeps every other
+/// handle from reading it, even one of the same process.
+pub(super) fn read_temporary_file(temporary: &NamedTempFile) -> io::Result<Vec<u8>> {
+    let mut file = temporary.as_file();
+    file.seek(SeekFrom::Start(0))?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 fn temporary_name() -> tempfile::Builder<'static, 'static> {

@@ -32,10 +32,9 @@ use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
+use crate::software::software;
 
 pub use self::summary::assessment_sentence;
-
-const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
 /// File names and hash of a study, stated in the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -123,7 +122,7 @@ pub fn report(
         Some(study) => format!("Study {study}. "),
         None => String::new(),
     };
-    let origin = format!("{study}Dataset {}. Made by {PROGRAM}.", source.dataset);
+    let origin = format!("{study}Dataset {}. Made by {}.", source.dataset, software());
     Ok(page.finish(&title, &[origin]))
 }
 

@@ -9,9 +9,10 @@ use gdcm_model::number_format::counted;
 use gdcm_study::Study;
 use gdcm_words::Table;
 
+use super::ReportSource;
 use super::page::Page;
 use super::wording::names;
-use super::{PROGRAM, ReportSource};
+use crate::software::software;
 
 /// Adds the section on the files of the study and the dataset.
 pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
@@ -26,7 +27,7 @@ pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
         ("Dataset file", source.dataset.clone()),
         ("SHA-256 of the dataset file", source.sha256.clone()),
         ("Study", study_file),
-        ("Program", PROGRAM.to_owned()),
+        ("Program", software()),
         ("Inputs", channel_words(dataset.inputs())),
         ("Outputs", channel_words(dataset.outputs())),
     ]);

@@ -115,9 +115,12 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
         "For the attitude response to a stick (ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742): the \
         bandwidth is the lower of the frequencies with 45\u{b0} of phase margin and with 6 dB of \
         gain margin; the phase delay is the phase lost from \u{3c9}180 to 2 \u{3c9}180, divided \
-        by 2 \u{3c9}180. Levels depend on the mission task and the category; only those given by \
+        by 2 \u{3c9}180. Levels depend on the mission task and the category; only those chosen by \
         the engineer are drawn.",
     );
+    for source in level_sources(study) {
+        page.paragraph(&source);
+    }
     let mut known = requirements.clone();
     known.bandwidth.retain(is_known);
     if !known.bandwidth.is_empty() {
@@ -125,7 +128,11 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
         let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
         page.figure(&figure, &figure.title, caption);
     }
-    page.table(&bandwidth_table(&known, dataset));
+    page.table(&bandwidth_table(
+        &known,
+        dataset,
+        &study.requirements.levels,
+    ));
     let mut remarks = ConditionRemarks::default();
     for finding in &requirements.bandwidth {
         if !is_known(finding) {
@@ -139,6 +146,26 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
         }
     }
     page.list(remarks.lines());
+}
+
+/// Returns "Level 1 of R: …" for each boundary with a source, and names boundaries of the same source
+/// together.
+fn level_sources(study: &Study) -> Vec<String> {
+    let mut names_by_source: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for boundary in study.requirements.levels.as_slice() {
+        if !boundary.source.is_empty() {
+            let name = format!("{} of {}", boundary.name, boundary.axis);
+            names_by_source
+                .entry(&boundary.source)
+                .or_default()
+                .push(name);
+        }
+    }
+    let mut lines = Vec::new();
+    for (source, names) in names_by_source {
+        lines.push(format!("{}: {source}", names.join(", ")));
+    }
+    lines
 }
 
 /// Whether the bandwidth or the phase delay is defined.

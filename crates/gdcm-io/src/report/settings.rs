@@ -2,8 +2,9 @@
 
 use gdcm_model::dataset::{Dataset, PairTable};
 use gdcm_study::Study;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_words::gain_source::gain_source_text;
 
 use super::page::Page;
 use super::wording::{capital, names};
@@ -27,8 +28,8 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
         if !(row.control.applies)(study) {
             continue;
         }
-        let words = if *row == setting::GAIN_SOURCE {
-            settings.gain_source_words()
+        let words = if *row == setting_table::GAIN_SOURCE {
+            gain_source_text(settings)
         } else {
             row.words(settings)
         };

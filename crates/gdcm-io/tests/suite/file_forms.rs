@@ -25,7 +25,7 @@ use gdcm_model::dataset::{Band, Dataset, Pair};
 use gdcm_model::names::ChannelRule;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Engine, Study};
 
 use crate::program_folder;
@@ -725,13 +725,13 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
     }
     let mut study = Study::new(Arc::new(dataset));
     for edit in [
-        setting::GAIN_BOUNDS.to(Some(GainBounds {
+        setting_table::GAIN_BOUNDS.to(Some(GainBounds {
             lower: 0.3,
             upper: 3.0,
         })),
-        setting::DELAY_UPPER.to(Some(0.1)),
-        setting::ALPHA_GAIN.to(0.0),
-        setting::ALPHA_DELAY.to(0.0),
+        setting_table::DELAY_UPPER.to(Some(0.1)),
+        setting_table::ALPHA_GAIN.to(0.0),
+        setting_table::ALPHA_DELAY.to(0.0),
     ] {
         study.apply(&edit).unwrap();
     }

@@ -341,23 +341,15 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
     );
     std::fs::write(folder.path().join("A.csv"), "1,2\n3,4\n").unwrap();
     let found = read_models(&[folder.path().to_owned()], &Default::default(), &Silent).unwrap();
-    assert_eq!(
-        (found.files, found.faults[0].as_str()),
-        (
-            1,
-            "p.csv: skipped, because this is a named pipe, not a file"
-        )
-    );
     let given = read_models(std::slice::from_ref(&pipe), &Default::default(), &Silent).unwrap_err();
+    let FileError::NotAFile { kind, .. } = &given else {
+        panic!("{given}")
+    };
+    assert_eq!((found.files, *kind), (1, "a named pipe"));
+    let fault = &found.faults[0];
     assert!(
-        matches!(
-            given,
-            FileError::NotAFile {
-                kind: "a named pipe",
-                ..
-            }
-        ),
-        "{given}"
+        fault.starts_with("p.csv: ") && fault.contains(kind),
+        "{fault}"
     );
     assert!(matches!(
         load_dataset(&pipe),

@@ -53,9 +53,16 @@ pub struct CorrectedModel {
 
 /// Reason why a corrected model cannot be represented by matrices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}", self.words(&[], &[]))]
 pub enum CorrectedModelError {
     /// A delay of a discrete-time model is not a whole number of samples.
+    #[error(
+        "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a whole number \
+        of samples",
+        channel.name(&[], &[]),
+        number(*delay_s),
+        number(samples_of_delay(*delay_s, *sample_time_s)),
+        number(*sample_time_s)
+    )]
     PartOfSample {
         channel: Channel,
         /// Delay \[s\], of correction and model together.
@@ -64,6 +71,12 @@ pub enum CorrectedModelError {
         sample_time_s: f64,
     },
     /// A lead filter is too fast for the sample time.
+    #[error(
+        "the sample time of {} s is too long for the lead filters; the maximum is {} s, half of \
+        their lag time constant",
+        number(*sample_time_s),
+        number(*longest_s)
+    )]
     SlowSamples {
         /// Sample time of the model \[s\].
         sample_time_s: f64,
@@ -71,11 +84,16 @@ pub enum CorrectedModelError {
         longest_s: f64,
     },
     /// The delays need more states than a model may have.
+    #[error(
+        "the model with its delays as states needs {states} states; at most {MOST_STATES} are \
+        supported"
+    )]
     TooManyStates {
         /// Number of states needed.
         states: usize,
     },
     /// A matrix of the corrected model is not finite.
+    #[error("{0}")]
     Matrices(#[from] StateSpaceError),
 }
 
@@ -89,39 +107,12 @@ impl CorrectedModelError {
             Self::Matrices(..) => "corrected-matrices",
         }
     }
+}
 
-    /// Describes the error, with the given channel names.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        match self {
-            Self::PartOfSample {
-                channel,
-                delay_s,
-                sample_time_s,
-            } => format!(
-                "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a \
-                whole number of samples",
-                channel.name(inputs, outputs),
-                number(*delay_s),
-                // Round to 1e-6 samples: shows the fraction of a sample, but no rounding error.
-                number((delay_s / sample_time_s * 1e6).round() / 1e6),
-                number(*sample_time_s)
-            ),
-            Self::SlowSamples {
-                sample_time_s,
-                longest_s,
-            } => format!(
-                "the sample time of {} s is too long for the lead filters; the maximum is {} s, \
-                half of their lag time constant",
-                number(*sample_time_s),
-                number(*longest_s)
-            ),
-            Self::TooManyStates { states } => format!(
-                "the model with its delays as states needs {states} states; at most {MOST_STATES} \
-                are supported"
-            ),
-            Self::Matrices(error) => error.to_string(),
-        }
-    }
+/// Returns the number of samples in a delay, rounded to 1e-6: shows the fraction of a sample, but no
+/// rounding error.
+pub fn samples_of_delay(delay_s: f64, sample_time_s: f64) -> f64 {
+    (delay_s / sample_time_s * 1e6).round() / 1e6
 }
 
 impl CorrectedModel {

@@ -30,16 +30,6 @@ pub enum GainSource {
     MeanOfPairs,
 }
 
-impl GainSource {
-    /// Returns the text for the source, such as "the representatives".
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Representatives => "the representatives",
-            Self::MeanOfPairs => "the mean over all kept pairs",
-        }
-    }
-}
-
 /// Delta gain `G = median |H_ref| / |H_sim|`, delta delay
 /// `D = median Delta phi(H_sim, H_ref) / omega` (M6), and band delay (M15.2) of every response.
 ///

@@ -55,14 +55,6 @@ impl CoupledModelError {
             Self::Matrices(error) => error.code(),
         }
     }
-
-    /// Returns the reason in words, with channel names.
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        match self {
-            Self::Delays(error) => error.words(inputs, outputs),
-            other => other.to_string(),
-        }
-    }
 }
 
 impl CouplingMatrices {

@@ -46,7 +46,11 @@ pub enum CouplingError {
     #[error("the responses do not determine the {unknowns} entries of the mixing and the feedback")]
     SingularNormalMatrix { unknowns: usize },
     /// The mixing removes an input or reverses its sign.
-    #[error("{}", reversed_input(&input.to_string(), *factor, *airspeed_kt))]
+    #[error(
+        "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",
+        telling(*factor, 3),
+        number(*airspeed_kt)
+    )]
     ReversedInput {
         /// Index of the input, counted from 1.
         input: usize,
@@ -70,48 +74,5 @@ impl CouplingError {
             Self::ReversedInput { .. } => "reversed-input",
             Self::Cancelled(..) => "stopped",
         }
-    }
-
-    /// Describes the error, with the name of a reversed input instead of its index.
-    pub fn words(&self, inputs: &[String]) -> String {
-        match self {
-            Self::ReversedInput {
-                input,
-                airspeed_kt,
-                factor,
-            } => {
-                let name = inputs.get(input - 1).map_or("", String::as_str);
-                reversed_input(name, *factor, *airspeed_kt)
-            }
-            other => other.to_string(),
-        }
-    }
-}
-
-/// Describes the error of a reversed input, which is given by its name or index.
-fn reversed_input(input: &str, factor: f64, airspeed_kt: f64) -> String {
-    format!(
-        "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",
-        telling(factor, 3),
-        number(airspeed_kt)
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_reversed_input_is_named() {
-        let error = CouplingError::ReversedInput {
-            input: 2,
-            airspeed_kt: 40.0,
-            factor: -0.598_742_4,
-        };
-        let words = error.words(&["LON".to_owned(), "LAT".to_owned()]);
-        assert!(
-            words.starts_with("the mixing multiplies input LAT by -0.599 at 40 kt"),
-            "{words}"
-        );
     }
 }

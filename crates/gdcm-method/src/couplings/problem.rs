@@ -190,26 +190,16 @@ impl CouplingCondition {
     /// frequencies count as having `points`.
     fn table_shapes(&self, points: usize) -> Vec<[usize; 3]> {
         let mut shapes = vec![
-            table_shape(self.physics.curves(), points),
-            table_shape(self.flight.curves(), points),
+            self.physics.curves().curve_shape(points),
+            self.flight.curves().curve_shape(points),
             [self.usable.outputs(), self.usable.inputs(), points],
         ];
         if let Some(deviation) = &self.deviation {
-            shapes.push(table_shape(deviation, points));
+            shapes.push(deviation.curve_shape(points));
         }
         if let Some(coherence) = &self.coherence {
             shapes.push([coherence.outputs(), coherence.inputs(), points]);
         }
         shapes
     }
-}
-
-/// Returns a table's numbers of outputs, inputs and frequencies: `expected` frequencies if every
-/// curve has them, otherwise the length of the first curve that differs.
-fn table_shape<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
-    let other = curves
-        .iter()
-        .map(|(_, curve)| curve.len())
-        .find(|&points| points != expected);
-    [curves.outputs(), curves.inputs(), other.unwrap_or(expected)]
 }

@@ -197,28 +197,18 @@ impl PhysicsCondition {
                 family.inputs(),
                 family.points().unwrap_or(points),
             ],
-            table_shape(self.flight.curves(), points),
+            self.flight.curves().curve_shape(points),
             [self.usable.outputs(), self.usable.inputs(), points],
         ];
         for other in &self.others {
-            shapes.push(table_shape(other.curves(), points));
+            shapes.push(other.curves().curve_shape(points));
         }
         if let Some(deviation) = &self.deviation {
-            shapes.push(table_shape(deviation, points));
+            shapes.push(deviation.curve_shape(points));
         }
         if let Some(coherence) = &self.coherence {
             shapes.push([coherence.outputs(), coherence.inputs(), points]);
         }
         shapes
     }
-}
-
-/// Returns a table's numbers of outputs, inputs and frequencies: `expected` frequencies if every
-/// curve has them, otherwise the length of the first curve that differs.
-fn table_shape<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
-    let other = curves
-        .iter()
-        .map(|(_, curve)| curve.len())
-        .find(|&points| points != expected);
-    [curves.outputs(), curves.inputs(), other.unwrap_or(expected)]
 }

@@ -1,8 +1,17 @@
-//! Handling-qualities level boundaries over bandwidth and phase delay, read from a user file
+//! Handling-qualities level boundaries over bandwidth and phase delay, and the level of a point
 //! (M17.1).
 //!
-//! No boundaries are built in, because they depend on the mission task element and the category
-//! (ADS-33E-PRF, figures 5, 6, 11 and 12).
+//! No boundaries apply by default, because they depend on the mission task element and the category
+//! (ADS-33E-PRF, 3.3.2.1, 3.3.5.1 and 3.4.1.1).
+//!
+//! ```text
+//! tau_p |  Level 3 /  Level 2 /  Level 1
+//!       |         |          |
+//!       +---------+----------+---------- omega_BW
+//! ```
+//!
+//! A point meets Level n if it lies on the boundary of Level n or to the right of it, and has the
+//! lowest number n that it meets. Beyond the boundary of the highest number N its level is N + 1.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,10 +23,47 @@ use gdcm_model::units::number;
 pub struct LevelBoundary {
     /// Level name ("Level 1").
     pub name: String,
+    /// Number of the level that is met on the boundary and to the right of it, 1 for the best;
+    /// `None` for a boundary that is drawn and gives no level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<u32>,
     /// Output to which the boundary applies ("P").
     pub axis: String,
-    /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two.
+    /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two. Where `level`
+    /// is given, neither coordinate decreases.
     pub points: Vec<[f64; 2]>,
+    /// Document, paragraph and figure of the points, and the error of reading them.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+}
+
+/// Position of a point relative to a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum BoundarySide {
+    /// On the boundary or to the right of it.
+    Within,
+    Beyond,
+    /// Above the end of the boundary, and to the right of its end.
+    Undrawn,
+}
+
+/// Level of a bandwidth and a phase delay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AssessedLevel {
+    /// Number of the level, 1 for the best.
+    Level(u32),
+    /// The point lies above the end of a boundary that would decide its level.
+    AboveBoundaries,
+}
+
+impl AssessedLevel {
+    /// Returns the number of the level, if the boundaries determine it.
+    pub fn number(self) -> Option<u32> {
+        match self {
+            Self::Level(number) => Some(number),
+            Self::AboveBoundaries => None,
+        }
+    }
 }
 
 /// The boundaries in a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`;
@@ -66,6 +112,39 @@ pub enum LevelBoundaryError {
         point: usize,
         found: [f64; 2],
     },
+    #[error(
+        "boundary {entry}, {}: expected a level of 1 or more, found 0",
+        quoted(name)
+    )]
+    LevelZero {
+        /// Index of the entry, counted from 1.
+        entry: usize,
+        name: String,
+    },
+    /// Bandwidth or phase delay decreases along a boundary that gives a level.
+    #[error(
+        "boundary {entry}, {}, point {point}: expected a bandwidth and a phase delay not below those of the point before, because the boundary gives a level",
+        quoted(name)
+    )]
+    Descending {
+        /// Index of the entry, counted from 1.
+        entry: usize,
+        name: String,
+        /// Index of the point, counted from 1.
+        point: usize,
+    },
+    #[error(
+        "boundary {entry}, {}: expected one boundary of level {level} for {}, found a second",
+        quoted(name),
+        quoted(axis)
+    )]
+    DuplicateLevel {
+        /// Index of the entry, counted from 1.
+        entry: usize,
+        name: String,
+        axis: String,
+        level: u32,
+    },
 }
 
 impl LevelBoundaryError {
@@ -76,6 +155,9 @@ impl LevelBoundaryError {
             Self::NoAxis { .. } => "level-without-axis",
             Self::TooFewPoints { .. } => "too-few-level-points",
             Self::Point { .. } => "level-point",
+            Self::LevelZero { .. } => "level-zero",
+            Self::Descending { .. } => "level-descending",
+            Self::DuplicateLevel { .. } => "duplicate-level",
         }
     }
 }
@@ -107,7 +189,57 @@ impl LevelBoundary {
                 });
             }
         }
+        if self.level.is_some() {
+            self.check_level(entry)?;
+        }
         Ok(())
+    }
+
+    /// Checks that a boundary divides the plane into two sides; `entry` counts from 1.
+    fn check_level(&self, entry: usize) -> Result<(), LevelBoundaryError> {
+        let name = self.name.clone();
+        if self.level == Some(0) {
+            return Err(LevelBoundaryError::LevelZero { entry, name });
+        }
+        for (index, ends) in self.points.windows(2).enumerate() {
+            if ends[1][0] < ends[0][0] || ends[1][1] < ends[0][1] {
+                return Err(LevelBoundaryError::Descending {
+                    entry,
+                    name,
+                    point: index + 2,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the lowest bandwidth \[rad/s\] on the boundary at a phase delay; below its first
+    /// point, that of the first point; `None` above its last point.
+    fn least_bandwidth(&self, phase_delay_s: f64) -> Option<f64> {
+        let first = self.points.first()?;
+        if phase_delay_s <= first[1] {
+            return Some(first[0]);
+        }
+        for ends in self.points.windows(2) {
+            let [from, to] = [ends[0], ends[1]];
+            if phase_delay_s <= to[1] {
+                // Not horizontal: the phase delay is above that of `from`.
+                let share = (phase_delay_s - from[1]) / (to[1] - from[1]);
+                return Some(from[0] + share * (to[0] - from[0]));
+            }
+        }
+        None
+    }
+
+    /// Returns the side on which a point lies.
+    fn side(&self, omega_bw_rad_s: f64, phase_delay_s: f64) -> BoundarySide {
+        let last_rad_s = self.points.last().map_or(0.0, |point| point[0]);
+        match self.least_bandwidth(phase_delay_s) {
+            Some(least) if omega_bw_rad_s >= least => BoundarySide::Within,
+            Some(_) => BoundarySide::Beyond,
+            None if omega_bw_rad_s < last_rad_s => BoundarySide::Beyond,
+            None => BoundarySide::Undrawn,
+        }
     }
 }
 
@@ -117,6 +249,19 @@ impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
     fn try_from(boundaries: Vec<LevelBoundary>) -> Result<Self, LevelBoundaryError> {
         for (index, boundary) in boundaries.iter().enumerate() {
             boundary.check(index + 1)?;
+            let has_same_level = boundaries[..index]
+                .iter()
+                .any(|known| known.axis == boundary.axis && known.level == boundary.level);
+            if let Some(level) = boundary.level
+                && has_same_level
+            {
+                return Err(LevelBoundaryError::DuplicateLevel {
+                    entry: index + 1,
+                    name: boundary.name.clone(),
+                    axis: boundary.axis.clone(),
+                    level,
+                });
+            }
         }
         Ok(Self(boundaries))
     }
@@ -131,6 +276,81 @@ impl LevelBoundaries {
     /// Returns the boundaries for one axis, named as the dataset names its output.
     pub fn of_axis<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
         self.0.iter().filter(move |boundary| boundary.axis == axis)
+    }
+
+    /// Returns the boundaries that give levels for an axis, in the order of the levels.
+    fn assessing(&self, axis: &str) -> Vec<&LevelBoundary> {
+        let mut found = Vec::new();
+        for boundary in &self.0 {
+            if boundary.axis == axis && boundary.level.is_some() {
+                found.push(boundary);
+            }
+        }
+        found.sort_by_key(|boundary| boundary.level);
+        found
+    }
+
+    /// Whether any boundary gives levels for an axis.
+    pub fn assesses(&self, axis: &str) -> bool {
+        self.0
+            .iter()
+            .any(|boundary| boundary.axis == axis && boundary.level.is_some())
+    }
+
+    /// Returns the level of a bandwidth \[rad/s\] and a phase delay \[s\]; `None` if no boundary
+    /// gives levels for the axis.
+    ///
+    /// ```text
+    /// for the boundaries in ascending order of their levels:
+    ///     on it or to the right of it      the level of this boundary
+    ///     above its end                    not determined
+    /// none of them                         one more than the last level
+    /// ```
+    pub fn level(
+        &self,
+        axis: &str,
+        omega_bw_rad_s: f64,
+        phase_delay_s: f64,
+    ) -> Option<AssessedLevel> {
+        let assessing = self.assessing(axis);
+        for boundary in &assessing {
+            match boundary.side(omega_bw_rad_s, phase_delay_s) {
+                BoundarySide::Within => return boundary.level.map(AssessedLevel::Level),
+                BoundarySide::Undrawn => return Some(AssessedLevel::AboveBoundaries),
+                BoundarySide::Beyond => {}
+            }
+        }
+        let last = assessing.last()?.level?;
+        Some(AssessedLevel::Level(last.saturating_add(1)))
+    }
+
+    /// Returns these boundaries with all boundaries of the axes in `others` replaced by `others`.
+    pub fn replaced_by(&self, others: &Self) -> Self {
+        let mut boundaries = self.0.clone();
+        boundaries.retain(|boundary| !others.0.iter().any(|other| other.axis == boundary.axis));
+        boundaries.extend(others.0.iter().cloned());
+        Self(boundaries)
+    }
+
+    /// Returns these boundaries without those in `others`.
+    pub fn without(&self, others: &Self) -> Self {
+        let mut boundaries = self.0.clone();
+        boundaries.retain(|boundary| !others.0.contains(boundary));
+        Self(boundaries)
+    }
+
+    /// Returns these boundaries for another axis, the name of an output.
+    pub fn for_axis(&self, axis: &str) -> Self {
+        let mut boundaries = self.0.clone();
+        for boundary in &mut boundaries {
+            boundary.axis = axis.to_owned();
+        }
+        Self(boundaries)
+    }
+
+    /// Whether all boundaries in `others` are among these.
+    pub fn contains(&self, others: &Self) -> bool {
+        others.0.iter().all(|other| self.0.contains(other))
     }
 
     /// Returns the axes that are not outputs of the dataset, without duplicates.
@@ -208,8 +428,10 @@ mod tests {
         );
         let not_finite = LevelBoundary {
             name: "L".into(),
+            level: None,
             axis: "P".into(),
             points: vec![[f64::NAN, 0.0]; 2],
+            source: String::new(),
         };
         let error = LevelBoundaries::try_from(vec![not_finite]).unwrap_err();
         assert!(matches!(
@@ -220,5 +442,83 @@ mod tests {
                 ..
             }
         ));
+    }
+
+    /// Two boundaries: vertical to 0.1 s, then 1 rad/s in 0.1 s up to 0.3 s.
+    const TWO: &str = r#"[
+        {"name": "Level 1", "level": 1, "axis": "P", "points": [[2, 0], [2, 0.1], [4, 0.3]]},
+        {"name": "Level 2", "level": 2, "axis": "P", "points": [[1, 0], [1, 0.1], [3, 0.3]]}]"#;
+
+    #[test]
+    fn the_level_of_a_point_agrees_with_calculation_by_hand() {
+        let boundaries = read(TWO).unwrap();
+        let above = AssessedLevel::AboveBoundaries;
+        for (omega, delay_s, expected) in [
+            (2.5, 0.05, AssessedLevel::Level(1)),
+            // On the boundary, at its corner and on its slope: omega = 2 + 10 (tau - 0.1).
+            (2.0, 0.05, AssessedLevel::Level(1)),
+            (2.0, 0.1, AssessedLevel::Level(1)),
+            (3.0, 0.2, AssessedLevel::Level(1)),
+            (2.999, 0.2, AssessedLevel::Level(2)),
+            (1.999, 0.0, AssessedLevel::Level(2)),
+            (2.0, 0.2, AssessedLevel::Level(2)),
+            (1.999, 0.2, AssessedLevel::Level(3)),
+            (0.5, 0.0, AssessedLevel::Level(3)),
+            // Above the ends: Level 3 to the left of both, not determined to the right of one.
+            (2.5, 0.35, AssessedLevel::Level(3)),
+            (3.5, 0.35, above),
+            (5.0, 0.35, above),
+            // A negative phase delay counts as zero.
+            (2.0, -0.01, AssessedLevel::Level(1)),
+        ] {
+            let found = boundaries.level("P", omega, delay_s);
+            assert_eq!(found, Some(expected), "{omega} {delay_s}");
+        }
+        assert_eq!(boundaries.level("Q", 2.0, 0.1), None);
+        let drawn = read(r#"[{"name":"L","axis":"P","points":[[2,0],[2,1]]}]"#).unwrap();
+        assert_eq!(
+            drawn.level("P", 3.0, 0.1),
+            None,
+            "a drawn line gives no level"
+        );
+    }
+
+    #[test]
+    fn a_boundary_that_gives_a_level_does_not_turn_back() {
+        let faults = [
+            (r#""level":0,"points":[[1,0],[1,1]]"#, "level-zero"),
+            (r#""level":1,"points":[[2,0],[1,1]]"#, "level-descending"),
+            (r#""level":1,"points":[[1,1],[2,0]]"#, "level-descending"),
+        ];
+        for (fields, code) in faults {
+            let text = format!(r#"[{{"name":"L","axis":"P",{fields}}}]"#);
+            let boundaries: Vec<LevelBoundary> = serde_json::from_str(&text).unwrap();
+            let error = LevelBoundaries::try_from(boundaries).unwrap_err();
+            assert_eq!(error.code(), code, "{text}");
+        }
+        let turning = r#"[{"name":"L","axis":"P","points":[[2,0],[1,1]]}]"#;
+        assert!(read(turning).is_ok(), "a line that is only drawn may turn");
+        let twice = TWO.replace("\"level\": 2", "\"level\": 1");
+        let boundaries: Vec<LevelBoundary> = serde_json::from_str(&twice).unwrap();
+        let error = LevelBoundaries::try_from(boundaries).unwrap_err();
+        assert_eq!(error.code(), "duplicate-level");
+    }
+
+    #[test]
+    fn boundaries_are_replaced_axis_by_axis() {
+        let old = read(r#"[{"name":"a","axis":"P","points":[[1,0],[1,1]]},{"name":"b","axis":"R","points":[[1,0],[1,1]]}]"#).unwrap();
+        let new = read(r#"[{"name":"c","axis":"R","points":[[2,0],[2,1]]}]"#).unwrap();
+        let both = old.replaced_by(&new);
+        let names = |boundaries: &LevelBoundaries| -> Vec<String> {
+            boundaries
+                .as_slice()
+                .iter()
+                .map(|b| b.name.clone())
+                .collect()
+        };
+        assert_eq!(names(&both), ["a", "c"]);
+        assert!(both.contains(&new) && !both.contains(&old));
+        assert_eq!(names(&both.without(&new)), ["a"]);
+        assert_eq!(new.for_axis("yaw").as_slice()[0].axis, "yaw");
     }
 }

@@ -112,8 +112,9 @@ fn conversion_notes(part: &Part) -> Vec<String> {
     if let Some(source) = &part.found.draft.source {
         notes.extend(source.note.clone());
     }
-    notes.extend_from_slice(&part.inputs.notes);
-    notes.extend_from_slice(&part.outputs.notes);
+    for note in part.inputs.notes.iter().chain(&part.outputs.notes) {
+        notes.push(note.to_string());
+    }
     if let Some(sample_time_s) = part.sample_time_s {
         notes.push(format!(
             "sample time {} s, as declared",

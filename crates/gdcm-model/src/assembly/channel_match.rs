@@ -1,5 +1,6 @@
 //! Matching of file channels to dataset channels, and the factors between them.
 
+use super::channel_note::ChannelNote;
 use super::declarations::ModelDeclarations;
 use super::found_model::ChannelLabel;
 use super::name_likeness::{Likeness, matched_name};
@@ -30,7 +31,7 @@ pub struct ChannelMatch {
     pub problems: Vec<ProblemKind>,
     /// Remarks for the engineer to review: overridden units, and file channels that match no
     /// dataset channel.
-    pub notes: Vec<String>,
+    pub notes: Vec<ChannelNote>,
     /// Whether the file has no channel names, so that the channels were matched by position.
     pub by_position: bool,
 }
@@ -188,10 +189,11 @@ impl ChannelMatcher<'_> {
             && let Some(file_unit) = file_unit
             && declared_unit != file_unit
         {
-            found.notes.push(format!(
-                "{}: the declared unit {declared_unit} replaces the unit {file_unit} in the file",
-                rule.name
-            ));
+            found.notes.push(ChannelNote::UnitReplaced {
+                channel: rule.name.clone(),
+                declared: declared_unit.clone(),
+                found: file_unit.clone(),
+            });
         }
         let unit = declared_unit.or(file_unit).or(rule.unit_in_files.as_ref());
         let Some(unit) = unit else {
@@ -271,21 +273,20 @@ impl ChannelMatcher<'_> {
 
     /// Adds a note about the named file channels that match no dataset channel.
     fn note_unused(&self, found: &mut ChannelMatch) {
-        let mut unused: Vec<&str> = Vec::new();
+        let mut unused: Vec<String> = Vec::new();
         for (index, label) in self.labels.iter().enumerate() {
             let is_used = found.uses.iter().flatten().any(|used| used.index == index);
             if let Some(name) = &label.name
                 && !is_used
             {
-                unused.push(name);
+                unused.push(name.clone());
             }
         }
         if found.problems.is_empty() && !unused.is_empty() {
-            found.notes.push(format!(
-                "{}s in the file but not in the dataset: {}",
-                self.side,
-                unused.join(", ")
-            ));
+            found.notes.push(ChannelNote::NotInDataset {
+                side: self.side,
+                names: unused,
+            });
         }
     }
 
@@ -556,7 +557,10 @@ mod tests {
         assert!(part.problems.is_empty(), "{:?}", part.problems);
         assert_eq!(
             part.notes,
-            ["inputs in the file but not in the dataset: latt"]
+            [ChannelNote::NotInDataset {
+                side: ChannelSide::Input,
+                names: vec!["latt".to_owned()]
+            }]
         );
         for labels in [
             vec![label("delta", "%"), label("run2", "%")],

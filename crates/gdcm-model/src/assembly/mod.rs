@@ -18,6 +18,7 @@ mod assembled_records;
 pub mod assembly;
 mod channel_conversion;
 pub mod channel_match;
+pub mod channel_note;
 mod condition_numbers;
 pub mod declarations;
 pub mod file_scope;

@@ -115,6 +115,18 @@ impl PairTable<bool> {
     }
 }
 
+impl<T> PairTable<Vec<T>> {
+    /// Returns the numbers of outputs, inputs and frequencies of a table of curves: `expected`
+    /// frequencies if every curve has them, otherwise the length of the first curve that differs.
+    pub fn curve_shape(&self, expected: usize) -> [usize; 3] {
+        let other = self
+            .iter()
+            .map(|(_, curve)| curve.len())
+            .find(|&points| points != expected);
+        [self.outputs, self.inputs, other.unwrap_or(expected)]
+    }
+}
+
 impl<T> Index<Pair> for PairTable<T> {
     type Output = T;
 

@@ -2,25 +2,20 @@
 //! response of the physics representative, K the feedback from outputs to inputs; near a singular
 //! `I - K H` the closed loop rings.
 
-use nalgebra::Complex;
-
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_words::couplings::couplings_heading;
 
-use super::arrow::{arrow, spans};
 use super::axis::{Axis, FrequencyUnit, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::marks::{Band, Curve, DotShape, Dots, Mark, Rule};
-use super::role::Role;
+use super::marks::{Band, Curve, Rule};
+use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 
 /// Loop curves of the condition in focus and of the other conditions.
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.7);
 const SHOWN: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.6);
-/// Arrow from a pole to its new position.
-const SHIFT: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.0);
 /// Line at the singular value below which the loop is close to ringing.
 const RINGING: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 const BAND: Color = Color::new(Hue::Accent).tint(12);
@@ -114,44 +109,6 @@ fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     let y = Axis::linear("Im λ [rad/s]");
     let panel = Panel::new(x, y)
         .with(Rule::vertical(0.0, AXIS))
-        .with_all(pole_shift_marks(&near));
+        .with_all(pole_shift_marks(&near, &PoleShiftNames::COUPLINGS));
     Plot::new(format!("Poles of condition {shown}")).panel(panel)
-}
-
-/// Draws the poles without and with couplings, and an arrow from each pole to its new position.
-pub(super) fn pole_shift_marks(shifts: &[PoleShift]) -> Vec<Mark> {
-    let mut ends = Vec::new();
-    let mut before = Dots::new(
-        "without couplings",
-        DotShape::Cross,
-        Role::Representative.stroke(false).color,
-    )
-    .key("without couplings")
-    .filled(false);
-    let mut after = Dots::new(
-        "with couplings",
-        DotShape::Circle,
-        Role::Corrected.stroke(false).color,
-    )
-    .key("with couplings")
-    .filled(false);
-    for shift in shifts {
-        if let Some(from) = shift.before {
-            ends.push([point(from), point(shift.after)]);
-            before = before.dot(from.re, from.im, "");
-        }
-        after = after.dot(shift.after.re, shift.after.im, "");
-    }
-    let spans = spans(ends.as_flattened());
-    let mut marks: Vec<Mark> = Vec::new();
-    for [from, to] in ends {
-        marks.push(Curve::through("moved", SHIFT, arrow(from, to, spans)).into());
-    }
-    marks.push(before.into());
-    marks.push(after.into());
-    marks
-}
-
-fn point(pole: Complex<f64>) -> [f64; 2] {
-    [pole.re, pole.im]
 }

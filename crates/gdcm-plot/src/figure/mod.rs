@@ -12,7 +12,7 @@
 //! | [`role`], `color`, `stroke` | line styles and colours by meaning |
 //! | [`request`] | kinds of figures; the figure for a request |
 //! | [`drawing`], `area` | shapes and texts on paper |
-//! | [`bode`], [`airspeeds`], [`error`], [`gains`], [`schedule_cost`], [`assessment`], [`poles`], [`physics`], [`leads`], [`requirements`] | a figure for each view |
+//! | [`bode`], [`airspeeds`], [`error`], [`gains`], [`schedule_cost`], [`assessment`], [`poles`], [`physics`], [`physics_change`], [`leads`], [`requirements`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
@@ -84,7 +84,9 @@ mod paint_dots;
 mod paint_marks;
 mod paint_words;
 pub mod physics;
+pub mod physics_change;
 mod placed;
+mod pole_shift;
 pub mod poles;
 mod range;
 mod reference_line;

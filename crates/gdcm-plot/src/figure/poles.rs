@@ -13,10 +13,11 @@ pub use super::damping_grid::damping_grid;
 use super::axis::{Axis, Range};
 use super::bode_options::BodeOptions;
 use super::condition_source::{ConditionSource, SourceModel};
-use super::couplings::{AXIS, pole_shift_marks};
+use super::couplings::AXIS;
 use super::damping_grid::rays;
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Dot, DotShape, Dots, Mark, MarkId, Rule};
+use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 use super::role::Role;
 
 /// Real and imaginary ranges \[rad/s\] of the plot of slow modes: the rigid-body modes of a
@@ -72,7 +73,10 @@ pub fn poles_figure(
         }
     }
     if !contents.shifts.is_empty() {
-        marks.extend(pole_shift_marks(contents.shifts));
+        marks.extend(pole_shift_marks(
+            contents.shifts,
+            &PoleShiftNames::COUPLINGS,
+        ));
     }
     Figure::new(format!("Poles · {}", source.condition_words()))
         .caption(format!(

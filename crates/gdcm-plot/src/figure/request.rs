@@ -23,9 +23,13 @@ use super::figure::Figure;
 use super::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use super::leads::leads_figure;
 use super::physics::physics_figure;
+use super::physics_change::physics_change_figure;
 use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model};
 use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
 use super::schedule_cost::schedule_cost_figure;
+
+/// Number of responses in [`FigureKind::PhysicsChange`].
+const CHANGED_RESPONSES: usize = 5;
 
 /// Kinds of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -53,6 +57,8 @@ pub enum FigureKind {
     Couplings,
     /// A physics parameter in every condition, and the misfit that remains as parameters are added.
     Physics,
+    /// Most improved responses and poles in a condition, before and after the physics parameters.
+    PhysicsChange,
     /// Phase delay over bandwidth of attitude responses, or model responses over time.
     Requirements,
     /// A response in every condition, coloured by airspeed, with the error of the schedule.
@@ -63,7 +69,7 @@ pub enum FigureKind {
 }
 
 impl FigureKind {
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -75,6 +81,7 @@ impl FigureKind {
         Self::Leads,
         Self::Couplings,
         Self::Physics,
+        Self::PhysicsChange,
         Self::Requirements,
         Self::Airspeeds,
         Self::ScheduleCost,
@@ -94,6 +101,7 @@ impl FigureKind {
             Self::Leads => "leads",
             Self::Couplings => "couplings",
             Self::Physics => "physics",
+            Self::PhysicsChange => "physics-change",
             Self::Requirements => "requirements",
             Self::Airspeeds => "airspeeds",
             Self::ScheduleCost => "schedule-cost",
@@ -114,7 +122,12 @@ impl FigureKind {
     pub fn is_of_condition(self) -> bool {
         matches!(
             self,
-            Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads
+            Self::Bode
+                | Self::Error
+                | Self::Overview
+                | Self::Poles
+                | Self::Leads
+                | Self::PhysicsChange
         )
     }
 }
@@ -198,6 +211,16 @@ impl FigureRequest {
                 couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit)
             }
             FigureKind::Physics => self.physics_figure(analysis?),
+            FigureKind::PhysicsChange => {
+                let source = condition?;
+                physics_change_figure(
+                    self.physics.as_deref()?,
+                    source.dataset(),
+                    source.id(),
+                    CHANGED_RESPONSES,
+                    self.bode.unit,
+                )
+            }
             FigureKind::Airspeeds => self.airspeeds_figure(analysis?),
             FigureKind::ScheduleCost => {
                 let analysis = analysis?;

@@ -297,7 +297,7 @@ impl<B: Default, C> History<B, C> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::setting::{ALPHA_DELAY, ALPHA_GAIN};
+    use super::super::setting_table::{ALPHA_DELAY, ALPHA_GAIN};
     use super::*;
     use crate::decisions::signs::{SignRole, turned};
     use crate::reference_tests::reference_dataset;

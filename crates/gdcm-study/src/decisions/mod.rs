@@ -13,7 +13,7 @@ pub mod named_decisions;
 pub mod physics_settings;
 pub mod requirement_settings;
 pub mod setting;
-pub mod setting_row;
+pub mod setting_table;
 pub mod settings;
 pub mod signs;
 pub mod study;

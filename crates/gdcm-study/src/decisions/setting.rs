@@ -1,736 +1,502 @@
-//! Table of the settings, with name, key in files, command-line option, allowed values and place of
-//! the window control. It is used by undo, comparison of decisions, refusals, the report, the
-//! command line and the window. The crate of words holds the captions and help texts.
+//! The type [`Setting`], a row of the settings table, and operations on it: setting, checking,
+//! formatting and parsing a value. The table itself is in `setting_table.rs`.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
 use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
-use gdcm_model::dataset::band::{GREATEST_OMEGA, LEAST_OMEGA};
-use gdcm_model::dataset::{Band, limits};
+use gdcm_model::dataset::Band;
+use gdcm_model::number_format::{number, six_digits};
 use gdcm_model::response::LeadOrder;
 
 use super::edit_refusal::EditRefusal;
 use super::physics_settings::PhysicsCorrection;
-use super::setting_row::{Choice, Control, Digits, Kind, Place, Setting, Unit};
-use super::settings::{
-    CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
-};
+use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 use super::study::Study;
 
-/// Control of a setting outside the settings panel, always applicable.
-const DEFAULT_CONTROL: Control = Control {
-    place: Place::Elsewhere,
-    step: 0.01,
-    digits: Digits::Significant,
-    applies: |_| true,
-};
-
-/// Fields that most settings share; every setting has its own name, key, option and kind.
-const DEFAULT: Setting = Setting {
-    name: "",
-    key: "",
-    option: "",
-    bare: None,
-    unit: Unit {
-        file: "",
-        shown: "",
-        scale: 1.0,
-    },
-    kind: Kind::Flag {
-        words: ["", ""],
-        get: |_| false,
-        set: |_, _| {},
-    },
-    control: DEFAULT_CONTROL,
-};
-
-/// Regularisation weight for the output gains, eq. (7); beyond its range the optimum is constant.
-pub static ALPHA_GAIN: Setting = Setting {
-    name: "α of the gains",
-    key: "alpha_gain",
-    option: "--alpha",
-    kind: Kind::Number {
-        range: [0.0, 1e6],
-        whole: false,
-        get: |settings| settings.alpha_gain,
-        set: |settings, alpha| settings.alpha_gain = alpha,
-    },
-    control: Control {
-        place: Place::Slider,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-/// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
-pub static ALPHA_DELAY: Setting = Setting {
-    name: "α of the delays",
-    key: "alpha_delay",
-    option: "--alpha-delay",
-    kind: Kind::Number {
-        range: [0.0, 1e6],
-        whole: false,
-        get: |settings| settings.alpha_delay,
-        set: |settings, alpha| settings.alpha_delay = alpha,
-    },
-    control: Control {
-        place: Place::Slider,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-/// Phase correction: none, by delays, or by signed delays that lead filters realise where negative.
-pub static PHASE: Setting = Setting {
-    name: "phase correction",
-    key: "phase",
-    option: "--phase",
-    kind: Kind::Choice {
-        words: &[
-            ["none", "none"],
-            ["delay", "delay"],
-            ["lead", "delay or lead"],
-        ],
-        get: |settings| settings.phase.index(),
-        set: |settings, index| settings.phase = PhaseCorrection::ALL[index],
-    },
-    control: Control {
-        place: Place::Top,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-/// Source of the D to which the delays are fitted: median of phase over frequency, or line over the
-/// band (M15.2).
-pub static DELAY_FROM: Setting = Setting {
-    name: "delay estimate",
-    key: "delay_from",
-    option: "--delay-from",
-    kind: Kind::Choice {
-        words: &[["median", "median"], ["band", "line over the band"]],
-        get: |settings| settings.delay_from.index(),
-        set: |settings, index| settings.delay_from = DelayFrom::ALL[index],
-    },
-    control: Control {
-        place: Place::Line,
-        applies: |study| study.settings.phase == PhaseCorrection::Delay,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-/// Order of the lead filters: 2 leaves the gain within the band nearly unchanged, 1 raises it
-/// (M15.3).
-pub static LEAD_ORDER: Setting = Setting {
-    name: "order of the lead filters",
-    key: "lead.order",
-    option: "--lead-order",
-    kind: Kind::Choice {
-        words: &[["2", "2"], ["1", "1"]],
-        get: |settings| settings.lead.order.index(),
-        set: |settings, index| settings.lead.order = LeadOrder::ALL[index],
-    },
-    control: Control {
-        place: Place::Line,
-        applies: has_leads,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-fn has_leads(study: &Study) -> bool {
-    study.settings.phase == PhaseCorrection::Lead
+/// One setting: a row of [`SETTINGS`](super::setting_table::SETTINGS).
+#[derive(Debug)]
+pub struct Setting {
+    /// Name in running text: "α of the gains".
+    pub name: &'static str,
+    /// Key in files; a dot separates the keys of nested objects: "lead.n".
+    pub key: &'static str,
+    /// Command-line option: "--alpha".
+    pub option: &'static str,
+    /// Value of the option without an argument; `None` where an argument is required.
+    pub bare: Option<&'static str>,
+    pub unit: Unit,
+    /// Type and range of the value.
+    pub kind: Kind,
+    /// Control in the window.
+    pub control: Control,
 }
 
-/// Parameter `n` of the lead filters: their lag time constant is `1 / (n omega_B)` (M15.3).
-pub static LEAD_POLE: Setting = Setting {
-    name: "n of the lead filters",
-    key: "lead.n",
-    option: "--lead-n",
-    kind: Kind::Number {
-        range: [2.0, 10.0],
-        whole: false,
-        get: |settings| settings.lead.pole,
-        set: |settings, pole| settings.lead.pole = pole,
-    },
-    control: Control {
-        place: Place::Beside,
-        step: 0.05,
-        digits: Digits::Significant,
-        applies: has_leads,
-    },
-    ..DEFAULT
-};
-
-/// Maximum gain of a lead filter at high frequency, as a factor; its range is 0 to 40 dB.
-pub static LEAD_LIMIT: Setting = Setting {
-    name: "R_max of the lead filters",
-    key: "lead.r_max",
-    option: "--lead-r-max",
-    kind: Kind::Number {
-        range: [1.0, 100.0],
-        whole: false,
-        get: |settings| settings.lead.limit,
-        set: |settings, limit| settings.lead.limit = limit,
-    },
-    control: Control {
-        place: Place::Beside,
-        step: 0.1,
-        digits: Digits::Significant,
-        applies: has_leads,
-    },
-    ..DEFAULT
-};
-
-/// Correction of couplings and modes: none, mixing, or mixing and feedback (M16).
-pub static COUPLINGS: Setting = Setting {
-    name: "couplings",
-    key: "couplings",
-    option: "--couplings",
-    kind: Kind::Choice {
-        words: &[
-            ["none", "none"],
-            ["mixing", "mixing"],
-            ["feedback", "mixing and feedback"],
-        ],
-        get: |settings| settings.couplings.index(),
-        set: |settings, index| settings.couplings = CouplingCorrection::ALL[index],
-    },
-    control: Control {
-        place: Place::Top,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-/// Physics parameters that move the physics models: none, the named ones, all, or values set by hand
-/// (M18.5).
-pub static PHYSICS: Setting = Setting {
-    name: "physics parameters",
-    key: "physics",
-    option: "--physics",
-    kind: Kind::Choice {
-        words: &[
-            ["off", "off"],
-            ["named", "the named ones"],
-            ["all", "all"],
-            ["by-hand", "set by hand"],
-        ],
-        get: |settings| settings.physics.index(),
-        set: |settings, index| settings.physics = PhysicsCorrection::ALL[index],
-    },
-    control: Control {
-        place: Place::Top,
-        applies: has_runs,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
-
-fn has_runs(study: &Study) -> bool {
-    let conditions = study.dataset.conditions();
-    conditions
-        .iter()
-        .any(|condition| !condition.moved_models().is_empty())
+/// Unit of a setting in files and on a command line, and its displayed unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Unit {
+    /// Unit in files.
+    pub file: &'static str,
+    /// Displayed unit.
+    pub shown: &'static str,
+    /// Factor from the file unit to the displayed unit.
+    pub scale: f64,
 }
 
-/// Comparison band \[rad/s\].
-pub static BAND: Setting = Setting {
-    name: "frequency band",
-    key: "band_rad_s",
-    option: "--band",
-    unit: Unit {
-        file: "rad/s",
-        shown: "rad/s",
-        scale: 1.0,
+/// Type and range of a setting, with access to its field in [`Settings`].
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    Number {
+        range: [f64; 2],
+        whole: bool,
+        get: fn(&Settings) -> f64,
+        set: fn(&mut Settings, f64),
     },
-    kind: Kind::Range {
-        range: [LEAST_OMEGA, GREATEST_OMEGA],
-        nothing: None,
-        get: |settings| Some([settings.band.min(), settings.band.max()]),
-        set: |settings, ends| {
-            let [min, max] = ends.unwrap_or([settings.band.min(), settings.band.max()]);
-            settings.band = Band::new(min, max)?;
-            Ok(())
-        },
+    /// A number within a range, or no value.
+    Optional {
+        range: [f64; 2],
+        /// The words for no value: on the command line, and in a sentence.
+        nothing: [&'static str; 2],
+        /// Number that the argument "on" sets; `None` if "on" is not accepted.
+        on: Option<f64>,
+        get: fn(&Settings) -> Option<f64>,
+        set: fn(&mut Settings, Option<f64>),
     },
-    control: Control {
-        place: Place::Line,
-        ..DEFAULT_CONTROL
+    /// A lower and an upper number within a range, or no value.
+    Range {
+        range: [f64; 2],
+        /// The words for no value: on the command line, and in a sentence; `None` where a value is
+        /// required.
+        nothing: Option<[&'static str; 2]>,
+        get: fn(&Settings) -> Option<[f64; 2]>,
+        set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
     },
-    ..DEFAULT
-};
+    Flag {
+        /// The words for no and yes, in a sentence.
+        words: [&'static str; 2],
+        get: fn(&Settings) -> bool,
+        set: fn(&mut Settings, bool),
+    },
+    Choice {
+        /// For each choice: word on the command line, and word in a sentence and in the window.
+        words: &'static [[&'static str; 2]],
+        get: fn(&Settings) -> usize,
+        set: fn(&mut Settings, usize),
+    },
+}
 
-/// Number of logarithmically spaced frequencies in the band.
-pub static POINTS: Setting = Setting {
-    name: "number of frequencies",
-    key: "points",
-    option: "--points",
-    kind: Kind::Number {
-        range: [2.0, 5000.0],
-        whole: true,
-        get: |settings| settings.points as f64,
-        set: |settings, points| settings.points = points as usize,
-    },
-    control: Control {
-        place: Place::Line,
-        step: 1.0,
-        digits: Digits::Decimals(0),
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+/// A setting's control in the window.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    pub place: Place,
+    /// Change in the displayed value for each point of dragging.
+    pub step: f64,
+    pub digits: Digits,
+    /// Whether the setting has an effect in a study.
+    pub applies: fn(&Study) -> bool,
+}
 
-/// Quantile from which the bounds are computed, at most the median.
-pub static QUANTILE: Setting = Setting {
-    name: "bound quantile",
-    key: "quantile",
-    option: "--quantile",
-    unit: Unit {
-        file: "",
-        shown: "%",
-        scale: 100.0,
-    },
-    kind: Kind::Number {
-        range: [0.0, 0.5],
-        whole: false,
-        get: |settings| settings.quantile,
-        set: |settings, quantile| settings.quantile = quantile,
-    },
-    control: Control {
-        place: Place::Beside,
-        step: 0.1,
-        digits: Digits::Decimals(1),
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+/// Number format in the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// Three significant digits.
+    Significant,
+    /// This number of decimals.
+    Decimals(usize),
+    /// A gain: three decimals, or two where the third is zero.
+    Gain,
+}
 
-/// Manual gain bounds, -120 to 120 dB; no value restores the quantiles.
-pub static GAIN_BOUNDS: Setting = Setting {
-    name: "gain bounds",
-    key: "gain_bounds",
-    option: "--gain-bounds",
-    kind: Kind::Range {
-        range: [1e-6, 1e6],
-        nothing: Some(["auto", "by the quantile"]),
-        get: |settings| {
-            settings
-                .gain_bounds
-                .map(|bounds| [bounds.lower, bounds.upper])
-        },
-        set: |settings, ends| {
-            settings.gain_bounds = ends.map(|[lower, upper]| GainBounds { lower, upper });
-            Ok(())
-        },
-    },
-    control: Control {
-        place: Place::Line,
-        step: 0.002,
-        digits: Digits::Gain,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+/// Place of the control of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Above the settings table, with a slider.
+    Slider,
+    /// Above the table, on its own line.
+    Top,
+    /// On its own line.
+    Line,
+    /// On the line of the previous setting.
+    Beside,
+    /// Outside the settings panel, in the view that the setting concerns.
+    Elsewhere,
+}
 
-/// Manual upper delay bound \[s\]; no value restores the quantile.
-pub static DELAY_UPPER: Setting = Setting {
-    name: "upper delay bound",
-    key: "delay_upper_s",
-    option: "--delay-bound",
-    unit: Unit {
-        file: "seconds",
-        shown: "ms",
-        scale: 1e3,
-    },
-    kind: Kind::Optional {
-        range: [0.0, 1e3],
-        nothing: ["auto", "by the quantile"],
-        on: None,
-        get: |settings| settings.delay_upper_s,
-        set: |settings, upper_s| settings.delay_upper_s = upper_s,
-    },
-    control: Control {
-        place: Place::Line,
-        step: 0.2,
-        digits: Digits::Decimals(1),
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+/// A setting's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number in the file unit.
+    Number(f64),
+    /// No value, for settings that allow it.
+    Nothing,
+    Range([f64; 2]),
+    Flag(bool),
+    Choice(usize),
+}
 
-/// Maximum mismatch around a loop \[dB\] up to which constrained gains count as consistent.
-pub static AGREEMENT: Setting = Setting {
-    name: "loop tolerance",
-    key: "agreement_db",
-    option: "--agreement",
-    unit: Unit {
-        file: "dB",
-        shown: "dB",
-        scale: 1.0,
-    },
-    kind: Kind::Number {
-        range: [0.0, 3.0],
-        whole: false,
-        get: |settings| settings.agreement_db,
-        set: |settings, tolerance| settings.agreement_db = tolerance,
-    },
-    control: Control {
-        place: Place::Line,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+/// A type whose values are a setting's choices.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// All values, in the same order as the words of [`Kind::Choice`].
+    const ALL: &'static [Self];
 
-/// Average over frequency in J: median or mean.
-pub static COST_AVERAGE: Setting = Setting {
-    name: "average in J",
-    key: "cost_average",
-    option: "--cost-average",
-    kind: Kind::Choice {
-        words: &[["median", "J median"], ["mean", "J mean"]],
-        get: |settings| settings.cost_average.index(),
-        set: |settings, index| settings.cost_average = CostAverage::ALL[index],
-    },
-    control: Control {
-        place: Place::Line,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+    /// Returns the index of the value in [`Self::ALL`].
+    fn index(self) -> usize {
+        Self::ALL
+            .iter()
+            .position(|choice| *choice == self)
+            .unwrap_or_default()
+    }
+}
 
-/// Gain objective: squared errors of the ratios, eq. (7), or squared errors in dB.
-pub static GAIN_OBJECTIVE: Setting = Setting {
-    name: "objective of the gains",
-    key: "gain_objective",
-    option: "--gain-objective",
-    kind: Kind::Choice {
-        words: &[["ratio", "ratio"], ["dB", "dB"]],
-        get: |settings| settings.gain_objective.index(),
-        set: |settings, index| settings.gain_objective = GainObjective::ALL[index],
-    },
-    control: Control {
-        place: Place::Beside,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for PhaseCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
+}
 
-/// Models from which G is computed: the two representatives, or all pairs of kept models.
-pub static GAIN_SOURCE: Setting = Setting {
-    name: "source of G",
-    key: "gain_from",
-    option: "--gain-from",
-    kind: Kind::Choice {
-        words: &[
-            ["representatives", "representatives"],
-            ["mean", "mean of pairs"],
-        ],
-        get: |settings| settings.gain_source.index(),
-        set: |settings, index| settings.gain_source = GainSource::ALL[index],
-    },
-    control: Control {
-        place: Place::Line,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for CouplingCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
+}
 
-/// Confidence level of all error bars, intervals and tests.
-pub static LEVEL: Setting = Setting {
-    name: "confidence level",
-    key: "error_bars.level",
-    option: "--level",
-    unit: Unit {
-        file: "",
-        shown: "%",
-        scale: 100.0,
-    },
-    kind: Kind::Number {
-        range: [0.5, 0.999],
-        whole: false,
-        get: |settings| settings.uncertainty.level,
-        set: |settings, level| settings.uncertainty.level = level,
-    },
-    control: Control {
-        place: Place::Line,
-        step: 0.5,
-        digits: Digits::Decimals(1),
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for PhysicsCorrection {
+    const ALL: &'static [Self] = &[Self::Off, Self::Named, Self::All, Self::ByHand];
+}
 
-/// Maximum degrees of freedom that the identification part of a condition's error bar borrows from
-/// the other conditions.
-pub static POOLING: Setting = Setting {
-    name: "pooling (degrees of freedom borrowed)",
-    key: "error_bars.prior_degrees",
-    option: "--pooling",
-    kind: Kind::Number {
-        range: [0.0, 100.0],
-        whole: false,
-        get: |settings| settings.uncertainty.prior_degrees,
-        set: |settings, degrees| settings.uncertainty.prior_degrees = degrees,
-    },
-    control: Control {
-        place: Place::Beside,
-        step: 0.1,
-        digits: Digits::Significant,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for DelayFrom {
+    const ALL: &'static [Self] = &[Self::Median, Self::Band];
+}
 
-/// Minimum coherence of the frequencies that count in J, G and D.
-pub static COHERENCE: Setting = Setting {
-    name: "coherence threshold",
-    key: "coherence_threshold",
-    option: "--coherence",
-    kind: Kind::Optional {
-        range: [0.0, 1.0],
-        nothing: ["off", "not used"],
-        on: Some(DEFAULT_COHERENCE),
-        get: |settings| settings.coherence_threshold,
-        set: |settings, least| settings.coherence_threshold = least,
-    },
-    control: Control {
-        place: Place::Line,
-        applies: |study| {
-            study.settings.coherence_threshold.is_some() || study.dataset.has_coherence()
-        },
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for CostAverage {
+    const ALL: &'static [Self] = &[Self::Median, Self::Mean];
+}
 
-/// Number of averages assumed for measured responses that do not state it.
-pub static AVERAGES: Setting = Setting {
-    name: "averages of measured responses",
-    key: "error_bars.averages",
-    option: "--averages",
-    kind: Kind::Optional {
-        range: limits::AVERAGES,
-        nothing: ["auto", "as stated in the files"],
-        on: None,
-        get: |settings| settings.uncertainty.averages,
-        set: |settings, averages| settings.uncertainty.averages = averages,
-    },
-    ..DEFAULT
-};
+impl Choice for GainObjective {
+    const ALL: &'static [Self] = &[Self::Ratio, Self::Decibel];
+}
 
-/// Window length assumed for measured responses that do not state it \[s\].
-pub static WINDOW: Setting = Setting {
-    name: "windows of measured responses",
-    key: "error_bars.window_s",
-    option: "--averaging-window",
-    unit: Unit {
-        file: "seconds",
-        shown: "s",
-        scale: 1.0,
-    },
-    kind: Kind::Optional {
-        range: limits::WINDOW_S,
-        nothing: ["auto", "as stated in the files"],
-        on: None,
-        get: |settings| settings.uncertainty.window_s,
-        set: |settings, window_s| settings.uncertainty.window_s = window_s,
-    },
-    ..DEFAULT
-};
+impl Choice for GainSource {
+    const ALL: &'static [Self] = &[Self::Representatives, Self::MeanOfPairs];
+}
 
-/// Whether windows are assumed to overlap by half for measured responses that do not state it.
-pub static HALF_OVERLAP: Setting = Setting {
-    name: "windows overlap",
-    key: "error_bars.half_overlap",
-    option: "--half-overlap",
-    kind: Kind::Flag {
-        words: ["not", "by half"],
-        get: |settings| settings.uncertainty.half_overlap,
-        set: |settings, overlap| settings.uncertainty.half_overlap = overlap,
-    },
-    ..DEFAULT
-};
+impl Choice for LeadOrder {
+    const ALL: &'static [Self] = &[Self::Second, Self::First];
+}
 
-/// Form of the schedule in airspeed: a polynomial of degree 0 to 3, or a lookup table.
-pub static SCHEDULE: Setting = Setting {
-    name: "schedule",
-    key: "schedule.kind",
-    option: "--degree",
-    kind: Kind::Choice {
-        words: &[
-            ["0", "constant"],
-            ["1", "degree 1"],
-            ["2", "degree 2"],
-            ["3", "degree 3"],
-            ["table", "table"],
-        ],
-        get: |settings| settings.schedule.kind.index(),
-        set: |settings, index| settings.schedule.kind = ScheduleKind::ALL[index],
-    },
-    control: Control {
-        place: Place::Top,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for ScheduleKind {
+    const ALL: &'static [Self] = &SCHEDULE_KINDS;
+}
 
-/// Scheduled quantity: `ln k`, or the gain itself.
-pub static SCHEDULED_QUANTITY: Setting = Setting {
-    name: "scheduled quantity",
-    key: "schedule.of",
-    option: "--schedule-of",
-    kind: Kind::Choice {
-        words: &[["ln-k", "of ln k"], ["k", "of k"]],
-        get: |settings| settings.schedule.quantity.index(),
-        set: |settings, index| settings.schedule.quantity = ScheduledQuantity::ALL[index],
-    },
-    control: Control {
-        place: Place::Beside,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for DelayScheduling {
+    const ALL: &'static [Self] = &[Self::Automatic, Self::Always, Self::Never];
+}
 
-/// Whether the schedule has delays too: never, always, or automatically (M11).
-pub static SCHEDULE_DELAYS: Setting = Setting {
-    name: "delays over airspeed",
-    key: "schedule_delays",
-    option: "--schedule-delays",
-    bare: Some("always"),
-    kind: Kind::Choice {
-        words: &[
-            ["automatic", "delays automatic"],
-            ["always", "delays too"],
-            ["never", "no delays"],
-        ],
-        get: |settings| settings.schedule_delays.index(),
-        set: |settings, index| settings.set_delay_scheduling(DelayScheduling::ALL[index]),
-    },
-    control: Control {
-        place: Place::Line,
-        applies: |study| !has_leads(study),
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for ScheduledQuantity {
+    const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
+}
 
-/// Degree of the polynomials for the signed delays.
-pub static TAU_DEGREE: Setting = Setting {
-    name: "degree of the signed delays",
-    key: "schedule.tau_degree",
-    option: "--tau-degree",
-    kind: Kind::Choice {
-        words: &[
-            ["0", "τ constant"],
-            ["1", "τ degree 1"],
-            ["2", "τ degree 2"],
-            ["3", "τ degree 3"],
-        ],
-        get: |settings| settings.schedule.tau_degree,
-        set: |settings, degree| settings.schedule.tau_degree = degree,
-    },
-    control: Control {
-        place: Place::Line,
-        applies: has_leads,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl Choice for Option<SecondVariable> {
+    const ALL: &'static [Self] = &[
+        None,
+        Some(SecondVariable::Altitude),
+        Some(SecondVariable::Mass),
+    ];
+}
 
-/// Maximum difference between consecutive airspeeds that count as equal \[kt\].
-pub static AIRSPEED_TOLERANCE: Setting = Setting {
-    name: "airspeed tolerance",
-    key: "schedule.airspeed_tolerance_kt",
-    option: "--airspeed-tolerance",
-    unit: Unit {
-        file: "kt",
-        shown: "kt",
-        scale: 1.0,
-    },
-    kind: Kind::Number {
-        range: [0.0, 100.0],
-        whole: false,
-        get: |settings| settings.schedule.airspeed_tolerance_kt,
-        set: |settings, tolerance_kt| settings.schedule.airspeed_tolerance_kt = tolerance_kt,
-    },
-    control: Control {
-        place: Place::Line,
-        step: 0.1,
-        digits: Digits::Decimals(1),
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl<C: Choice> From<C> for Value {
+    fn from(choice: C) -> Self {
+        Self::Choice(choice.index())
+    }
+}
 
-/// Scheduling variable besides airspeed: none, altitude or mass.
-pub static SECOND_VARIABLE: Setting = Setting {
-    name: "second variable",
-    key: "schedule.second_variable",
-    option: "--second-variable",
-    kind: Kind::Choice {
-        words: &[
-            ["none", "airspeed only"],
-            ["altitude", "and altitude"],
-            ["mass", "and mass"],
-        ],
-        get: |settings| settings.schedule.second.index(),
-        set: |settings, index| settings.schedule.second = <Option<SecondVariable>>::ALL[index],
-    },
-    control: Control {
-        place: Place::Line,
-        ..DEFAULT_CONTROL
-    },
-    ..DEFAULT
-};
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
 
-/// Every setting except the constrained and ignored responses, in display order.
-pub static SETTINGS: [&Setting; 30] = [
-    &ALPHA_GAIN,
-    &ALPHA_DELAY,
-    &PHASE,
-    &DELAY_FROM,
-    &LEAD_ORDER,
-    &LEAD_POLE,
-    &LEAD_LIMIT,
-    &PHYSICS,
-    &COUPLINGS,
-    &BAND,
-    &POINTS,
-    &QUANTILE,
-    &GAIN_BOUNDS,
-    &DELAY_UPPER,
-    &AGREEMENT,
-    &COST_AVERAGE,
-    &GAIN_OBJECTIVE,
-    &GAIN_SOURCE,
-    &LEVEL,
-    &POOLING,
-    &COHERENCE,
-    &SCHEDULE,
-    &SCHEDULED_QUANTITY,
-    &SECOND_VARIABLE,
-    &AIRSPEED_TOLERANCE,
-    &SCHEDULE_DELAYS,
-    &TAU_DEGREE,
-    &AVERAGES,
-    &WINDOW,
-    &HALF_OVERLAP,
-];
+impl From<usize> for Value {
+    fn from(count: usize) -> Self {
+        Self::Number(count as f64)
+    }
+}
 
-impl Settings {
-    /// Checks every value against the range of its setting.
-    ///
-    /// # Errors
-    /// The first setting with an invalid value, and why the value is refused.
-    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
-        for setting in SETTINGS {
-            setting
-                .check(setting.value(self))
-                .map_err(|refusal| (setting, refusal))?;
+impl From<bool> for Value {
+    fn from(flag: bool) -> Self {
+        Self::Flag(flag)
+    }
+}
+
+impl From<Option<f64>> for Value {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Self::Nothing, Self::Number)
+    }
+}
+
+impl From<Band> for Value {
+    fn from(band: Band) -> Self {
+        Self::Range([band.min(), band.max()])
+    }
+}
+
+impl From<Option<GainBounds>> for Value {
+    fn from(bounds: Option<GainBounds>) -> Self {
+        bounds.map_or(Self::Nothing, |bounds| {
+            Self::Range([bounds.lower, bounds.upper])
+        })
+    }
+}
+
+impl PartialEq for Setting {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
+}
+
+impl Setting {
+    /// Returns the present value.
+    pub fn value(&self, settings: &Settings) -> Value {
+        match self.kind {
+            Kind::Number { get, .. } => Value::Number(get(settings)),
+            Kind::Optional { get, .. } => get(settings).into(),
+            Kind::Range { get, .. } => get(settings).map_or(Value::Nothing, Value::Range),
+            Kind::Flag { get, .. } => Value::Flag(get(settings)),
+            Kind::Choice { get, .. } => Value::Choice(get(settings)),
+        }
+    }
+
+    /// Sets a value, or refuses a value outside its range and leaves the settings unchanged.
+    pub(crate) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
+        self.check(value)?;
+        match (self.kind, value) {
+            (Kind::Number { set, .. }, Value::Number(value)) => set(settings, value),
+            (Kind::Optional { set, .. }, Value::Number(value)) => set(settings, Some(value)),
+            (Kind::Optional { set, .. }, _) => set(settings, None),
+            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends))?,
+            (Kind::Range { set, .. }, _) => set(settings, None)?,
+            (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
+            (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
+            _ => {}
         }
         Ok(())
     }
+
+    /// Checks a value, and refuses one that the setting does not allow.
+    pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
+        match (self.kind, value) {
+            (Kind::Number { range, whole, .. }, Value::Number(found)) => {
+                self.check_number(found, range, whole)
+            }
+            (Kind::Optional { range, .. }, Value::Number(found)) => {
+                self.check_number(found, range, false)
+            }
+            (Kind::Range { range, nothing, .. }, Value::Range(ends)) => {
+                if nothing.is_none() {
+                    // The band must have a value; [`Band::new`] describes its range in the refusal.
+                    Band::new(ends[0], ends[1])?;
+                    return Ok(());
+                }
+                self.check_ends(ends, range)
+            }
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                let range = [0.0, words.len() as f64 - 1.0];
+                self.check_range("a whole number", index as f64, range)
+            }
+            (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
+            (Kind::Range { nothing, .. }, Value::Nothing) if nothing.is_some() => Ok(()),
+            _ => Err(EditRefusal::NotAValue { setting: self.name }),
+        }
+    }
+
+    fn check_number(&self, found: f64, range: [f64; 2], whole: bool) -> Result<(), EditRefusal> {
+        if !whole {
+            return self.check_range(&self.a_number(), found, range);
+        }
+        if found.fract() != 0.0 {
+            return Err(self.out_of_range("a whole number", found, range));
+        }
+        self.check_range("a whole number", found, range)
+    }
+
+    fn check_ends(&self, ends: [f64; 2], range: [f64; 2]) -> Result<(), EditRefusal> {
+        let [lower, upper] = ends;
+        self.check_range("a lower end", lower, range)?;
+        self.check_range("an upper end", upper, [lower, range[1]])
+    }
+
+    fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
+        let is_within = (range[0]..=range[1]).contains(&found);
+        if is_within {
+            Ok(())
+        } else {
+            Err(self.out_of_range(what, found, range))
+        }
+    }
+
+    fn out_of_range(&self, what: &str, found: f64, [least, most]: [f64; 2]) -> EditRefusal {
+        let expected = format!("{what} from {} to {}", number(least), number(most));
+        EditRefusal::OutOfRange {
+            setting: self.name,
+            expected,
+            found,
+        }
+    }
+
+    fn a_number(&self) -> String {
+        if self.unit.file.is_empty() {
+            "a number".to_owned()
+        } else {
+            format!("a number of {}", self.unit.file)
+        }
+    }
+
+    /// Returns the present value in words.
+    pub fn words(&self, settings: &Settings) -> String {
+        self.text(self.value(settings))
+    }
+
+    /// Formats a value, with at most six significant digits: "20 ms", "by the quantile", "median".
+    pub fn text(&self, value: Value) -> String {
+        let unit = match self.unit.shown {
+            "" => String::new(),
+            shown => format!(" {shown}"),
+        };
+        let shown = |value: f64| six_digits(self.unit.scale * value);
+        match (self.kind, value) {
+            (_, Value::Number(value)) => format!("{}{unit}", shown(value)),
+            (_, Value::Range([lower, upper])) => {
+                format!("{} to {}{unit}", shown(lower), shown(upper))
+            }
+            (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
+            (Kind::Optional { nothing, .. }, _) => nothing[1].to_owned(),
+            (
+                Kind::Range {
+                    nothing: Some(nothing),
+                    ..
+                },
+                _,
+            ) => nothing[1].to_owned(),
+            _ => String::new(),
+        }
+    }
+
+    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
+    pub fn syntax(&self) -> String {
+        match self.kind {
+            Kind::Number { .. } => "NUMBER".to_owned(),
+            Kind::Optional { nothing, on, .. } => {
+                let on = if on.is_some() { "|on" } else { "" };
+                format!("{}{on}|NUMBER", nothing[0])
+            }
+            Kind::Range { .. } => "LO HI".to_owned(),
+            Kind::Flag { .. } => String::new(),
+            Kind::Choice { words, .. } => option_words(words).join("|"),
+        }
+    }
+
+    /// Returns the option with its arguments for a value, such that [`Self::read`] returns the value;
+    /// `None` for a flag that is not set, which no option expresses.
+    pub fn option_words(&self, value: Value) -> Option<Vec<String>> {
+        let arguments = match (self.kind, value) {
+            (Kind::Flag { .. }, Value::Flag(true)) => Vec::new(),
+            (Kind::Flag { .. }, _) => return None,
+            (_, Value::Number(value)) => vec![value.to_string()],
+            (_, Value::Range(ends)) => ends.map(|end| end.to_string()).to_vec(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                vec![words.get(index)?[0].to_owned()]
+            }
+            (Kind::Optional { nothing, .. }, _) => vec![nothing[0].to_owned()],
+            (Kind::Range { nothing, .. }, _) => vec![nothing?[0].to_owned()],
+            _ => return None,
+        };
+        // The argument of an option that may stand alone is joined to it.
+        if let ([argument], true) = (&arguments[..], self.bare.is_some()) {
+            return Some(vec![format!("{}={argument}", self.option)]);
+        }
+        let mut words = vec![self.option.to_owned()];
+        words.extend(arguments);
+        Some(words)
+    }
+
+    /// Parses the value from the command line; a flag without argument is set.
+    ///
+    /// # Errors
+    /// The expected values and the text found.
+    pub fn read(&self, arguments: &[&str]) -> Result<Value, String> {
+        match (self.kind, arguments) {
+            (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
+            (Kind::Number { range, whole, .. }, [text]) => {
+                let number = if whole {
+                    read_whole(text, range)?
+                } else {
+                    read_number(text)?
+                };
+                Ok(Value::Number(number))
+            }
+            (Kind::Optional { nothing, on, .. }, [text]) => read_optional(text, nothing[0], on),
+            (Kind::Range { nothing, .. }, [word])
+                if nothing.is_some_and(|nothing| nothing[0] == *word) =>
+            {
+                Ok(Value::Nothing)
+            }
+            (Kind::Range { .. }, [lower, upper]) => {
+                Ok(Value::Range([read_number(lower)?, read_number(upper)?]))
+            }
+            (Kind::Choice { words, .. }, [text]) => read_choice(text, words),
+            _ => Err(format!(
+                "expected {}, found {}",
+                self.syntax(),
+                arguments.join(" ")
+            )),
+        }
+    }
+}
+
+fn read_number(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse()
+        .map_err(|_| format!("expected a number, found {text}"))
+}
+
+fn read_whole(text: &str, range: [f64; 2]) -> Result<f64, String> {
+    let [least, most] = range;
+    if let Ok(count) = text.trim().parse::<usize>() {
+        let count = count as f64;
+        if (least..=most).contains(&count) {
+            return Ok(count);
+        }
+    }
+    Err(format!(
+        "expected a whole number from {least} to {most}, found {text}"
+    ))
+}
+
+/// Parses a number, the word for no value, or "on" if it stands for a number.
+fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, String> {
+    if text == nothing {
+        return Ok(Value::Nothing);
+    }
+    if let Some(on) = on
+        && text == "on"
+    {
+        return Ok(Value::Number(on));
+    }
+    text.parse().map(Value::Number).map_err(|_| {
+        let on = if on.is_some() { ", on" } else { "" };
+        format!("expected {nothing}{on} or a number, found {text}")
+    })
+}
+
+fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
+    let words = option_words(words);
+    if let Some(index) = words.iter().position(|word| *word == text) {
+        return Ok(Value::Choice(index));
+    }
+    let (last, others) = words.split_last().unwrap_or((&"", &[]));
+    let others = others.join(", ");
+    Err(format!("expected {others} or {last}, found {text}"))
+}
+
+/// Returns the words of the choices on the command line.
+fn option_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
+    words.iter().map(|[option, _]| *option).collect()
 }

@@ -298,17 +298,9 @@ impl Settings {
         self.ignored.map(|_, ignored| !ignored)
     }
 
-    /// Describes the models from which G is computed. With leads the setting has no effect, because
-    /// the gains are then fitted to the representatives' difference after the leads (M15.5); the
-    /// description says so.
-    pub fn gain_source_words(&self) -> String {
-        let words = self.gain_source.words();
-        if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
-            return format!(
-                "{words}, without effect: with leads, G is computed from the difference between \
-                the representatives that remains after the leads"
-            );
-        }
-        words.to_owned()
+    /// Returns whether the source of G is requested but has no effect: with leads, the gains are
+    /// fitted to the representatives' difference after the leads (M15.5).
+    pub fn is_gain_source_idle(&self) -> bool {
+        self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead
     }
 }

@@ -20,11 +20,12 @@ use super::couplings_tests::{
 };
 use super::job::Job;
 use crate::decisions::edit::Edit;
-use crate::decisions::setting;
+use crate::decisions::setting_table;
 use crate::decisions::settings::{CouplingCorrection, PhaseCorrection};
 use crate::decisions::study::Study;
 use crate::reference_tests::{list, number, numbers};
-use crate::results::couplings_assessment::{AxisCost, CouplingsAssessment};
+use crate::results::correction_costs::AxisCost;
+use crate::results::couplings_assessment::CouplingsAssessment;
 use crate::stages::engine::Engine;
 
 /// The assessment of mixing and feedback of the reference dataset.
@@ -266,10 +267,10 @@ fn small_study(
         Dataset::new(header, (1..=conditions).map(condition).collect()).unwrap(),
     ));
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::None))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::None))
         .unwrap();
     study
-        .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+        .apply(&setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
         .unwrap();
     study
 }
@@ -353,7 +354,7 @@ fn conditions_that_want_leads_are_counted_where_none_are_given() {
     assert_eq!(ASSESSED.want_leads, 0, "leads are given");
     let mut study = EXAMPLE.analysis.study.clone();
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Delay))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Delay))
         .unwrap();
     let assessed = engine()
         .assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved)

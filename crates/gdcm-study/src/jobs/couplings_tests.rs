@@ -24,7 +24,7 @@ use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
 use crate::decisions::edit::Edit;
-use crate::decisions::setting;
+use crate::decisions::setting_table;
 use crate::decisions::settings::{CouplingCorrection, PhaseCorrection};
 use crate::decisions::study::Study;
 use crate::reference_tests::{dataset_of, list, matrix, number, numbers, reference_dataset};
@@ -51,7 +51,7 @@ pub(crate) static FEEDBACK: LazyLock<CouplingFit> =
 fn with_leads(dataset: Arc<Dataset>) -> Analysis {
     let mut study = Study::new(dataset);
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
         .unwrap();
     Engine::default().analyze(&study, &Unobserved).unwrap()
 }
@@ -420,7 +420,9 @@ fn a_fit_is_the_same_to_the_last_bit_whoever_carries_it_out() {
 /// Returns the study of the reference dataset with leads and these couplings.
 fn study(couplings: CouplingCorrection) -> Study {
     let mut study = EXAMPLE.analysis.study.clone();
-    study.apply(&setting::COUPLINGS.to(couplings)).unwrap();
+    study
+        .apply(&setting_table::COUPLINGS.to(couplings))
+        .unwrap();
     study
 }
 
@@ -521,8 +523,8 @@ fn without_couplings_every_number_is_as_if_there_were_none() {
 #[test]
 fn a_drag_of_the_gains_weight_does_not_fit_again() {
     let mut study = study(CouplingCorrection::MixingAndFeedback);
-    study.apply(&setting::ALPHA_GAIN.to(0.2)).unwrap();
-    study.apply(&setting::AGREEMENT.to(0.1)).unwrap();
+    study.apply(&setting_table::ALPHA_GAIN.to(0.2)).unwrap();
+    study.apply(&setting_table::AGREEMENT.to(0.1)).unwrap();
     let analysis = analyze(&mut engine(), &study);
     assert!(Arc::ptr_eq(
         analysis.fitted_couplings().unwrap(),

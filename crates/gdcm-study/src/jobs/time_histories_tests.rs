@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_method::requirements::{Tolerance, ToleranceTable};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, StateSpace};
 use gdcm_model::executor::Sequential;
@@ -200,8 +201,8 @@ fn what_is_not_compared_is_said() {
     );
     assert!(reasons(&found).iter().any(|why| matches!(
         why,
-        MissingReason::ToleranceNotApplied(why)
-            if why.to_string() == "\"thrust\" is not compared: there is no output \"T\""
+        MissingReason::ToleranceNotApplied(ToleranceError::NoChannel { quantity, channel })
+            if quantity == "thrust" && channel == "T"
     )));
     assert!(
         found.records.iter().all(|of| of.tolerances.len() == 1),

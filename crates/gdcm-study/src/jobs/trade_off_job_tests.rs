@@ -7,7 +7,7 @@ use gdcm_model::progress::Unobserved;
 use super::couplings_tests::EXAMPLE;
 use super::job::Job;
 use super::trade_off_job::{TradeOffJob, TradeOffPoint};
-use crate::decisions::setting;
+use crate::decisions::setting_table;
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 use crate::results::analysis::Analysis;
@@ -17,8 +17,8 @@ const CONDITION: ConditionId = ConditionId(10);
 
 fn analysis(engine: &mut Engine, phase: PhaseCorrection, alpha: f64) -> Analysis {
     let mut study = Study::new(EXAMPLE.dataset.clone());
-    study.apply(&setting::PHASE.to(phase)).unwrap();
-    study.apply(&setting::ALPHA_GAIN.to(alpha)).unwrap();
+    study.apply(&setting_table::PHASE.to(phase)).unwrap();
+    study.apply(&setting_table::ALPHA_GAIN.to(alpha)).unwrap();
     engine.analyze(&study, &Unobserved).unwrap()
 }
 

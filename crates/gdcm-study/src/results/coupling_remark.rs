@@ -8,7 +8,8 @@ use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::couplings::{LoopMargin, Unknown};
 use gdcm_model::dataset::{ConditionId, Pair};
 
-use super::couplings_assessment::{AxisCost, CouplingCost, NoPoles, UnstablePole};
+use super::correction_costs::{AxisCost, CorrectionCost};
+use super::couplings_assessment::{NoPoles, UnstablePole};
 use super::remark_kind::RemarkKind;
 use crate::decisions::settings::CouplingCorrection;
 
@@ -127,7 +128,7 @@ impl OffAxisBenefit {
     pub(super) fn new(
         couplings: CouplingCorrection,
         source: CostSource,
-        cost: CouplingCost,
+        cost: CorrectionCost,
     ) -> Option<Self> {
         let AxisCost { on_axis, others } = cost.with;
         let on_axis = match (cost.without.on_axis, on_axis) {

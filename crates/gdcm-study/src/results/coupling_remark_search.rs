@@ -7,8 +7,9 @@ use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin};
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
 
 use super::analysis::Analysis;
+use super::correction_costs::CorrectionCost;
 use super::coupling_remark::{CostSource, CouplingRemark, FeedbackMeaning, OffAxisBenefit};
-use super::couplings_assessment::{CouplingCost, CouplingsAssessment, UnstablePole};
+use super::couplings_assessment::{CouplingsAssessment, UnstablePole};
 use crate::decisions::settings::CouplingCorrection;
 
 /// Maximum number of entries reported per matrix; the largest come first.
@@ -141,7 +142,7 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<CouplingRemark
     let cost = assessment
         .costs
         .left_out
-        .filter(CouplingCost::is_worth_it)?;
+        .filter(CorrectionCost::is_worth_it)?;
     Some(CouplingRemark::Offered {
         couplings: assessment.couplings,
         without: cost.without.others?,

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{Complex, DMatrix};
-use serde::Serialize;
 
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::couplings::{CouplingBars, LeftOutFit, LoopMargin, PoleShift, PoleShiftError};
 use gdcm_model::dataset::{Band, ConditionId, Pair, PairTable};
 
+use super::correction_costs::{CorrectionCost, CorrectionCosts};
 use super::fitted_couplings::FittedCouplings;
 use crate::decisions::settings::CouplingCorrection;
 
@@ -44,7 +44,7 @@ pub struct ConditionCouplings {
     /// `20 log10 |H~ - H| / |H|` at ten times the upper end of the band, response by response.
     pub above_band_db: PairTable<Option<f64>>,
     /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit.
-    pub left_out: Option<CouplingCost>,
+    pub left_out: Option<CorrectionCost>,
     /// The other kept physics models with matrices for which the feedback loop cannot be closed.
     pub refused: Vec<RefusedModel>,
 }
@@ -99,7 +99,7 @@ pub struct CouplingsAssessment {
     /// The fits without each condition in turn; empty with fewer than three conditions.
     pub left_out_fits: Vec<LeftOutFit>,
     /// J without and with the couplings.
-    pub costs: CouplingCosts,
+    pub costs: CorrectionCosts,
     /// Frequencies of the singular values \[rad/s\]: from a tenth of the band's lower end to ten
     /// times its upper end.
     pub omega: Arc<[f64]>,
@@ -153,7 +153,7 @@ impl CouplingsAssessment {
 
     /// Returns J without and with couplings, by which their benefit is judged: for conditions left
     /// out, or under the schedule where none was left out.
-    pub fn deciding_cost(&self) -> CouplingCost {
+    pub fn deciding_cost(&self) -> CorrectionCost {
         self.costs.left_out.unwrap_or(self.costs.scheduled)
     }
 }
@@ -197,50 +197,5 @@ impl ConditionCouplings {
             .marked()
             .filter_map(|pair| Some((pair, self.above_band_db[pair]?)));
         known.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-}
-
-/// Mean J on-axis and off-axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct AxisCost {
-    /// Mean over the on-axis responses; `None` where none can be compared.
-    pub on_axis: Option<f64>,
-    /// Mean over the off-axis responses; `None` where none can be compared.
-    pub others: Option<f64>,
-}
-
-/// Mean J without and with couplings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct CouplingCost {
-    pub without: AxisCost,
-    pub with: AxisCost,
-}
-
-/// Mean J over the conditions, for each response that can be compared both without and with
-/// couplings (M16.4).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct CouplingCosts {
-    /// J of the uncorrected physics representatives.
-    pub uncorrected: AxisCost,
-    /// J under each condition's own correction.
-    pub own: CouplingCost,
-    /// J under the schedule at the airspeed of each condition.
-    pub scheduled: CouplingCost,
-    /// J of each condition when it is left out of the fits of couplings, channel delays and
-    /// schedule; `None` with fewer than three conditions.
-    pub left_out: Option<CouplingCost>,
-}
-
-impl CouplingCost {
-    /// Maximum ratio of off-axis J with couplings to off-axis J without, at which couplings are
-    /// worthwhile.
-    const WORTH: f64 = 0.9;
-
-    /// Returns whether couplings reduce the off-axis J by at least a tenth.
-    pub fn is_worth_it(&self) -> bool {
-        match (self.with.others, self.without.others) {
-            (Some(with), Some(without)) => with <= Self::WORTH * without,
-            _ => false,
-        }
     }
 }

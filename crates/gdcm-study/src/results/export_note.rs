@@ -96,6 +96,8 @@ pub enum ExportNote {
     NoSchedule { why: ScheduleError },
     /// The error bars are not computed.
     NoErrorBars,
+    /// The study applies no physics parameters, so that their table is empty.
+    NoPhysicsParameters,
 }
 
 /// A change of the study or of the export that removes or reduces what a note states.
@@ -132,6 +134,7 @@ impl ExportNote {
             Self::ConditionsWithoutResult { .. } => "conditions-without-result",
             Self::NoSchedule { .. } => "no-schedule",
             Self::NoErrorBars => "no-error-bars",
+            Self::NoPhysicsParameters => "no-physics-parameters",
         }
     }
 

@@ -36,6 +36,8 @@ pub enum NotDetermined {
         role: RequirementRole,
         why: NoBandwidth,
     },
+    /// Bandwidth and phase delay lie above the end of a level boundary.
+    AboveBoundaries(RequirementRole),
     /// The condition has no flight record that was held out of the identification.
     NoHeldOutRecord,
     /// The quantity could not be compared with the held-out records.
@@ -56,6 +58,7 @@ impl NotDetermined {
         match self {
             Self::NoModel(_) => "no-model",
             Self::Bandwidth { why, .. } => why.code(),
+            Self::AboveBoundaries(_) => "above-boundaries",
             Self::NoHeldOutRecord => "no-held-out-record",
             Self::NotCompared => "not-compared",
             Self::NoMode => "no-mode",
@@ -70,7 +73,7 @@ impl NotDetermined {
 /// Value of a model, and its verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoleCell {
-    /// Fraction, seconds or cost ([`unit`](super::grid_requirement::Requirement::unit)); `None` where it is not determined.
+    /// Fraction, seconds, cost or level ([`unit`](super::grid_requirement::Requirement::unit)); `None` where it is not determined.
     pub value: Option<f64>,
     pub verdict: CellVerdict,
 }
@@ -107,8 +110,8 @@ impl RequirementLimit {
             Self::AtMost(limit) => value <= *limit,
             Self::AtLeast(limit) => value >= *limit,
             Self::Tolerance(_) => value <= 1.0,
-            // A mode has a verdict of its own.
-            Self::Mode(_) | Self::None => return CellVerdict::NoTolerance,
+            // Levels and modes have verdicts of their own.
+            Self::IdentifiedLevel | Self::Mode(_) | Self::None => return CellVerdict::NoTolerance,
         };
         if is_met {
             CellVerdict::Met

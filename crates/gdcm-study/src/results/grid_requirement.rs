@@ -25,6 +25,8 @@ impl RequirementGroup {
 pub enum Requirement {
     Bandwidth(Pair),
     PhaseDelay(Pair),
+    /// Level of bandwidth and phase delay by the level boundaries of the settings.
+    Level(Pair),
     /// Peak error in time; the index is that of the row in the tolerance table.
     PeakError(usize),
     ModeFrequency(ModeName),
@@ -42,13 +44,17 @@ pub enum RequirementUnit {
     Milliseconds,
     /// The value is a cost without unit.
     Cost,
+    /// The value is the number of a level.
+    Level,
 }
 
 impl Requirement {
     /// Returns the group of rows to which the requirement belongs.
     pub fn group(self) -> RequirementGroup {
         match self {
-            Self::Bandwidth(_) | Self::PhaseDelay(_) => RequirementGroup::Bandwidth,
+            Self::Bandwidth(_) | Self::PhaseDelay(_) | Self::Level(_) => {
+                RequirementGroup::Bandwidth
+            }
             Self::PeakError(_) => RequirementGroup::InTime,
             Self::ModeFrequency(_) => RequirementGroup::Modes,
             Self::MeanJOnAxis | Self::MeanJAll | Self::MuadShareOnAxis => RequirementGroup::Summary,
@@ -59,6 +65,7 @@ impl Requirement {
     pub fn unit(self) -> RequirementUnit {
         match self {
             Self::PhaseDelay(_) => RequirementUnit::Milliseconds,
+            Self::Level(_) => RequirementUnit::Level,
             Self::MeanJOnAxis | Self::MeanJAll => RequirementUnit::Cost,
             Self::Bandwidth(_)
             | Self::PeakError(_)
@@ -72,6 +79,7 @@ impl Requirement {
         match self {
             Self::Bandwidth(_) => "bandwidth",
             Self::PhaseDelay(_) => "phase-delay",
+            Self::Level(_) => "level",
             Self::PeakError(_) => "peak-error",
             Self::ModeFrequency(_) => "mode-frequency",
             Self::MeanJOnAxis => "mean-j-on-axis",
@@ -84,7 +92,7 @@ impl Requirement {
     /// its output; `None` for modes and summary costs.
     pub fn pair(self, dataset: &Dataset, tolerances: &ToleranceTable) -> Option<Pair> {
         match self {
-            Self::Bandwidth(pair) | Self::PhaseDelay(pair) => Some(pair),
+            Self::Bandwidth(pair) | Self::PhaseDelay(pair) | Self::Level(pair) => Some(pair),
             Self::PeakError(row) => {
                 let channel = &tolerances.rows().get(row)?.channel;
                 let outputs = dataset.outputs();
@@ -106,6 +114,8 @@ pub enum RequirementLimit {
     Within(f64),
     AtMost(f64),
     AtLeast(f64),
+    /// The level of the identified model.
+    IdentifiedLevel,
     /// Tolerance of a time history: a peak error of at most 1.
     Tolerance(Tolerance),
     /// Tolerances of a mode: the period, and the time to half amplitude or the damping ratio.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use gdcm_method::requirements::level_boundary::AssessedLevel;
 use gdcm_method::requirements::{ModeName, ModeVerdict};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 
@@ -92,7 +93,8 @@ impl GridSource<'_> {
         conditions
     }
 
-    /// Returns bandwidth and phase delay of each on-axis response in which any model has either.
+    /// Returns bandwidth and phase delay of each on-axis response in which any model has either, and
+    /// the level where boundaries give levels for its axis.
     fn bandwidth_rows(&self) -> Vec<RowSource> {
         let mut rows = Vec::new();
         for pair in self.dataset.measuring_pairs().marked() {
@@ -111,6 +113,13 @@ impl GridSource<'_> {
                 requirement: Requirement::PhaseDelay(pair),
                 limit: RequirementLimit::Within(self.limits().phase_delay_s),
             });
+            let output = &self.dataset.outputs()[pair.output].name;
+            if self.settings.levels.assesses(output) {
+                rows.push(RowSource {
+                    requirement: Requirement::Level(pair),
+                    limit: RequirementLimit::IdentifiedLevel,
+                });
+            }
         }
         rows
     }
@@ -193,6 +202,7 @@ impl GridSource<'_> {
         let found = match requirement {
             Requirement::Bandwidth(pair) => self.bandwidth_change(condition, pair, role),
             Requirement::PhaseDelay(pair) => self.phase_delay_change(condition, pair, role),
+            Requirement::Level(pair) => return self.level_cell(condition, pair, role),
             Requirement::PeakError(row) => self.peak_error(condition, row, role),
             Requirement::ModeFrequency(name) => return self.mode_cell(condition, name, role),
             Requirement::MeanJOnAxis | Requirement::MeanJAll | Requirement::MuadShareOnAxis => {
@@ -231,6 +241,39 @@ impl GridSource<'_> {
         let model_s = known_metric(model, model.phase_delay_s, "phase_delay_s")?;
         let flown_s = known_metric(flown, flown.phase_delay_s, "phase_delay_s")?;
         Ok(model_s - flown_s)
+    }
+
+    /// Compares the level of a model with that of the identified model.
+    fn level_cell(&self, condition: ConditionId, pair: Pair, role: RequirementRole) -> RoleCell {
+        let level = match self.level(condition, pair, role) {
+            Ok(level) => level,
+            Err(why) => return RoleCell::absent(why),
+        };
+        let verdict = match self.level(condition, pair, RequirementRole::Identified) {
+            Ok(flown) if flown == level => CellVerdict::Met,
+            Ok(_) => CellVerdict::Outside,
+            Err(why) => CellVerdict::NotDetermined(why),
+        };
+        RoleCell {
+            value: Some(f64::from(level)),
+            verdict,
+        }
+    }
+
+    /// Returns the number of a model's level.
+    fn level(
+        &self,
+        condition: ConditionId,
+        pair: Pair,
+        role: RequirementRole,
+    ) -> Result<u32, NotDetermined> {
+        let model = self.bandwidth_finding(condition, pair, role)?;
+        known_metric(model, model.omega_bw_rad_s, "omega_bw_rad_s")?;
+        known_metric(model, model.phase_delay_s, "phase_delay_s")?;
+        model
+            .level(&self.settings.levels)
+            .and_then(AssessedLevel::number)
+            .ok_or(NotDetermined::AboveBoundaries(role))
     }
 
     fn bandwidth_finding(

@@ -9,10 +9,13 @@ use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{Band, ConditionId};
 
 use super::applied_physics::AppliedPhysics;
-use super::couplings_assessment::{AxisCost, CouplingCost, CouplingCosts, NoPoles};
+use super::correction_costs::{AxisCost, CorrectionCost, CorrectionCosts};
+use super::couplings_assessment::NoPoles;
 use super::fitted_couplings::FittedCouplings;
 use super::physics_findings::PhysicsFailure;
 use super::rerun_check::RerunCheck;
+use super::response_shapes::ResponseShapes;
+use super::without_and_with::WithoutAndWith;
 use crate::decisions::physics_settings::PhysicsCorrection;
 
 /// Assessment, or why the parameters are unavailable.
@@ -28,8 +31,10 @@ pub struct PhysicsAssessment {
     /// Confidence level of the intervals.
     pub level: f64,
     pub band: Band,
+    /// Frequencies of [`ConditionPhysics::responses`] \[rad/s\].
+    pub omega: Arc<[f64]>,
     /// J without and with the parameters, each with the other corrections of the study.
-    pub costs: CouplingCosts,
+    pub costs: CorrectionCosts,
     /// J of the moved physics representatives without any other correction.
     pub moved_uncorrected: AxisCost,
     /// Effect on each analysed condition.
@@ -51,15 +56,11 @@ pub struct ConditionPhysics {
     pub delays_s: WithoutAndWith<Channels<f64>>,
     /// Poles of the physics representative before and after, or why they are unavailable.
     pub poles: Result<Vec<PoleShift>, NoPoles>,
+    /// Responses before and after, the most improved first; empty if the physics models of the
+    /// condition are not moved.
+    pub responses: Vec<ResponseShapes>,
     /// J of the condition left out of the fit and the schedule; `None` if it takes no part in them.
-    pub left_out: Option<CouplingCost>,
-}
-
-/// A result without and with the parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WithoutAndWith<T> {
-    pub without: T,
-    pub with: T,
+    pub left_out: Option<CorrectionCost>,
 }
 
 impl PhysicsAssessment {

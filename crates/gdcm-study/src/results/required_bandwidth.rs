@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use gdcm_method::requirements::BandwidthRule;
 use gdcm_method::requirements::attitude_response::AttitudeResponseError;
 use gdcm_method::requirements::bandwidth::{Bandwidth, Metric, NoMetric};
+use gdcm_method::requirements::level_boundary::AssessedLevel;
+use gdcm_method::requirements::{BandwidthRule, LevelBoundaries};
 use gdcm_method::uncertainty::student_quantile;
 use gdcm_model::dataset::{ConditionId, Pair};
 
@@ -150,6 +151,12 @@ impl BandwidthFinding {
             (delay, self.phase_delay_s),
             (DEPARTURE, self.phase_departure_deg),
         ]
+    }
+
+    /// Returns the level of bandwidth and phase delay; `None` if either is missing, or if no boundary
+    /// gives levels for the output.
+    pub fn level(&self, levels: &LevelBoundaries) -> Option<AssessedLevel> {
+        levels.level(&self.output, self.omega_bw_rad_s?, self.phase_delay_s?)
     }
 
     /// Returns whether a metric depends on the response above the band.

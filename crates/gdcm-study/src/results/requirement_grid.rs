@@ -4,6 +4,7 @@
 //! ```text
 //! bandwidth     omega_BW / omega_BW of the identified model - 1
 //! phase delay   tau_p - tau_p of the identified model [s]
+//! level         number of the level of bandwidth and phase delay, against that of the identified model
 //! peak error    max |simulated - flown| / tolerance, over the held-out records of the condition
 //! mode          |lambda| / |lambda| of the identified model - 1, judged by the tolerances of modes
 //! summary       mean J; share of the band inside the MUAD envelopes

@@ -8,7 +8,7 @@ use gdcm_method::requirements::mode_comparison::ModeValues;
 use gdcm_method::requirements::{ModeName, ModeVerdict, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 
-use super::grid_cell::{CellVerdict, NotDetermined};
+use super::grid_cell::{CellVerdict, NotDetermined, RoleCell};
 use super::grid_requirement::{Requirement, RequirementGroup};
 use super::grid_source::GridSource;
 use super::required_bandwidth::{BandwidthFinding, NoBandwidth};
@@ -33,6 +33,7 @@ fn bandwidth(role: RequirementRole, omega: Option<f64>, delay_s: f64) -> Bandwid
     BandwidthFinding {
         condition: ID,
         pair: dataset.find_pair("P", "LAT").unwrap(),
+        output: "P".to_owned(),
         role,
         omega_bw_rad_s: omega,
         phase_delay_s: Some(delay_s),
@@ -145,6 +146,14 @@ fn record(held_out: bool, corrected: f64, physics: f64) -> Vec<HistoryFinding> {
 }
 
 fn grid(requirements: &Requirements, records: Vec<HistoryFinding>) -> RequirementGrid {
+    grid_with(requirements, records, &RequirementSettings::default())
+}
+
+fn grid_with(
+    requirements: &Requirements,
+    records: Vec<HistoryFinding>,
+    settings: &RequirementSettings,
+) -> RequirementGrid {
     let histories = TimeHistories {
         tolerance_table: ToleranceTable::default(),
         records,
@@ -154,7 +163,7 @@ fn grid(requirements: &Requirements, records: Vec<HistoryFinding>) -> Requiremen
         requirements,
         histories: Some(&histories),
         dataset: &EXAMPLE.analysis.study.dataset,
-        settings: &RequirementSettings::default(),
+        settings,
         role: RequirementRole::Corrected,
     })
 }
@@ -223,6 +232,46 @@ fn known_values_are_judged_and_counted() {
     let summary = grid.group_cell(RequirementGroup::Summary, 0);
     assert_eq!((summary.count.met, summary.count.judged), (2, 2));
     assert!(summary.is_physics_outside);
+}
+
+#[test]
+fn the_level_of_a_model_is_compared_with_that_of_the_identified_model() {
+    let requirements = known();
+    let level = Requirement::Level(requirements.bandwidth[0].pair);
+    assert!(grid(&requirements, Vec::new()).row(level).is_none());
+    // Physics (2.5 rad/s, 0.16 s), corrected (2.1, 0.10), identified (2.0, 0.13).
+    let levels = |first: f64, second: f64, height_s: f64| -> RequirementSettings {
+        let text = format!(
+            r#"[{{"name": "1", "level": 1, "axis": "P", "points": [[{first}, 0], [{first}, {height_s}]]}},
+                {{"name": "2", "level": 2, "axis": "P", "points": [[{second}, 0], [{second}, {height_s}]]}}]"#
+        );
+        RequirementSettings {
+            levels: serde_json::from_str(&text).unwrap(),
+            ..RequirementSettings::default()
+        }
+    };
+    for (settings, corrected, physics) in [
+        (levels(2.2, 1.0, 0.3), (2.0, "met"), (1.0, "outside")),
+        (levels(2.05, 1.0, 0.3), (1.0, "outside"), (1.0, "outside")),
+        (levels(2.0, 1.0, 0.3), (1.0, "met"), (1.0, "met")),
+        (levels(4.0, 3.0, 0.3), (3.0, "met"), (3.0, "met")),
+    ] {
+        let grid = grid_with(&requirements, Vec::new(), &settings);
+        let cell = grid.cell(level, ID).unwrap();
+        let found = |cell: &RoleCell| (cell.value.unwrap(), cell.verdict.code());
+        assert_eq!(found(&cell.corrected), corrected);
+        assert_eq!(found(&cell.physics), physics);
+    }
+    // The physics model lies above boundaries that end at 0.15 s.
+    let low = grid_with(&requirements, Vec::new(), &levels(2.0, 1.0, 0.15));
+    let cell = low.cell(level, ID).unwrap();
+    assert_eq!(
+        cell.physics.verdict,
+        CellVerdict::NotDetermined(NotDetermined::AboveBoundaries(RequirementRole::Physics))
+    );
+    assert_eq!(cell.physics.value, None);
+    let bandwidth = low.group_rows(RequirementGroup::Bandwidth).count();
+    assert_eq!(bandwidth, 3, "bandwidth, phase delay, level");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use gdcm_method::physics::increments::IncrementError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::physics_parameter::ParameterChange;
 
-use super::couplings_assessment::AxisCost;
+use super::correction_costs::AxisCost;
 
 /// J of the prediction against the rerun up to which the family of models is good.
 pub const GOOD_PREDICTION: f64 = 1.0;

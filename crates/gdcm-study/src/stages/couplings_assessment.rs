@@ -4,7 +4,7 @@
 //! ```text
 //! 1  analysis without couplings, and with them
 //! 2  fit and schedule without each condition in turn: J of the condition left out
-//! 3  J without and with couplings                        (`coupling_costs`)
+//! 3  J without and with couplings                        (`correction_costs`)
 //! 4  each condition: moved poles, singular values, change above the band   (`coupling_effects`)
 //! ```
 
@@ -17,7 +17,7 @@ use gdcm_model::executor::{Sequential, each};
 use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
 
 use super::condition_stages::SWAP_PROOF;
-use super::coupling_costs::{LeftOutCondition, LeftOutCost, coupling_costs};
+use super::correction_costs::{LeftOutCondition, LeftOutCost, correction_costs};
 use super::coupling_effects::{condition_effect, margin_grid};
 use super::engine::Engine;
 use crate::decisions::edit::Edit;
@@ -96,7 +96,7 @@ impl Engine {
             fitted,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
-            costs: coupling_costs(&without, &with, &costs_left_out),
+            costs: correction_costs(&without, &with, &costs_left_out),
             omega: grid.omega().into(),
             conditions,
             unstable,

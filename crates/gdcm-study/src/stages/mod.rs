@@ -10,7 +10,7 @@ pub mod condition_curves;
 pub mod condition_responses;
 pub mod condition_stages;
 pub mod convention_check;
-pub mod coupling_costs;
+pub mod correction_costs;
 pub mod coupling_effects;
 pub mod coupling_fit;
 pub mod couplings_assessment;

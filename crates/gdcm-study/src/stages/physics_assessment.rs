@@ -4,7 +4,7 @@
 //! ```text
 //! 1  analysis without the parameters, and with them
 //! 2  each condition of the fit: values without it, schedule without it; J of the condition
-//! 3  J without and with the parameters                                  (`coupling_costs`)
+//! 3  J without and with the parameters                                  (`correction_costs`)
 //! 4  reruns against the prediction                                      (`rerun_checks`)
 //! ```
 
@@ -12,13 +12,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use gdcm_method::couplings::{LEAST_CONDITIONS, PoleShift};
+use gdcm_method::fidelity::CostAverage;
 use gdcm_model::dataset::{BundleKind, ConditionId};
 use gdcm_model::executor::{Sequential, each};
 use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
-use gdcm_model::response::FrequencyGrid;
+use gdcm_model::response::{FrequencyGrid, PreparedModel};
 
 use super::condition_stages::SWAP_PROOF;
-use super::coupling_costs::{LeftOutCost, coupling_costs, uncorrected_cost};
+use super::correction_costs::{LeftOutCost, correction_costs, uncorrected_cost};
 use super::engine::Engine;
 use super::rerun_checks::check_reruns;
 use crate::decisions::edit::Edit;
@@ -27,9 +28,9 @@ use crate::decisions::study::Study;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
 use crate::results::applied_physics::AppliedPhysics;
 use crate::results::couplings_assessment::NoPoles;
-use crate::results::physics_assessment::{
-    AssessedPhysics, ConditionPhysics, PhysicsAssessment, WithoutAndWith,
-};
+use crate::results::physics_assessment::{AssessedPhysics, ConditionPhysics, PhysicsAssessment};
+use crate::results::response_shapes::{ResponseShapes, ShapeSources};
+use crate::results::without_and_with::WithoutAndWith;
 
 /// Name of the step in progress reports.
 const LEAVING_OUT: &str = "physics parameters without each condition";
@@ -74,9 +75,10 @@ impl Engine {
             correction: physics,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
-            costs: coupling_costs(&without, &with, &costs_left_out),
+            costs: correction_costs(&without, &with, &costs_left_out),
             moved_uncorrected: uncorrected_cost(&with),
             conditions: condition_effects(&without, &with, &left_out),
+            omega: Arc::clone(&with.omega),
             couplings_without: without.fitted_couplings().cloned(),
             couplings_with: with.fitted_couplings().cloned(),
             reruns: check_reruns(study, &grid),
@@ -158,6 +160,7 @@ fn condition_effects(
                     with: result.correction.signed_delays_s(),
                 },
                 poles: representative_poles(result),
+                responses: response_shapes(result, &with.omega, with.study.settings.cost_average),
                 left_out: cost.map(|left_out| left_out.cost),
             },
         );
@@ -174,6 +177,28 @@ fn representative_poles(result: &ConditionAnalysis) -> Result<Vec<PoleShift>, No
         (Some(before), Some(after)) => PoleShift::between(before, after).map_err(NoPoles::Failed),
         _ => Err(NoPoles::Measured),
     }
+}
+
+/// Returns the responses of the physics representative without and with the parameters; empty if
+/// they do not move it.
+fn response_shapes(
+    result: &ConditionAnalysis,
+    omega: &Arc<[f64]>,
+    average: CostAverage,
+) -> Vec<ResponseShapes> {
+    let Some(moved) = &result.moved else {
+        return Vec::new();
+    };
+    let identified = &result.representative_model(BundleKind::Identified).dynamics;
+    let grid = FrequencyGrid::at(omega.to_vec());
+    let sources = ShapeSources {
+        omega,
+        identified: &PreparedModel::new(identified).response(&grid),
+        without: &moved.before,
+        with: result.before_couplings(),
+        average,
+    };
+    sources.responses()
 }
 
 /// Returns the study with other physics parameters applied.

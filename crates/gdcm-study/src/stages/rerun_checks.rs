@@ -14,7 +14,7 @@ use gdcm_model::dataset::{Condition, Dynamics, Model};
 use gdcm_model::response::{FrequencyGrid, GainDelay, PolarResponse, PreparedModel};
 
 use crate::decisions::study::Study;
-use crate::results::couplings_assessment::AxisCost;
+use crate::results::correction_costs::AxisCost;
 use crate::results::rerun_check::{RerunCheck, RerunCost, RerunRefusal};
 
 /// Compares every rerun of the dataset with the prediction for its values.

@@ -210,7 +210,7 @@ fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option
         channel: rule.name.clone(),
         column: table.quoted(used.column),
         unit: rule.unit.clone(),
-        units: plausible_unit_list(table, rule, used)?,
+        units: plausible_units(table, rule, used)?,
     })
 }
 
@@ -224,15 +224,21 @@ fn assumed_unit(table: &RecordTable, channel: &ChosenColumn<'_>) -> Option<Layou
         channel: rule.name.clone(),
         column: table.quoted(used.column),
         unit: rule.unit.clone(),
-        units: plausible_unit_list(table, rule, used)?,
+        units: plausible_units(table, rule, used)?,
     })
 }
 
-/// Lists the units in which the samples are plausible: "rad/s or deg/s".
-fn plausible_unit_list(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<String> {
+/// Returns the units in which the samples are plausible; `None` if there are none.
+fn plausible_units(
+    table: &RecordTable,
+    rule: &ChannelRule,
+    used: ColumnUse,
+) -> Option<Vec<String>> {
     let units = used.open_units(table, &rule.unit);
-    let (last, rest) = units.split_last()?;
-    Some(format!("{} or {last}", rest.join(", ")))
+    if units.is_empty() {
+        return None;
+    }
+    Some(units.into_iter().map(str::to_owned).collect())
 }
 
 /// Returns a problem if samples are implausible in the channel's unit. Columns identified by a
@@ -254,10 +260,10 @@ fn implausible_magnitude(
         return None;
     }
     let is_in_radians = column.unit.as_deref().unwrap_or("").contains("rad");
-    let hint = match dimension {
-        Dimension::AngularRate if is_in_radians => "; its samples look like deg/s",
-        Dimension::Part if rule.unit != "%" => "; its samples look like %",
-        _ => "",
+    let likely_unit = match dimension {
+        Dimension::AngularRate if is_in_radians => Some("deg/s"),
+        Dimension::Part if rule.unit != "%" => Some("%"),
+        _ => None,
     };
     Some(LayoutProblem::Magnitude {
         channel: rule.name.clone(),
@@ -265,7 +271,7 @@ fn implausible_magnitude(
         value,
         most,
         unit: rule.unit.clone(),
-        hint: hint.to_owned(),
+        likely_unit,
     })
 }
 

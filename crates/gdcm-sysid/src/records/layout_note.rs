@@ -22,8 +22,7 @@ pub enum LayoutNote {
     TimeColumn {
         column: String,
         unit: &'static str,
-        /// Reason for the unit, in parentheses; empty if the file gives it.
-        reason: String,
+        reason: TimeUnitReason,
     },
     #[error("the file marks {count} columns with other names as {side}s: assigned in order")]
     MarkedInOrder { side: ChannelSide, count: usize },
@@ -63,6 +62,30 @@ pub enum LayoutNote {
         channels.join(", ")
     )]
     Held { channels: Vec<String> },
+}
+
+/// Reason for the unit of a time column.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum TimeUnitReason {
+    /// The file or the column name gives the unit.
+    #[error("")]
+    Given,
+    /// Seconds, because no unit makes the steps plausible.
+    #[error("")]
+    NoPlausibleUnit,
+    /// Seconds, because the file does not state another unit.
+    #[error(" (the file does not state the unit)")]
+    NotStated,
+    /// The steps would be implausible in seconds.
+    #[error(
+        " (its steps are {}: seconds would be too {})",
+        telling(*step, 3),
+        if *step > 1.0 { "long" } else { "short" }
+    )]
+    Steps {
+        /// Median step, in the unit of the column.
+        step: f64,
+    },
 }
 
 /// Conversion of a column to the unit of its channel.

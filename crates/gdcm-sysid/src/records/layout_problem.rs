@@ -3,20 +3,24 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
 
+use super::record_table::shortened_list;
 use super::resampling_error::ResamplingError;
 
 /// Reasons why the chosen columns cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutProblem {
     /// The layout has no time; lists the available columns.
-    #[error("no time column; choose a column or give the sample rate (columns: {0})")]
-    NoTime(String),
+    #[error(
+        "no time column; choose a column or give the sample rate (columns: {})",
+        shortened_list(.0)
+    )]
+    NoTime(Vec<String>),
     /// A requested column does not exist.
-    #[error("there is no column \"{name}\" (columns: {found})")]
+    #[error("there is no column \"{name}\" (columns: {})", shortened_list(found))]
     NoSuchColumn {
         name: String,
         /// The available columns.
-        found: String,
+        found: Vec<String>,
     },
     /// Stamps repeat or decrease.
     #[error(
@@ -52,20 +56,23 @@ pub enum LayoutProblem {
     #[error("the sample time is {} s; it must be a positive number of seconds", number(*.0))]
     SampleTime(f64),
     /// No column matches this channel.
-    #[error("no column for the {side} {channel}; choose a column (columns: {found})")]
+    #[error(
+        "no column for the {side} {channel}; choose a column (columns: {})",
+        shortened_list(found)
+    )]
     NoColumn {
         side: ChannelSide,
         channel: String,
         /// The available columns.
-        found: String,
+        found: Vec<String>,
     },
     /// Several columns match this channel.
-    #[error("several columns match the {side} {channel}: {found}; choose one")]
+    #[error("several columns match the {side} {channel}: {}; choose one", found.join(", "))]
     SeveralColumns {
         side: ChannelSide,
         channel: String,
-        /// Column names, quoted.
-        found: String,
+        /// Column names in quotation marks.
+        found: Vec<String>,
     },
     /// The columns have no names.
     #[error(
@@ -92,7 +99,8 @@ pub enum LayoutProblem {
     /// Neither file nor samples determine the unit.
     #[error(
         "the file does not give the unit of {channel} (column {column}), and its samples can be \
-        in {units}; choose the unit with --unit \"{channel}={unit}\" or on the Columns page"
+        in {}; choose the unit with --unit \"{channel}={unit}\" or on the Columns page",
+        alternatives(units)
     )]
     UnsaidUnit {
         channel: String,
@@ -100,8 +108,8 @@ pub enum LayoutProblem {
         column: String,
         /// The channel's unit.
         unit: String,
-        /// List of the units in which the samples are plausible.
-        units: String,
+        /// Units in which the samples are plausible.
+        units: Vec<String>,
     },
     /// The unit in the file has another dimension than the channel's unit.
     #[error(
@@ -146,8 +154,8 @@ pub enum LayoutProblem {
     Delay { channel: String, delay_s: f64 },
     /// Samples exceed the plausible range of a helicopter in this unit.
     #[error(
-        "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{hint}",
-        telling(*value, 0), number(*most)
+        "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{}",
+        telling(*value, 0), number(*most), likely_unit_words(*likely_unit)
     )]
     Magnitude {
         channel: String,
@@ -159,8 +167,8 @@ pub enum LayoutProblem {
         most: f64,
         /// The channel's unit.
         unit: String,
-        /// Possible cause; may be empty.
-        hint: String,
+        /// Unit that the samples are more likely to have.
+        likely_unit: Option<&'static str>,
     },
     /// Topics with separate clocks cannot be combined into a record.
     #[error("{0}")]
@@ -197,6 +205,22 @@ impl LayoutProblem {
     }
 }
 
+/// Joins alternatives: "deg/s or rad/s".
+fn alternatives(units: &[String]) -> String {
+    match units.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
+    }
+}
+
+fn likely_unit_words(unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) => format!("; its samples look like {unit}"),
+        None => String::new(),
+    }
+}
+
 /// Unusual features in the chosen columns, which may be correct.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutCaution {
@@ -219,7 +243,8 @@ pub enum LayoutCaution {
     /// Neither file nor samples determine the unit, so the unit of the channel was assumed.
     #[error(
         "the file does not give the unit of {channel} (column {column}); {unit} was assumed, and \
-        its samples can be in {units}"
+        its samples can be in {}",
+        alternatives(units)
     )]
     UnitAssumed {
         channel: String,
@@ -227,8 +252,8 @@ pub enum LayoutCaution {
         column: String,
         /// The assumed unit, which is the channel's.
         unit: String,
-        /// List of the units in which the samples are plausible.
-        units: String,
+        /// Units in which the samples are plausible.
+        units: Vec<String>,
     },
     /// Samples are missing.
     #[error("{channel} (column {column}): {count} of {samples} samples are missing")]

@@ -229,7 +229,7 @@ impl Proposer<'_> {
                 self.problems.push(LayoutProblem::SeveralColumns {
                     side,
                     channel,
-                    found: names.join(", "),
+                    found: names,
                 });
             }
         }

@@ -216,21 +216,20 @@ impl RecordTable {
         }
     }
 
-    /// Returns all column names, shortened to fit a message.
-    pub(super) fn column_names(&self) -> String {
-        let names: Vec<&str> = self
-            .columns
+    /// Returns all column names.
+    pub(super) fn column_names(&self) -> Vec<String> {
+        self.columns
             .iter()
-            .map(|column| column.name.as_str())
-            .collect();
-        shortened_list(&names)
+            .map(|column| column.name.clone())
+            .collect()
     }
 }
 
 /// Joins names, shortened to fit a message.
-pub(super) fn shortened_list(names: &[&str]) -> String {
+pub fn shortened_list<S: AsRef<str>>(names: &[S]) -> String {
     /// Maximum number of names in a message.
     const SHOWN: usize = 20;
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
     if names.len() <= SHOWN {
         names.join(", ")
     } else {

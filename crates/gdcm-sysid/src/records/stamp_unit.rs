@@ -1,8 +1,8 @@
 //! Unit of the stamps of a record: from the file, the column's name, or the size of the steps.
 
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
-use gdcm_model::units::telling;
 
+use super::layout_note::TimeUnitReason;
 use super::record_table::RecordColumn;
 use super::sample_step::{LONGEST_STEP_S, median_step};
 
@@ -17,8 +17,7 @@ pub(super) struct StampUnit {
     pub(super) name: &'static str,
     /// Seconds per unit.
     pub(super) seconds: f64,
-    /// Reason in parentheses, for a note; empty if the file gives the unit.
-    pub(super) reason: String,
+    pub(super) reason: TimeUnitReason,
 }
 
 impl StampUnit {
@@ -41,12 +40,12 @@ impl StampUnit {
                     return Self::from_steps(name, seconds, step);
                 }
             }
-            return Self::seconds(String::new());
+            return Self::seconds(TimeUnitReason::NoPlausibleUnit);
         }
         if step > 0.0 && step < SHORTEST_STEP_S && is_plausible_step(step * SECONDS_A_DAY) {
             return Self::from_steps("days", SECONDS_A_DAY, step);
         }
-        Self::seconds(" (the file does not state the unit)".to_owned())
+        Self::seconds(TimeUnitReason::NotStated)
     }
 
     /// Returns the time unit with this name, in its usual spelling; `None` if the name is not a
@@ -59,23 +58,21 @@ impl StampUnit {
         Some(Self {
             name: unit.name,
             seconds: unit.size,
-            reason: String::new(),
+            reason: TimeUnitReason::Given,
         })
     }
 
     /// Returns a unit that was chosen because a median step of `step`, taken in seconds, is
     /// implausible: it is over [`LONGEST_STEP_S`] or far below a second.
     fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
-        let fault = if step > 1.0 { "long" } else { "short" };
-        let step = telling(step, 3);
         Self {
             name,
             seconds,
-            reason: format!(" (its steps are {step}: seconds would be too {fault})"),
+            reason: TimeUnitReason::Steps { step },
         }
     }
 
-    fn seconds(reason: String) -> Self {
+    fn seconds(reason: TimeUnitReason) -> Self {
         Self {
             name: "s",
             seconds: 1.0,

@@ -140,6 +140,7 @@ fn mostly_rises(stamps: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::layout_note::TimeUnitReason;
     use crate::records::record_table::RecordColumn;
 
     fn table_with(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
@@ -216,21 +217,18 @@ mod tests {
 
     #[test]
     fn the_note_has_the_unit_and_its_reason() {
-        for (unit, step, expected) in [
-            (Some("ms"), 20.0, "time from column \"t\", in ms"),
-            (
-                None,
-                0.02,
-                "time from column \"t\", in s (the file does not state the unit)",
-            ),
-            (
-                None,
-                20.0,
-                "time from column \"t\", in ms (its steps are 20.000: seconds would be too long)",
-            ),
+        for (stated, step, unit, reason) in [
+            (Some("ms"), 20.0, "ms", TimeUnitReason::Given),
+            (None, 0.02, "s", TimeUnitReason::NotStated),
+            (None, 20.0, "ms", TimeUnitReason::Steps { step: 20.0 }),
         ] {
-            let table = table_with("t", unit, stamps(step));
-            assert_eq!(TimeBase::column_note(&table, 1).to_string(), expected);
+            let table = table_with("t", stated, stamps(step));
+            let expected = LayoutNote::TimeColumn {
+                column: "\"t\"".to_owned(),
+                unit,
+                reason,
+            };
+            assert_eq!(TimeBase::column_note(&table, 1), expected);
         }
     }
 

@@ -23,17 +23,6 @@ pub struct RecordUse {
 }
 
 impl RecordUse {
-    /// Returns sentences about the record that are not cautions: the inputs at their limit.
-    pub fn facts(&self) -> impl Iterator<Item = String> {
-        self.inputs_at_limit.iter().map(|(signal, percent)| {
-            format!(
-                "{}: {signal} is at its limit for {percent:.1} % of the record and is used as \
-                logged",
-                self.record
-            )
-        })
-    }
-
     /// Returns the first and the last time \[s\] of each part that remains after the gaps are cut
     /// out.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {

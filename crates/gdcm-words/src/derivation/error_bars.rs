@@ -13,7 +13,7 @@ use crate::uncertainty::bar_remark_texts;
 
 /// Remark on unconstrained net gains and on channel values, used if the identified models come with
 /// standard errors.
-const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, which is \
+pub const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, which is \
     too small if the models share records; the standard errors of the models themselves count \
     only for G, D and held net gains (M13.2)";
 

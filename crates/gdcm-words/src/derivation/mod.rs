@@ -16,6 +16,7 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::Analysis;
 
 use context::Context;
+pub use error_bars::SPREAD_ALONE;
 pub use explain_target::ExplainTarget;
 
 /// Derivation of a result: equation, equation with numbers, and the models and choices on which the

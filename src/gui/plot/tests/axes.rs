@@ -5,6 +5,7 @@ use egui_kittest::kittest::Queryable;
 
 use gdcm_plot::figure::Range;
 
+use super::super::bode_axis::NOT_INCREASING;
 use super::bode::{Model, harness, three_curves};
 use super::*;
 
@@ -100,7 +101,7 @@ fn limits_can_be_typed_and_invalid_limits_are_refused_with_a_message() {
     );
     harness.run_steps(40);
     type_limits(&mut harness, MAGNITUDES, ["10", "-10"]);
-    harness.get_by_label("the lower limit must be below the upper limit");
+    harness.get_by_label(NOT_INCREASING);
     assert_ne!(ranges(&harness).1, Range::new(-10.0, 10.0));
 }
 

@@ -68,10 +68,11 @@ fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Ve
 
 /// Lists notes about the file, the channels and their conversions.
 fn notes_ui(ui: &mut Ui, part: &Part, palette: &Palette) {
-    for notes in [&part.found.notes, &part.inputs.notes, &part.outputs.notes] {
-        for note in notes {
-            ui.label(palette.small(note));
-        }
+    for note in &part.found.notes {
+        ui.label(palette.small(note));
+    }
+    for note in part.inputs.notes.iter().chain(&part.outputs.notes) {
+        ui.label(palette.small(note.to_string()));
     }
     for channels in [&part.inputs, &part.outputs] {
         for channel_use in channels.uses.iter().flatten() {

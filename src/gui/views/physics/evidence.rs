@@ -10,6 +10,7 @@ use gdcm_study::decisions::physics_settings::ParameterDecision;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::physics_findings::{DiagnosedParameter, PhysicsFindings};
 use gdcm_words::Table;
+use gdcm_words::couplings::NARROW_COST_COLUMNS;
 use gdcm_words::physics::{
     change_text, channel_delay_table, diagnosis_cautions, left_out_lines, parameter_text,
     paste_block, physics_cost_table, pull_lines, rerun_text,
@@ -138,11 +139,9 @@ impl Evidence<'_> {
     fn effect_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = self.assessment.correction.name();
         self.heading_ui(ui, &format!("Effect of {name} on the correction"));
-        // The panel is narrow: the headings say "with" after each value without the parameters.
-        let columns = ["mean J", "on-axis", "with", "others", "with"];
         let costs = Table {
             title: "Mean J without and with physics parameters".to_owned(),
-            columns: columns.map(str::to_owned).to_vec(),
+            columns: NARROW_COST_COLUMNS.map(str::to_owned).to_vec(),
             ..physics_cost_table(self.assessment)
         };
         self.table_ui(ui, &costs, commands);

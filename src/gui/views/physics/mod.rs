@@ -3,13 +3,19 @@
 //!
 //! | file | content |
 //! |---|---|
+//! | `change` | responses and poles of the condition, before and after |
+//! | `fit_box` | box that takes a parameter into the fit or out of it |
+//! | `parameter_list` | parameters of the dataset, in the left panel |
 //! | `ranking` | a row for each parameter |
 //! | `correlation` | what cannot be told apart |
 //! | `evidence` | the selected parameter, the effect on the correction, cautions |
 //! | `use_parameters` | the job, and the control that applies the parameters |
 
+mod change;
 mod correlation;
 mod evidence;
+mod fit_box;
+mod parameter_list;
 mod ranking;
 mod use_parameters;
 
@@ -34,11 +40,13 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette};
+use change::change_ui;
 use correlation::CorrelationMatrix;
 use ranking::Ranking;
 
 pub use evidence::physics_evidence_ui;
-pub use use_parameters::{physics_header_ui, physics_job};
+pub use parameter_list::parameter_list_ui;
+pub use use_parameters::{physics_header_ui, physics_job, unused_named};
 
 /// Height of the sentence with the verdict \[pt\].
 const SENTENCE: f32 = 52.0;
@@ -46,8 +54,11 @@ const SENTENCE: f32 = 52.0;
 const LEAST_PLOT: Vec2 = vec2(220.0, 120.0);
 /// Width of the correlation matrix, as a share of the view's width.
 const CORRELATION_PART: f32 = 0.33;
+/// Height of the plots of the selected parameter, as a share of the height below the ranking; the
+/// responses before and after have the rest.
+const CONDITIONS_PART: f32 = 0.46;
 /// Minimum height of the view that shows everything at once \[pt\].
-const LEAST_WHOLE: f32 = 520.0;
+const LEAST_WHOLE: f32 = 640.0;
 
 /// Returns the pages of the view; none in a window that shows everything at once.
 pub fn physics_pages(state: &State) -> Vec<PageEntry> {
@@ -68,6 +79,10 @@ pub fn physics_pages(state: &State) -> Vec<PageEntry> {
             PhysicsPage::Conditions => (
                 "Conditions",
                 "The selected parameter in each condition, and the misfit that remains",
+            ),
+            PhysicsPage::Change => (
+                "Before and after",
+                "The most improved responses of the condition, and its poles",
             ),
         };
         pages.push(PageEntry {
@@ -110,6 +125,7 @@ pub fn physics_view_ui(
     let ranking = Ranking {
         findings: &findings,
         selected,
+        has_boxes: state.display.layout.settings_open || !state.display.layout.has_left_panel(),
         palette,
     };
     let matrix = CorrelationMatrix {
@@ -131,7 +147,16 @@ pub fn physics_view_ui(
         });
         ui.advance_cursor_after_rect(room);
         ui.add_space(6.0);
-        conditions_ui(ui, state, &findings, &assessment, palette, commands);
+        let rest = ui.available_rect_before_wrap();
+        let middle = rest.top() + CONDITIONS_PART * rest.height();
+        ui.scope_builder(UiBuilder::new().max_rect(rest.with_max_y(middle)), |ui| {
+            conditions_ui(ui, state, &findings, &assessment, palette, commands)
+        });
+        let below = rest.with_min_y(middle + 8.0);
+        ui.scope_builder(UiBuilder::new().max_rect(below), |ui| {
+            change_ui(ui, state, &assessment, palette)
+        });
+        ui.advance_cursor_after_rect(rest);
         return;
     }
     match state.display.physics.page {
@@ -143,6 +168,7 @@ pub fn physics_view_ui(
         PhysicsPage::Conditions => {
             conditions_ui(ui, state, &findings, &assessment, palette, commands);
         }
+        PhysicsPage::Change => change_ui(ui, state, &assessment, palette),
     }
 }
 

@@ -1,18 +1,17 @@
 //! Ranking of the physics parameters: change with its interval, place among the plausible changes,
 //! share of the misfit that each explains, and what the data tell about it (M18.4).
 
-use egui::{Align2, Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use gdcm_method::physics::problem::GREATEST_VALUE;
 use gdcm_method::physics::verdict::WhyNotNamed;
-use gdcm_study::Edit;
-use gdcm_study::decisions::physics_settings::ParameterDecision;
 use gdcm_study::results::physics_findings::{DiagnosedParameter, PhysicsFindings};
 use gdcm_words::physics::{change_text, naming_words};
 
+use super::fit_box::fit_box_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::widgets::controls::{Asks, named_switch};
+use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::list_row::RowLook;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, Room, painted_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -25,8 +24,6 @@ const HEADINGS: f32 = 20.0;
 const FULL_BAR: f32 = 56.0;
 /// Least share that a full bar stands for, so that negligible shares stay short.
 const LEAST_FULL: f32 = 0.1;
-/// Side of a check box \[pt\].
-const CHECK_SIDE: f32 = 12.0;
 /// Plausible standard deviations shown on each side of the nominal value.
 const SHOWN_SD: f32 = GREATEST_VALUE as f32;
 /// Radius of the dot at the value \[pt\].
@@ -107,6 +104,9 @@ pub(super) struct Ranking<'a> {
     pub(super) findings: &'a PhysicsFindings,
     /// Index of the selected parameter among those that are on.
     pub(super) selected: usize,
+    /// Whether the rows have the boxes that switch parameters on and off; the parameter list at the
+    /// left has them if it is shown.
+    pub(super) has_boxes: bool,
     pub(super) palette: &'a Palette,
 }
 
@@ -167,7 +167,10 @@ impl Ranking<'_> {
         response
             .on_hover_text(&diagnosed.parameter.description)
             .asks(DisplayCommand::ShowParameter(name.clone()), commands);
-        self.check_ui(ui, row, columns, name, true, commands);
+        if self.has_boxes {
+            let left = row.left() + columns.check;
+            fit_box_ui(ui, row, left, name, true, self.palette, commands);
+        }
         let is_named = diagnosed.diagnosis.is_named();
         let color = if is_named {
             self.palette.text
@@ -286,50 +289,13 @@ impl Ranking<'_> {
 
     fn off_row_ui(&self, ui: &mut Ui, columns: Columns, name: &str, commands: &mut Vec<Command>) {
         let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
-        self.check_ui(ui, row, columns, name, false, commands);
+        if self.has_boxes {
+            let left = row.left() + columns.check;
+            fit_box_ui(ui, row, left, name, false, self.palette, commands);
+        }
         let color = self.palette.dim_text;
         row_text_within(ui, row, columns.name, name, BODY_SIZE, color);
         row_text_within(ui, row, columns.verdict, "off", BODY_SIZE, color);
-    }
-
-    /// Draws the box that switches a parameter on or off.
-    fn check_ui(
-        &self,
-        ui: &mut Ui,
-        row: Rect,
-        columns: Columns,
-        name: &str,
-        is_on: bool,
-        commands: &mut Vec<Command>,
-    ) {
-        let corner = pos2(
-            row.left() + columns.check,
-            row.center().y - 0.5 * CHECK_SIDE,
-        );
-        let place = Rect::from_min_size(corner, vec2(CHECK_SIDE, CHECK_SIDE));
-        let id = ui.scope_id().with(("fitted", name));
-        let response = ui.interact(place, id, Sense::click());
-        let line = if response.hovered() || response.has_focus() {
-            self.palette.accent
-        } else {
-            self.palette.dim_text
-        };
-        let fill = if is_on { line } else { Color32::TRANSPARENT };
-        ui.painter()
-            .rect(place, 2.0, fill, Stroke::new(1.0, line), StrokeKind::Inside);
-        if is_on {
-            let points = [vec2(-3.0, 0.0), vec2(-1.0, 2.5), vec2(3.5, -2.5)]
-                .map(|corner| place.center() + corner)
-                .to_vec();
-            ui.painter()
-                .line(points, Stroke::new(1.5, self.palette.background));
-        }
-        let response = named_switch(response, Role::CheckBox, is_on, format!("Fit {name}"));
-        let decision = Edit::DecideParameter {
-            name: name.to_owned(),
-            decision: ParameterDecision::On(!is_on),
-        };
-        response.asks(decision, commands);
     }
 }
 

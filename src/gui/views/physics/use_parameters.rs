@@ -5,7 +5,7 @@ use egui::{Button, RichText, Ui};
 
 use gdcm_model::number_format::counted;
 use gdcm_study::decisions::physics_settings::PhysicsCorrection;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::jobs::analysis_jobs::PhysicsJob;
 
 use crate::gui::commands::command::Command;
@@ -22,6 +22,20 @@ pub fn physics_job(state: &State) -> PhysicsJob {
     }
 }
 
+/// Counts the named parameters while none is applied.
+pub fn unused_named(state: &State) -> usize {
+    if state.study.settings.physics != PhysicsCorrection::Off {
+        return 0;
+    }
+    match state.physics() {
+        Some(Some(Ok(assessment))) => match &assessment.applied.findings {
+            Some(findings) => findings.named().len(),
+            None => 0,
+        },
+        _ => 0,
+    }
+}
+
 /// Draws the choice of the parameters applied, and the button that applies the named ones.
 pub fn physics_header_ui(
     ui: &mut Ui,
@@ -30,20 +44,14 @@ pub fn physics_header_ui(
     commands: &mut Vec<Command>,
 ) {
     let shown = state.study.settings.physics;
-    let named = match state.physics() {
-        Some(Some(Ok(assessment))) => match &assessment.applied.findings {
-            Some(findings) => findings.named().len(),
-            None => 0,
-        },
-        _ => 0,
-    };
-    if shown == PhysicsCorrection::Off && named > 0 {
+    let named = unused_named(state);
+    if named > 0 {
         let text = format!("Use {}", counted(named, "parameter"));
         let button =
             Button::new(RichText::new(text).color(palette.on_accent())).fill(palette.accent);
         let hint = "Moves the physics models of all conditions by the named parameters, before every \
             other correction; one step to undo";
-        let command = setting::PHYSICS.to(PhysicsCorrection::Named);
+        let command = setting_table::PHYSICS.to(PhysicsCorrection::Named);
         button_ui(ui, button, hint, command, commands);
     }
     let mut chosen = shown;
@@ -67,6 +75,6 @@ pub fn physics_header_ui(
     ];
     choice_ui(ui, "Physics parameters applied", &mut chosen, &choices);
     if chosen != shown {
-        commands.push(setting::PHYSICS.to(chosen).into());
+        commands.push(setting_table::PHYSICS.to(chosen).into());
     }
 }

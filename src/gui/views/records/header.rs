@@ -30,17 +30,7 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
     use_ui(ui, &fits, &palette, commands);
     match state.batch_progress() {
         Some(progress) => progress_ui(ui, state, progress, &palette, commands),
-        None => identify_ui(ui, state, fits.is_empty(), &palette, commands),
-    }
-}
-
-/// Returns a button, filled with the accent if it is the primary one.
-fn command_button<'b>(text: String, is_primary: bool, palette: &Palette) -> Button<'b> {
-    if is_primary {
-        let text = RichText::new(text).color(palette.background);
-        Button::new(text).fill(palette.accent)
-    } else {
-        Button::new(text)
+        None => identify_ui(ui, state, commands),
     }
 }
 
@@ -70,19 +60,14 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
         "Replaces the identified models of condition {} by the refined models; one step to undo",
         names.join(", ")
     );
-    ui.add(command_button(text, true, palette))
+    let text = RichText::new(text).color(palette.on_accent());
+    ui.add(Button::new(text).fill(palette.accent))
         .on_hover_text(hint)
         .asks(RecordsCommand::TakeAll(OfferedModels::REFINED), commands);
 }
 
 /// Draws the command that identifies all conditions with records.
-fn identify_ui(
-    ui: &mut Ui,
-    state: &State,
-    is_primary: bool,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+fn identify_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
     let open = state.conditions_to_identify();
@@ -103,13 +88,9 @@ fn identify_ui(
     } else {
         format!("Identify {} of {}", open.len(), in_use.len())
     };
-    let is_primary = is_primary && !in_use.is_empty();
-    ui.add_enabled(
-        !in_use.is_empty(),
-        command_button(text, is_primary, palette),
-    )
-    .on_hover_text(IDENTIFY_HINT)
-    .asks(RecordsCommand::IdentifyAll, commands);
+    ui.add_enabled(!in_use.is_empty(), Button::new(text))
+        .on_hover_text(IDENTIFY_HINT)
+        .asks(RecordsCommand::IdentifyAll, commands);
 }
 
 /// Draws the progress at the left of the button that stops it.

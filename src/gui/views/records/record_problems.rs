@@ -2,6 +2,7 @@
 //! a sentence, "no column for P, Q; …" instead of one sentence for P and one for Q.
 
 use gdcm_sysid::records::LayoutProblem;
+use gdcm_sysid::records::record_table::shortened_list;
 
 /// Describes problems of a record; several missing columns share one sentence, as do several
 /// unknown units.
@@ -10,11 +11,11 @@ pub(super) fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     let mut without_unit = ChannelProblems::default();
     let mut others = Vec::new();
     // The same columns for every channel, because all channels belong to one record.
-    let mut columns = "";
+    let mut columns = String::new();
     for problem in problems {
         match problem {
             LayoutProblem::NoColumn { channel, found, .. } => {
-                columns = found;
+                columns = shortened_list(found);
                 missing.push(channel, problem);
             }
             LayoutProblem::UnsaidUnit { channel, .. } => without_unit.push(channel, problem),

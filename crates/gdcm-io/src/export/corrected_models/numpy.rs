@@ -48,6 +48,8 @@ pub(super) fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<V
         let sources = row_of_texts(models.iter().map(|model| source(&model.contents).word()));
         arrays.add(format!("contains_{name}"), sources);
     }
+    let moved = row_of_texts(models.iter().map(|model| model.contents.physics.join(", ")));
+    arrays.add("contains_physics".to_owned(), moved);
     let left_out = row_of_texts(
         models
             .iter()

@@ -12,8 +12,11 @@ use gdcm_method::schedule::{
 };
 use gdcm_model::dataset::Dataset;
 use gdcm_model::progress::Unobserved;
-use gdcm_study::decisions::setting;
-use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
+use gdcm_study::decisions::setting_table;
+use gdcm_study::{
+    Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, PhysicsCorrection, Study,
+};
+use gdcm_words::schedule::DELAYS_NOT_SCHEDULED;
 
 use super::*;
 use crate::export::{EXPORTERS, ExportRequest, ExportSource};
@@ -51,12 +54,21 @@ fn analyses() -> Vec<(String, Analysis)> {
             ..ScheduleSettings::default()
         };
         study
-            .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+            .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
             .unwrap();
         study.settings.schedule = schedule;
         let analysis = engine.analyze(&study, &Unobserved).unwrap();
         analyses.push((format!("leads of degree {tau_degree}"), analysis));
     }
+    // A schedule for physics models moved by their named parameters.
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    study
+        .apply(&setting_table::PHYSICS.to(PhysicsCorrection::Named))
+        .unwrap();
+    analyses.push((
+        "physics parameters".to_owned(),
+        engine.analyze(&study, &Unobserved).unwrap(),
+    ));
     // Conditions at a single airspeed, so that the airspeed range has zero width.
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let conditions = study.dataset.clone();
@@ -195,11 +207,16 @@ fn unscheduled_delays_are_zero_with_a_note() {
             || settings.phase == PhaseCorrection::Lead;
         let text = program("py", &analysis, "");
         assert_eq!(
-            text.contains("# Note: delays are not scheduled in this study"),
+            text.contains(&format!("# Note: {DELAYS_NOT_SCHEDULED}")),
             !has_delays,
             "{words}"
         );
     }
+}
+
+/// Returns whether a line has the limit of the leads, and the frequency of their gain above it.
+fn has_limit(line: &str) -> bool {
+    line.contains(" 12 rad/s") && line.contains(" 120 rad/s")
 }
 
 #[test]
@@ -217,7 +234,7 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
             ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2"),
         ] {
             let text = program(language, &analysis, "k");
-            let says = text.contains("Note: not valid above 12 rad/s: at 120 rad/s");
+            let says = text.lines().any(has_limit);
             let has_number = text.contains(limit);
             assert!(
                 text.is_ascii() && says == price.is_some(),
@@ -232,7 +249,8 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
             name: "example".to_owned(),
             sha256: "ba78".to_owned(),
         };
-        for exporter in EXPORTERS.iter() {
+        // The table of physics parameters contains no leads.
+        for exporter in EXPORTERS.iter().filter(|format| format.name != "physics") {
             let path = Path::new("k").with_extension(exporter.extension);
             let request = ExportRequest::default();
             let export = Export {
@@ -244,10 +262,7 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
             let Ok(exported) = (exporter.export)(&export) else {
                 continue;
             };
-            let says = exported
-                .remarks
-                .iter()
-                .any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
+            let says = exported.remarks.iter().any(|remark| has_limit(remark));
             assert_eq!(
                 says,
                 price.is_some(),
@@ -354,10 +369,10 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
 fn coupled() -> Analysis {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::None))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::None))
         .unwrap();
     study
-        .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+        .apply(&setting_table::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
         .unwrap();
     Engine::default().analyze(&study, &Unobserved).unwrap()
 }

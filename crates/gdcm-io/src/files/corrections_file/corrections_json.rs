@@ -21,6 +21,7 @@ use super::uncertainty::uncertainty;
 use super::{NAME, VERSION};
 use crate::files::export_contents::ExportContents;
 use crate::json_empty_members::without_empty;
+use crate::software::software;
 
 /// Returns the content of `corrections.json`: all results of the chosen conditions, with the
 /// schedule of the whole study. The file format documentation describes each key.
@@ -62,7 +63,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     let corrections = json!({
         "format": NAME,
         "version": VERSION,
-        "software": concat!("gdcm ", env!("CARGO_PKG_VERSION")),
+        "software": software(),
         "dataset": {"name": dataset.name(), "sha256": sha256},
         "inputs": channels(dataset.inputs()),
         "outputs": channels(dataset.outputs()),

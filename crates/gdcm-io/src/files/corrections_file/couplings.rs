@@ -5,9 +5,11 @@ use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
 
 use gdcm_method::couplings::PoleShift;
+use gdcm_study::results::correction_costs::{AxisCost, CorrectionCost};
 use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
-use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::coupling_remark_text;
 
 use super::pair_rows::rows_of;
@@ -18,8 +20,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,
         Some(Err(error)) => {
-            let (inputs, _) = analysis.study.dataset.names_of_channels();
-            return json!({"why": error.words(&inputs)});
+            return json!({"why": coupling_error_text(error, &analysis.study.dataset)});
         }
         Some(Ok(fitted)) => fitted,
     };
@@ -42,9 +43,9 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
         "feedback_sd": feedback_sd,
         "residual": fitted.fit.residual,
         "uncorrected": costs.map(|costs| axis_cost(costs.uncorrected)),
-        "own": costs.map(|costs| coupling_cost(costs.own)),
-        "scheduled": costs.map(|costs| coupling_cost(costs.scheduled)),
-        "left_out": costs.and_then(|costs| costs.left_out).map(coupling_cost),
+        "own": costs.map(|costs| correction_cost(costs.own)),
+        "scheduled": costs.map(|costs| correction_cost(costs.scheduled)),
+        "left_out": costs.and_then(|costs| costs.left_out).map(correction_cost),
         "words": words,
     });
     without_empty(
@@ -72,7 +73,7 @@ pub(super) fn axis_cost(cost: AxisCost) -> Value {
     json!({"on_axis": cost.on_axis, "others": cost.others})
 }
 
-pub(super) fn coupling_cost(cost: CouplingCost) -> Value {
+pub(super) fn correction_cost(cost: CorrectionCost) -> Value {
     json!({
         "on_axis": cost.with.on_axis,
         "others": cost.with.others,
@@ -105,7 +106,7 @@ pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysi
         "least_singular_value": assessed.and_then(|assessed| assessed.margin).map(|margin| {
             json!({"value": margin.least, "omega_rad_s": margin.omega_rad_s})
         }),
-        "left_out": assessed.and_then(|assessed| assessed.left_out).map(coupling_cost),
+        "left_out": assessed.and_then(|assessed| assessed.left_out).map(correction_cost),
     });
     without_empty(
         couplings,

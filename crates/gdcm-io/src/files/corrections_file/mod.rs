@@ -21,7 +21,6 @@ use std::path::{Path, PathBuf};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
-use self::physics::write_physics_csv;
 use crate::file_error::FileError;
 use crate::json_writing::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
@@ -29,6 +28,7 @@ use crate::output_set::{OutputSet, make_directory};
 pub use self::assessment_csv::write_assessment_csv;
 pub use self::corrections_csv::write_corrections_csv;
 pub use self::corrections_json::{channel_correction, corrections};
+pub(crate) use self::physics::write_physics_csv;
 
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
@@ -75,7 +75,7 @@ pub fn write_results(
     })?;
     if let Some(applied) = analysis.applied_physics() {
         let parameters = directory.join(PHYSICS_FILE);
-        outputs.add(&parameters, |file| write_physics_csv(applied, file))?;
+        outputs.add(&parameters, |file| write_physics_csv(Some(applied), file))?;
     }
     outputs.add_checksums(&checksums)?;
     outputs.persist()

@@ -19,7 +19,7 @@ use gdcm_words::physics::{
     diagnosis_cautions, left_out_lines, paste_block, rerun_text, verdict_text,
 };
 
-use super::couplings::{axis_cost, coupling_cost};
+use super::couplings::{axis_cost, correction_cost};
 use crate::csv_text::write_records;
 use crate::json_empty_members::without_empty;
 
@@ -223,10 +223,10 @@ fn add_assessment(physics: &mut Value, assessment: &PhysicsAssessment) {
     let costs = &assessment.costs;
     physics["uncorrected"] = axis_cost(costs.uncorrected);
     physics["moved"] = axis_cost(assessment.moved_uncorrected);
-    physics["own"] = coupling_cost(costs.own);
-    physics["scheduled"] = coupling_cost(costs.scheduled);
+    physics["own"] = correction_cost(costs.own);
+    physics["scheduled"] = correction_cost(costs.scheduled);
     if let Some(left_out) = costs.left_out {
-        physics["left_out"] = coupling_cost(left_out);
+        physics["left_out"] = correction_cost(left_out);
     }
     if !assessment.reruns.is_empty() {
         physics["reruns"] = assessment.reruns.iter().map(rerun_json).collect();
@@ -252,9 +252,22 @@ fn rerun_json(check: &RerunCheck) -> Value {
 }
 
 /// Writes `physics.csv`: a row for each parameter, with its diagnosis and the change applied; of a
-/// parameter set by hand without a fit, only the change applied.
-pub(super) fn write_physics_csv(applied: &AppliedPhysics, file: &mut dyn Write) -> io::Result<()> {
+/// parameter set by hand without a fit, only the change applied. Only the headings if no parameters
+/// are applied.
+pub(crate) fn write_physics_csv(
+    applied: Option<&AppliedPhysics>,
+    file: &mut dyn Write,
+) -> io::Result<()> {
     let mut records = vec![COLUMNS.map(str::to_owned).to_vec()];
+    if let Some(applied) = applied {
+        records.extend(parameter_records(applied));
+    }
+    write_records(file, records.into_iter())
+}
+
+/// Returns the rows of `physics.csv`.
+fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
+    let mut records = Vec::new();
     let mut listed: BTreeSet<&str> = BTreeSet::new();
     if let Some(findings) = &applied.findings {
         for found in findings.diagnosed() {
@@ -285,7 +298,7 @@ pub(super) fn write_physics_csv(applied: &AppliedPhysics, file: &mut dyn Write) 
         cells[20] = full_precision(Some(value.change()));
         records.push(cells);
     }
-    write_records(file, records.into_iter())
+    records
 }
 
 /// Returns the cells of a parameter without a diagnosis.

@@ -34,7 +34,8 @@ pub fn write_requirements(
         write_pretty(&requirements_json(results)?, file)
     })?;
     outputs.add(&table, |file| {
-        write_rows(results.requirements, results.time_histories, file)
+        let levels = &results.settings.levels;
+        write_rows(results.requirements, results.time_histories, levels, file)
     })?;
     outputs.persist()
 }

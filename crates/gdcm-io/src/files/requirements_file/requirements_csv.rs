@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use gdcm_method::requirements::BandwidthRule;
+use gdcm_method::requirements::level_boundary::AssessedLevel;
+use gdcm_method::requirements::{BandwidthRule, LevelBoundaries};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
@@ -20,11 +21,12 @@ const HEADING: &str = "question condition airspeed_kt role model output input mo
 pub(super) fn write_rows(
     requirements: &Requirements,
     time_histories: &TimeHistories,
+    levels: &LevelBoundaries,
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let mut rows: Vec<Vec<String>> = vec![HEADING.split(' ').map(str::to_owned).collect()];
     for finding in &requirements.bandwidth {
-        rows.extend(bandwidth_rows(finding));
+        rows.extend(bandwidth_rows(finding, levels));
     }
     for finding in &requirements.modes {
         rows.extend(mode_rows(finding));
@@ -90,7 +92,7 @@ fn cell(value: Option<f64>) -> String {
     }
 }
 
-fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
+fn bandwidth_rows(finding: &BandwidthFinding, levels: &LevelBoundaries) -> Vec<Vec<String>> {
     let subject = Subject {
         question: "bandwidth",
         condition: finding.condition,
@@ -106,6 +108,14 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
         let interval = finding.interval.get(name).copied();
         let remark = bandwidth_remark(finding, name, value.is_some());
         rows.push(subject.row(name, value, interval, remark));
+    }
+    if let Some(level) = finding.level(levels) {
+        let remark = match level {
+            AssessedLevel::Level(_) => "",
+            AssessedLevel::AboveBoundaries => "above the end of a level boundary",
+        };
+        let value = level.number().map(f64::from);
+        rows.push(subject.row("level", value, None, remark.to_owned()));
     }
     rows
 }

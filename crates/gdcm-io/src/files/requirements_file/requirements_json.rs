@@ -20,6 +20,8 @@ use gdcm_words::missing_results::{
     reversed_phase_text,
 };
 
+use crate::software::software;
+
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
 
@@ -53,7 +55,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
     let document = RequirementsDocument {
         format: NAME,
         version: VERSION,
-        software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
+        software: software(),
         dataset: DatasetName {
             name: results.dataset.name(),
             sha256: results.sha256,
@@ -72,7 +74,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
 struct RequirementsDocument<'a> {
     format: &'static str,
     version: u64,
-    software: &'static str,
+    software: String,
     dataset: DatasetName<'a>,
     #[serde(flatten)]
     requirements: &'a Requirements,
@@ -141,7 +143,9 @@ impl GridRowDocument {
             physics_verdicts: Vec::new(),
         };
         match row.requirement {
-            Requirement::Bandwidth(pair) | Requirement::PhaseDelay(pair) => {
+            Requirement::Bandwidth(pair)
+            | Requirement::PhaseDelay(pair)
+            | Requirement::Level(pair) => {
                 document.set_response(pair, results.dataset);
             }
             Requirement::PeakError(index) => {
@@ -172,8 +176,8 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
-/// Converts the contents of `requirements.json`, and replaces the codes of missing values and
-/// cautions by sentences.
+/// Converts the contents of `requirements.json`, adds the levels of bandwidths and phase delays, and
+/// replaces the codes of missing values and cautions by sentences.
 fn with_sentences(
     document: &RequirementsDocument<'_>,
     results: RequirementResults<'_>,
@@ -181,6 +185,9 @@ fn with_sentences(
     let mut value = serde_json::to_value(document)?;
     for (index, finding) in results.requirements.bandwidth.iter().enumerate() {
         let entry = &mut value["bandwidth"][index];
+        if let Some(level) = finding.level(&results.settings.levels) {
+            entry["level"] = level.number().into();
+        }
         replace_absent(entry, &finding.absent, no_bandwidth_text);
     }
     for (index, finding) in results.requirements.modes.iter().enumerate() {

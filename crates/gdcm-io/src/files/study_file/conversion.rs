@@ -18,6 +18,7 @@ use super::json_form::{
 };
 use crate::content_fault::{ContentError, ContentFault};
 use crate::files::dataset_file::{ModelText, RecordText};
+use crate::software::software;
 
 impl StudyText {
     pub(super) fn new(study: &Study, dataset: DatasetReference) -> Self {
@@ -46,7 +47,7 @@ impl StudyText {
         Self {
             format: FORMAT.name.to_owned(),
             version: FORMAT.version,
-            software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
+            software: software(),
             dataset,
             settings: study.settings.named(&study.dataset),
             conditions: ConditionText::from_study(study),

@@ -11,6 +11,7 @@
 
 use gdcm_model::units::physical_unit::PhysicalUnit;
 
+use crate::formats::reading_reason::QuantityReason;
 use crate::formats::text::quantity_words::{
     ABSOLUTE, BEFORE_UNIT, KnownUnit, Quantity, UNIT_ENDINGS, WORDS,
 };
@@ -24,8 +25,8 @@ pub(super) struct ColumnMeaning {
     /// Unit; `None` if it is neither given nor implied.
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Reason for the choice of the quantity, such as "its name contains phase".
-    pub(super) reason: String,
+    /// Reason for the choice of the quantity.
+    pub(super) reason: QuantityReason,
 }
 
 /// Word in a column name.
@@ -65,7 +66,7 @@ impl ColumnMeaning {
             quantity: Some(Quantity::Frequency),
             unit,
             label: ResponseLabel::default(),
-            reason: format!("its name is \"{name}\""),
+            reason: QuantityReason::Name(name.to_owned()),
         }
     }
 
@@ -79,7 +80,7 @@ impl ColumnMeaning {
                     quantity: Some(quantity),
                     unit: unit.or_else(|| usual_unit(quantity, &lower, &words)),
                     label: ResponseLabel::parse(&without_words(name, &words, known)),
-                    reason: format!("its name contains {lower}"),
+                    reason: QuantityReason::WordInName(lower),
                 };
             }
         }
@@ -92,24 +93,21 @@ impl ColumnMeaning {
         let bare = name.trim();
         let has_strokes = bare.len() > 2 && bare.starts_with('|') && bare.ends_with('|');
         let (quantity, reason) = match unit {
-            Some(KnownUnit::Decibel) => (Some(Quantity::Magnitude), "its unit is dB"),
-            Some(KnownUnit::Degree) => (Some(Quantity::Phase), "its unit is an angle"),
-            Some(KnownUnit::Hertz) => (Some(Quantity::Frequency), "its unit is Hz"),
+            Some(KnownUnit::Decibel) => (Some(Quantity::Magnitude), QuantityReason::Unit("dB")),
+            Some(KnownUnit::Degree) => (Some(Quantity::Phase), QuantityReason::UnitOfAngle),
+            Some(KnownUnit::Hertz) => (Some(Quantity::Frequency), QuantityReason::Unit("Hz")),
             Some(KnownUnit::RadianPerSecond) if bare.is_empty() => {
-                (Some(Quantity::Frequency), "its unit is rad/s")
+                (Some(Quantity::Frequency), QuantityReason::Unit("rad/s"))
             }
-            _ if has_strokes => (
-                Some(Quantity::Magnitude),
-                "its name is between vertical bars",
-            ),
-            _ if name.contains('∠') => (Some(Quantity::Phase), "its name has an angle sign"),
-            _ => (None, ""),
+            _ if has_strokes => (Some(Quantity::Magnitude), QuantityReason::VerticalBars),
+            _ if name.contains('∠') => (Some(Quantity::Phase), QuantityReason::AngleSign),
+            _ => (None, QuantityReason::Unknown),
         };
         Self {
             quantity,
             unit,
             label: ResponseLabel::parse(name),
-            reason: reason.to_owned(),
+            reason,
         }
     }
 }

@@ -141,6 +141,7 @@ mod recognition_tests {
 
     use super::*;
     use crate::formats::reading_note::ColumnReading;
+    use crate::formats::reading_reason::{QuantityReason, UnitReason};
     use crate::formats::text::response_columns::{CoherenceColumn, ResponseParts};
     use crate::formats::text::table_reader::read_table;
     use crate::formats::text::unrecognised::UnsaidUnit;
@@ -214,13 +215,14 @@ mod recognition_tests {
             (Some("P"), Some("LAT"))
         );
         assert_eq!((response.parts, response.coherence), (POLAR, squared(3)));
-        let read_as = |number, name: &str, reading, reason: &str| ReadingNote::ReadAs {
+        let read_as = |number, name: &str, reading, word: &str, unit: &str| ReadingNote::ReadAs {
             place: ColumnPlace {
                 number,
                 name: Some(name.to_owned()),
             },
             reading,
-            reason: reason.to_owned(),
+            quantity: QuantityReason::WordInName(word.to_owned()),
+            unit: UnitReason::Unit(unit.to_owned()),
         };
         assert_eq!(
             found.notes[..2],
@@ -229,14 +231,10 @@ mod recognition_tests {
                     1,
                     "omega",
                     ColumnReading::Frequency { unit: "rad/s" },
-                    "its name contains omega, its unit is rad/s"
+                    "omega",
+                    "rad/s"
                 ),
-                read_as(
-                    2,
-                    "mag P/LAT",
-                    ColumnReading::MagnitudeInDb,
-                    "its name contains mag, its unit is dB"
-                )
+                read_as(2, "mag P/LAT", ColumnReading::MagnitudeInDb, "mag", "dB")
             ]
         );
     }

@@ -11,6 +11,7 @@
 use std::f64::consts::TAU;
 
 use crate::formats::reading_note::{ColumnReading, ReadingNote};
+use crate::formats::reading_reason::UnitReason;
 use crate::formats::text::column_meaning::ColumnMeaning;
 use crate::formats::text::quantity_words::{KnownUnit, Quantity};
 use crate::formats::text::response_columns::{
@@ -88,20 +89,20 @@ impl<'t> Recognition<'t> {
             }
         };
         let reason = match self.table.units.get(column).and_then(Option::as_ref) {
-            Some(unit) => format!(", its unit is {unit}"),
-            None => ", which implies the unit".to_owned(),
+            Some(unit) => UnitReason::Unit(unit.clone()),
+            None => UnitReason::Implied,
         };
-        self.note(column, ColumnReading::Frequency { unit }, &reason);
+        self.note(column, ColumnReading::Frequency { unit }, reason);
         Ok(FrequencyColumn { column, factor })
     }
 
-    /// Notes how a column is interpreted and for which reason; `more` is appended to the reason.
-    fn note(&mut self, column: usize, reading: ColumnReading, more: &str) {
-        let reason = format!("{}{more}", self.meanings[column].reason);
+    /// Notes how a column is interpreted and for which reasons.
+    fn note(&mut self, column: usize, reading: ColumnReading, unit: UnitReason) {
         self.notes.push(ReadingNote::ReadAs {
             place: column_place(self.table, column),
             reading,
-            reason,
+            quantity: self.meanings[column].reason.clone(),
+            unit,
         });
     }
 
@@ -110,7 +111,11 @@ impl<'t> Recognition<'t> {
         let mut responses = Vec::new();
         for group in self.groups() {
             if let Some(column) = group.column(Quantity::Error) {
-                self.note(column, ColumnReading::StandardDeviation, "");
+                self.note(
+                    column,
+                    ColumnReading::StandardDeviation,
+                    UnitReason::NotNeeded,
+                );
                 self.unused.push(column_name(self.table, column));
             }
             let Some(parts) = self.parts(&group) else {
@@ -139,8 +144,8 @@ impl<'t> Recognition<'t> {
             && let Some(im) = group.column(Quantity::Imaginary)
         {
             let parts = ResponseParts::Rectangular { re, im };
-            self.note(re, ColumnReading::Real, "");
-            self.note(im, ColumnReading::Imaginary, "");
+            self.note(re, ColumnReading::Real, UnitReason::NotNeeded);
+            self.note(im, ColumnReading::Imaginary, UnitReason::NotNeeded);
             if let Some(columns) = polar {
                 let polar = self.read_polar(columns);
                 // Do not ask for missing units of the polar form, which serves only as a check.
@@ -181,20 +186,20 @@ impl<'t> Recognition<'t> {
         }
         let mut factor = 1.0;
         let mut reading = ColumnReading::Coherence;
-        let mut reason = "";
+        let mut reason = UnitReason::NotNeeded;
         let numbers = &self.table.columns[column];
         if unit == Some(KnownUnit::Percent) {
             factor = 0.01;
             reading = ColumnReading::CoherenceInPercent;
-            reason = ", its unit is %";
+            reason = UnitReason::Unit("%".to_owned());
         } else if numbers.iter().any(|value| *value > LARGEST_COHERENCE) {
             factor = 0.01;
             reading = ColumnReading::CoherenceInPercent;
-            reason = ", some of its numbers are above 1";
+            reason = UnitReason::NumbersAboveOne;
         }
         let is_gamma = unit == Some(KnownUnit::Gamma);
         if is_gamma {
-            reason = ", its unit is γ, so it is squared";
+            reason = UnitReason::NotSquared;
         }
         self.note(column, reading, reason);
         CoherenceColumn {
@@ -235,16 +240,16 @@ impl<'t> Recognition<'t> {
         let PolarColumns { magnitude, phase } = columns;
         let mut unsaid = Vec::new();
         let mut in_db = false;
-        let mut reason = "";
+        let mut reason = UnitReason::NotNeeded;
         match self.meanings[magnitude].unit {
             Some(KnownUnit::Decibel) => {
                 in_db = true;
-                reason = "its unit is dB";
+                reason = UnitReason::Unit("dB".to_owned());
             }
-            Some(_) => reason = "its unit is not dB",
+            Some(_) => reason = UnitReason::NotDecibel,
             None if self.has_negative_levels(magnitude) => {
                 in_db = true;
-                reason = "some of its numbers are negative";
+                reason = UnitReason::NegativeNumbers;
             }
             None => unsaid.push(UnsaidUnit {
                 column: magnitude,
@@ -266,12 +271,12 @@ impl<'t> Recognition<'t> {
             } else {
                 ColumnReading::AbsoluteMagnitude
             };
-            self.note(magnitude, reading, &format!(", {reason}"));
+            self.note(magnitude, reading, reason);
             let unit = if in_degrees { "deg" } else { "rad" };
             self.note(
                 phase,
                 ColumnReading::Phase { unit },
-                &format!(", its unit is {unit}"),
+                UnitReason::Unit(unit.to_owned()),
             );
         }
         PolarReading {

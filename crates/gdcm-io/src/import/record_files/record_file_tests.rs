@@ -192,9 +192,10 @@ fn files_in_an_archive_are_records_of_it() {
             ("two.zip", Some("records/sides.mat"))
         ]
     );
-    assert_eq!(
-        found.ignored,
-        ["readme.md: an unsupported format, or an archive in the archive"]
+    assert!(
+        matches!(&found.ignored[..], [file] if file.starts_with("readme.md: ")),
+        "{:?}",
+        found.ignored
     );
     found
         .tables

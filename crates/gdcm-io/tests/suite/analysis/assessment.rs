@@ -177,12 +177,14 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
 fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_asked_for() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
-    study.apply(&setting::POINTS.to(40)).unwrap();
+    study.apply(&setting_table::POINTS.to(40)).unwrap();
     let off = analyze(&mut engine, &study);
     let kind = ScheduleKind::Polynomial { degree: 3 };
-    study.apply(&setting::SCHEDULE.to(kind)).unwrap();
+    study.apply(&setting_table::SCHEDULE.to(kind)).unwrap();
     let always = DelayScheduling::Always;
-    study.apply(&setting::SCHEDULE_DELAYS.to(always)).unwrap();
+    study
+        .apply(&setting_table::SCHEDULE_DELAYS.to(always))
+        .unwrap();
     let on = analyze(&mut engine, &study);
     let schedule = on.schedule.as_ref().unwrap();
     let mut delayed = 0;

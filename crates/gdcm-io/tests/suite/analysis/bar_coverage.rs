@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use gdcm_method::uncertainty::{Bar, Scalar, student_quantile};
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_study::Analysis;
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::results::uncertainty::Uncertainty;
 
 use super::uncertainty::{normal, set, study_of, uncertainty_of};
@@ -144,8 +144,8 @@ impl Population {
             let draws: Vec<ConditionDraw> =
                 (0..conditions).map(|_| self.draw(&mut state)).collect();
             let mut study = study_of(&dataset(&draws, self.responses));
-            set(&mut study, setting::POINTS.to(5));
-            set(&mut study, setting::POOLING.to(self.prior_degrees));
+            set(&mut study, setting_table::POINTS.to(5));
+            set(&mut study, setting_table::POOLING.to(self.prior_degrees));
             let (analysis, found) = uncertainty_of(&study);
             coverage.count(&draws, &analysis, &found);
         }

@@ -150,7 +150,10 @@ fn the_weights_are_those_of_the_reference() {
 
 #[test]
 fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
-    let analysis = with(&noisy(), &[setting::COST_AVERAGE.to(CostAverage::Mean)]);
+    let analysis = with(
+        &noisy(),
+        &[setting_table::COST_AVERAGE.to(CostAverage::Mean)],
+    );
     let result = only(&analysis);
     for (pair, gain) in result.comparison.delta.gain.iter() {
         // Rounding only: the response is measured at the frequencies of the analysis and converted
@@ -177,8 +180,8 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
     let off = with(
         &noisy(),
         &[
-            setting::COST_AVERAGE.to(CostAverage::Mean),
-            setting::COHERENCE.to(None::<f64>),
+            setting_table::COST_AVERAGE.to(CostAverage::Mean),
+            setting_table::COHERENCE.to(None::<f64>),
         ],
     );
     let gain = only(&off).comparison.delta.gain[Pair::new(0, 0)].unwrap();
@@ -193,9 +196,9 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
 fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
     let equal = dataset(Some(&|_, _| 0.8), None);
     for points in [200, 131] {
-        let points = setting::POINTS.to(points);
+        let points = setting_table::POINTS.to(points);
         let on = with(&equal, std::slice::from_ref(&points));
-        let off = with(&equal, &[points, setting::COHERENCE.to(None::<f64>)]);
+        let off = with(&equal, &[points, setting_table::COHERENCE.to(None::<f64>)]);
         assert_eq!(
             on.study.settings.coherence_threshold,
             Some(DEFAULT_COHERENCE),
@@ -225,7 +228,7 @@ fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
     let plain = dataset(None, None);
     assert_eq!(Settings::for_dataset(&plain).coherence_threshold, None);
     let off = with(&plain, &[]);
-    let on = with(&plain, &[setting::COHERENCE.to(Some(0.9))]);
+    let on = with(&plain, &[setting_table::COHERENCE.to(Some(0.9))]);
     assert_eq!(
         (&off.conditions, &off.schedule),
         (&on.conditions, &on.schedule)
@@ -307,7 +310,7 @@ fn a_result_says_what_coherence_did() {
         "{said:?}"
     );
 
-    let off = with(&noisy(), &[setting::COHERENCE.to(None::<f64>)]);
+    let off = with(&noisy(), &[setting_table::COHERENCE.to(None::<f64>)]);
     let cautions = &only(&off).cautions;
     assert!(
         cautions.contains(&Caution::CoherenceNotUsed),
@@ -320,7 +323,7 @@ fn a_threshold_outside_0_to_1_is_refused() {
     let mut study = Study::new(noisy());
     for threshold in [-0.1, 1.1, f64::NAN] {
         let refusal = study
-            .apply(&setting::COHERENCE.to(Some(threshold)))
+            .apply(&setting_table::COHERENCE.to(Some(threshold)))
             .unwrap_err();
         assert!(
             matches!(

@@ -512,7 +512,7 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
             "{scheduled_s} of {second_s}"
         );
     }
-    let never = setting::SCHEDULE_DELAYS.to(DelayScheduling::Never);
+    let never = setting_table::SCHEDULE_DELAYS.to(DelayScheduling::Never);
     let without = only(&json(NEAR), &[never]).schedule.unwrap();
     assert!(!without.has_delays() && without.cautions[0] == lowered);
     let gains = |of: &gdcm_method::correction::ChannelCorrection| {
@@ -562,7 +562,7 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
 
 #[test]
 fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_between() {
-    let wild = setting::AIRSPEED_TOLERANCE.to(0.0);
+    let wild = setting_table::AIRSPEED_TOLERANCE.to(0.0);
     let analysis = only(&json(NEAR), std::slice::from_ref(&wild));
     let schedule = analysis.schedule.as_ref().unwrap();
     assert!(schedule.interpolation_fails());
@@ -570,7 +570,7 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
         panic!("{:?}", schedule.cautions)
     };
     assert_eq!(between_kt.map(|kt| (10.0 * kt).round()), [600.0, 1200.0]);
-    let table = setting::SCHEDULE.to(ScheduleKind::Table);
+    let table = setting_table::SCHEDULE.to(ScheduleKind::Table);
     assert!(
         !only(&json(NEAR), &[wild, table])
             .schedule
@@ -605,7 +605,7 @@ fn a_pole_on_the_grid_is_named() {
 fn a_vanishing_alpha_gives_the_products_of_none_and_scattered_gains_are_no_unit() {
     let value = json(SIX_BY_FOUR);
     let products = |alpha: f64| {
-        let analysis = only(&value, &[setting::ALPHA_GAIN.to(alpha)]);
+        let analysis = only(&value, &[setting_table::ALPHA_GAIN.to(alpha)]);
         let result = analysis.condition(ONLY).unwrap();
         let net = result.cost.map(|pair, _| result.correction.net_gain(pair));
         // The gains of O5, 15.1 and 5.6, are near enough to each other for a unit factor; the gains

@@ -104,10 +104,10 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
             upper: 3.0,
         };
         for edit in [
-            setting::GAIN_BOUNDS.to(Some(bounds)),
-            setting::DELAY_UPPER.to(Some(0.1)),
-            setting::ALPHA_GAIN.to(0.0),
-            setting::ALPHA_DELAY.to(0.0),
+            setting_table::GAIN_BOUNDS.to(Some(bounds)),
+            setting_table::DELAY_UPPER.to(Some(0.1)),
+            setting_table::ALPHA_GAIN.to(0.0),
+            setting_table::ALPHA_DELAY.to(0.0),
         ] {
             study.apply(&edit).unwrap();
         }
@@ -150,7 +150,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
 fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
     let mut study = Study::new(Arc::new(dataset_of("compleib_HE2_AH64_130kt.json", 0.0)));
     study
-        .apply(&setting::BAND.to(Band::new(0.1, 12.0).unwrap()))
+        .apply(&setting_table::BAND.to(Band::new(0.1, 12.0).unwrap()))
         .unwrap();
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let failure = analysis.conditions[&ConditionId(1)].as_ref().unwrap_err();

@@ -54,7 +54,10 @@ fn g_from_the_mean_is_the_mean_of_ln_g_of_every_pair_of_kept_models() {
         .collect();
     study.apply(&Edit::RejectEach(models)).unwrap();
     let of_representatives = analyze(&mut Engine::default(), &study);
-    set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
+    set(
+        &mut study,
+        setting_table::GAIN_SOURCE.to(GainSource::MeanOfPairs),
+    );
     let analysis = analyze(&mut Engine::default(), &study);
     let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
     assert!(
@@ -106,27 +109,20 @@ fn g_from_the_mean_is_the_mean_of_ln_g_of_every_pair_of_kept_models() {
 #[test]
 fn with_leads_g_from_the_mean_changes_nothing_and_the_settings_say_so() {
     let mut study = study_of_example();
-    set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
+    set(&mut study, setting_table::PHASE.to(PhaseCorrection::Lead));
     let of_representatives = analyze(&mut Engine::default(), &study);
-    assert_eq!(study.settings.gain_source_words(), "the representatives");
-    set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
+    assert!(!study.settings.is_gain_source_idle());
+    set(
+        &mut study,
+        setting_table::GAIN_SOURCE.to(GainSource::MeanOfPairs),
+    );
     let of_mean = analyze(&mut Engine::default(), &study);
     for (id, result) in &of_mean.conditions {
         let with = result.as_ref().unwrap();
         let without = of_representatives.condition(*id).unwrap();
         assert_eq!(with.correction, without.correction, "condition {id}");
     }
-    assert!(
-        study
-            .settings
-            .gain_source_words()
-            .contains("without effect"),
-        "{}",
-        study.settings.gain_source_words()
-    );
-    set(&mut study, setting::PHASE.to(PhaseCorrection::Delay));
-    assert_eq!(
-        study.settings.gain_source_words(),
-        "the mean over all kept pairs"
-    );
+    assert!(study.settings.is_gain_source_idle());
+    set(&mut study, setting_table::PHASE.to(PhaseCorrection::Delay));
+    assert!(!study.settings.is_gain_source_idle());
 }

@@ -10,7 +10,7 @@ use gdcm_io::files::corrections_file::corrections;
 use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Analysis, Edit, Engine, Study};
 
 mod across;

@@ -362,8 +362,8 @@ fn applied(z: &[f64]) -> Dataset {
 fn corrected_costs(z: &[f64]) -> [[f64; 2]; 2] {
     let mut study = Study::new(Arc::new(applied(z)));
     for edit in [
-        setting::PHASE.to(PhaseCorrection::Lead),
-        setting::POINTS.to(POINTS),
+        setting_table::PHASE.to(PhaseCorrection::Lead),
+        setting_table::POINTS.to(POINTS),
     ] {
         study.apply(&edit).unwrap();
     }

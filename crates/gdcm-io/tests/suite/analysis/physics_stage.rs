@@ -13,7 +13,7 @@ use gdcm_study::decisions::physics_settings::ParameterDecision;
 use gdcm_study::jobs::analysis_jobs::PhysicsJob;
 use gdcm_study::jobs::job::Job;
 use gdcm_study::results::applied_physics::AppliedPhysics;
-use gdcm_study::results::couplings_assessment::AxisCost;
+use gdcm_study::results::correction_costs::AxisCost;
 use gdcm_study::results::moved_models::MovedModels;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::rerun_check::RerunVerdict;
@@ -42,9 +42,9 @@ fn reference_study(physics: PhysicsCorrection) -> Study {
 fn study_of(dataset: &Arc<Dataset>, physics: PhysicsCorrection) -> Study {
     let mut study = Study::new(Arc::clone(dataset));
     for edit in [
-        setting::PHASE.to(PhaseCorrection::Lead),
-        setting::POINTS.to(40_usize),
-        setting::PHYSICS.to(physics),
+        setting_table::PHASE.to(PhaseCorrection::Lead),
+        setting_table::POINTS.to(40_usize),
+        setting_table::PHYSICS.to(physics),
     ] {
         study.apply(&edit).unwrap();
     }
@@ -593,7 +593,7 @@ fn stopping_the_job_ends_it() {
 fn couplings_are_fitted_to_the_moved_models() {
     let with = |physics| {
         let mut study = reference_study(physics);
-        let couplings = setting::COUPLINGS.to(gdcm_study::CouplingCorrection::Mixing);
+        let couplings = setting_table::COUPLINGS.to(gdcm_study::CouplingCorrection::Mixing);
         study.apply(&couplings).unwrap();
         let analysis = analyze(&mut Engine::default(), &study);
         analysis.fitted_couplings().unwrap().clone()
@@ -607,7 +607,7 @@ fn the_pattern_of_couplings_and_leads_suggests_runs() {
     let dataset = load_dataset(&path).unwrap().dataset;
     let mut study = Study::new(Arc::clone(&dataset));
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
         .unwrap();
     let mut engine = Engine::with_executor(Box::new(crate::EveryCore));
     let analysis = analyze(&mut engine, &study);

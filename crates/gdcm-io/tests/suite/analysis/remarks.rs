@@ -19,7 +19,7 @@ fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
 fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
-    study.apply(&setting::POINTS.to(40)).unwrap();
+    study.apply(&setting_table::POINTS.to(40)).unwrap();
     let held = [("NY", "LAT"), ("P", "PED"), ("R", "LAT")]
         .map(|(output, input)| study.dataset.find_pair(output, input));
     for pair in study.dataset.on_axis().pairs() {
@@ -54,7 +54,7 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
 fn a_condition_that_is_left_out_of_the_schedule_says_so() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
-    study.apply(&setting::POINTS.to(40)).unwrap();
+    study.apply(&setting_table::POINTS.to(40)).unwrap();
     study
         .apply(&Edit::SetScheduled {
             condition: ConditionId(3),
@@ -70,7 +70,7 @@ fn a_condition_that_is_left_out_of_the_schedule_says_so() {
 fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
-    study.apply(&setting::POINTS.to(40)).unwrap();
+    study.apply(&setting_table::POINTS.to(40)).unwrap();
     // LON and COL to Q and NZ form a loop of four held responses.
     for (output, input) in [("Q", "LON"), ("Q", "COL"), ("NZ", "LON"), ("NZ", "COL")] {
         let pair = study.dataset.find_pair(output, input).unwrap();
@@ -93,10 +93,10 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
             .any(|remark| remark.kind() == RemarkKind::Trouble)
     );
     assert!(matches!(
-        study.apply(&setting::AGREEMENT.to(3.1)),
+        study.apply(&setting_table::AGREEMENT.to(3.1)),
         Err(EditRefusal::OutOfRange { found: 3.1, .. })
     ));
-    study.apply(&setting::AGREEMENT.to(3.0)).unwrap();
+    study.apply(&setting_table::AGREEMENT.to(3.0)).unwrap();
     let lenient = analyze(&mut engine, &study);
     let result = lenient.condition(ConditionId(1)).unwrap();
     assert!(

@@ -152,7 +152,7 @@ fn the_example_gives_rise_to_no_doubt() {
 fn an_input_of_the_other_sign_is_the_input_and_the_physics_can_be_turned_in_its_place() {
     let mut study = scaled(BundleKind::Physics, COL, -1.0);
     let mut engine = Engine::default();
-    study.apply(&setting::POINTS.to(40)).unwrap();
+    study.apply(&setting_table::POINTS.to(40)).unwrap();
     let found: Vec<Channel> = analyze(&mut engine, &study)
         .doubts
         .iter()
@@ -179,7 +179,7 @@ fn a_unit_that_one_side_has_otherwise_is_found_with_its_factor() {
         (COL, 100.0),
     ] {
         let mut study = scaled(BundleKind::Identified, channel, factor);
-        study.apply(&setting::POINTS.to(40)).unwrap();
+        study.apply(&setting_table::POINTS.to(40)).unwrap();
         let doubts = analyze(&mut Engine::default(), &study).doubts;
         let [doubt] = &doubts[..] else {
             panic!("{factor}: {doubts:?}")

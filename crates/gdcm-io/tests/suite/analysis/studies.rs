@@ -19,7 +19,7 @@ use crate::EveryCore;
 /// their number.
 fn short_study() -> Study {
     let mut study = study_of_example();
-    study.apply(&setting::POINTS.to(40)).unwrap();
+    study.apply(&setting_table::POINTS.to(40)).unwrap();
     study
 }
 
@@ -53,10 +53,10 @@ fn an_engine_that_has_seen_other_settings_gives_the_same_result_as_a_new_one() {
     let mut used = Engine::default();
     analyze(&mut used, &study);
     for edit in [
-        setting::ALPHA_GAIN.to(0.01),
-        setting::POINTS.to(25),
-        setting::QUANTILE.to(0.1),
-        setting::ALPHA_GAIN.to(0.5),
+        setting_table::ALPHA_GAIN.to(0.01),
+        setting_table::POINTS.to(25),
+        setting_table::QUANTILE.to(0.1),
+        setting_table::ALPHA_GAIN.to(0.5),
     ] {
         study.apply(&edit).unwrap();
         analyze(&mut used, &study);
@@ -124,9 +124,13 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     let analysis = analyze(&mut engine, &study);
     let written = corrections(&analysis, "", &BTreeSet::from([ConditionId(1)]));
     assert!(written["schedule"].is_null());
+    let Err(error) = &analysis.schedule else {
+        panic!("there is a schedule")
+    };
+    assert_eq!(error.code(), "no-condition-to-schedule");
     assert_eq!(
         written["assessment"]["left_out"][0]["why"],
-        "no schedule: none of the conditions chosen for it has a correction"
+        error.to_string()
     );
 }
 

@@ -19,7 +19,7 @@ use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::dataset_differences::Difference as DatasetDifference;
 use gdcm_study::results::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
 use gdcm_words::ExplainTarget;
-use gdcm_words::derivation::derivation;
+use gdcm_words::derivation::{SPREAD_ALONE, derivation};
 
 use super::*;
 
@@ -305,7 +305,7 @@ fn study_of_known_spread() -> (Study, Value) {
     let case = case("A_pure_gain_bundles");
     let mut study = study_of(&case["dataset"]);
     let kind = ScheduleKind::Polynomial { degree: 1 };
-    set(&mut study, setting::SCHEDULE.to(kind));
+    set(&mut study, setting_table::SCHEDULE.to(kind));
     (study, case)
 }
 
@@ -358,7 +358,7 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
             }
         }
         let mut study = study_of(&dataset);
-        set(&mut study, setting::POINTS.to(40));
+        set(&mut study, setting_table::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
         let gain = bar(Scalar::Gain(Pair::new(0, 0)));
@@ -724,7 +724,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
         "inputs": [{"name": "U", "unit": "%"}], "outputs": [{"name": "Y", "unit": "deg/s"}], "on_axis": [["Y", "U"]],
         "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"}, "conditions": conditions});
     let mut study = study_of(&dataset);
-    set(&mut study, setting::POINTS.to(5));
+    set(&mut study, setting_table::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
     let covers = |of: &gdcm_study::results::uncertainty::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))]
@@ -810,10 +810,7 @@ fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_er
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let says_so = |asked: ExplainTarget| {
         let found = derivation(&analysis, &asked).unwrap();
-        found
-            .rests_on
-            .iter()
-            .any(|line| line.contains("the spread of the models alone"))
+        found.rests_on.iter().any(|line| line == SPREAD_ALONE)
     };
     let told = ConditionId(1);
     assert!(
@@ -837,7 +834,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
         .map(|condition| condition.as_ref().clone())
         .collect();
     let mut study = Study::new(Arc::new(Dataset::new(example.header(), first_two).unwrap()));
-    set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
+    set(&mut study, setting_table::PHASE.to(PhaseCorrection::Lead));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let written = corrections(

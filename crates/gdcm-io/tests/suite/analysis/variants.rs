@@ -10,7 +10,6 @@ use gdcm_study::decisions::edit_refusal::EditRefusal;
 use gdcm_study::decisions::history::History;
 use gdcm_study::jobs::analysis_jobs::VariantJob;
 use gdcm_study::jobs::job::Job;
-use gdcm_words::decision_differences::decision_differences;
 
 use super::*;
 
@@ -124,7 +123,7 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
     let mut engine = Engine::default();
     apply(
         &mut study,
-        &[setting::POINTS.to(40), Edit::Reject(nominal_of_10())],
+        &[setting_table::POINTS.to(40), Edit::Reject(nominal_of_10())],
     );
     let without = analyze(&mut engine, &study);
     apply(
@@ -164,9 +163,9 @@ fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
     apply(
         &mut study,
         &[
-            setting::ALPHA_GAIN.to(0.1),
+            setting_table::ALPHA_GAIN.to(0.1),
             keep(" soft "),
-            setting::ALPHA_GAIN.to(9.0),
+            setting_table::ALPHA_GAIN.to(9.0),
         ],
     );
     let before = study.clone();
@@ -236,14 +235,17 @@ fn a_variant_is_analysed_like_a_study_with_its_decisions() {
     apply(
         &mut study,
         &[
-            setting::POINTS.to(40),
-            setting::ALPHA_GAIN.to(0.01),
+            setting_table::POINTS.to(40),
+            setting_table::ALPHA_GAIN.to(0.01),
             keep("soft"),
         ],
     );
     apply(
         &mut study,
-        &[setting::ALPHA_GAIN.to(1.0), Edit::Reject(nominal_of_10())],
+        &[
+            setting_table::ALPHA_GAIN.to(1.0),
+            Edit::Reject(nominal_of_10()),
+        ],
     );
     let job = VariantJob {
         study: study.of_variant("soft").unwrap(),
@@ -272,44 +274,6 @@ fn a_variant_is_analysed_like_a_study_with_its_decisions() {
         &[Edit::SetReason(nominal_of_10(), "step".to_owned())],
     );
     assert_eq!(rejected, VariantJob { study: reworded });
-}
-
-#[test]
-fn what_differs_between_decisions_is_told_in_plain_words() {
-    let before = study_of_example();
-    let mut after = before.clone();
-    assert_eq!(decision_differences(&before, &after), []);
-    let pair = before.dataset.find_pair("Q", "LON").unwrap();
-    let reject = Edit::RejectBecause {
-        model: nominal_of_10(),
-        reason: "step".to_owned(),
-    };
-    apply(
-        &mut after,
-        &[setting::ALPHA_GAIN.to(0.1), Edit::Hold(pair, false), reject],
-    );
-    let left_out = Edit::SetScheduled {
-        condition: ConditionId(3),
-        scheduled: false,
-    };
-    apply(
-        &mut after,
-        &[left_out, keep("kept"), setting::DELAY_UPPER.to(Some(0.02))],
-    );
-    let words: Vec<String> = decision_differences(&before, &after)
-        .iter()
-        .map(ToString::to_string)
-        .collect();
-    assert_eq!(
-        words,
-        [
-            "α of the gains: 1 → 0.1",
-            "upper delay bound: by the quantile → 20 ms",
-            "LON → Q: held → free",
-            "condition 3: in the schedule → left out of the schedule",
-            "nominal (condition 10): kept → rejected (step)",
-        ]
-    );
 }
 
 #[test]

@@ -16,9 +16,9 @@ use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
 use gdcm_study::decisions::edit_refusal::EditRefusal;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting::SETTINGS;
-use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
 
@@ -215,8 +215,10 @@ fn older_programs_find_a_flag_where_they_look_for_it() {
     let loaded = desk.loaded();
     for (scheduling, flag) in [("automatic", false), ("always", true), ("never", false)] {
         let mut study = Study::new(loaded.dataset.clone());
-        let value = setting::SCHEDULE_DELAYS.read(&[scheduling]).unwrap();
-        study.apply(&setting::SCHEDULE_DELAYS.to(value)).unwrap();
+        let value = setting_table::SCHEDULE_DELAYS.read(&[scheduling]).unwrap();
+        study
+            .apply(&setting_table::SCHEDULE_DELAYS.to(value))
+            .unwrap();
         save_study(&study, &loaded, &desk.study()).unwrap();
         let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
         let settings = &text["settings"];
@@ -280,7 +282,7 @@ fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_
         Some(0.6),
         "one response is measured with coherence"
     );
-    decided(&mut expected, &[setting::COHERENCE.to(None::<f64>)]);
+    decided(&mut expected, &[setting_table::COHERENCE.to(None::<f64>)]);
     assert_eq!(
         opened.study, expected,
         "an older program took no notice of coherence"
@@ -324,7 +326,7 @@ fn a_study_of_the_embedded_example_has_no_path() {
     let path = directory.path().join("example.gdcm-study.json");
     let loaded = embedded_example().unwrap();
     let mut study = Study::new(loaded.dataset.clone());
-    decided(&mut study, &[setting::ALPHA_GAIN.to(0.1 + 0.2)]);
+    decided(&mut study, &[setting_table::ALPHA_GAIN.to(0.1 + 0.2)]);
     save_study(&study, &loaded, &path).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!(
@@ -382,7 +384,7 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
     decided(
         &mut study,
         &[
-            setting::ALPHA_GAIN.to(0.5),
+            setting_table::ALPHA_GAIN.to(0.5),
             Edit::Reject(model(7, BundleKind::Physics, "V+5kt")),
             Edit::Pin(model(7, BundleKind::Identified, "measured")),
         ],

@@ -6,14 +6,14 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::progress::Unobserved;
 use gdcm_plot::figure::leads::leads_figure;
 use gdcm_plot::figure::{ConditionSource, Mark};
-use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_table;
 use gdcm_study::{Engine, PhaseCorrection, Study};
 
 #[test]
 fn leads_are_drawn_to_ten_times_the_band_with_the_limit_and_the_price() {
     let mut study = Study::new(embedded_example().expect("it is in the program").dataset);
     study
-        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .apply(&setting_table::PHASE.to(PhaseCorrection::Lead))
         .expect("the example takes it");
     let mut engine = Engine::default();
     let id = ConditionId(10);

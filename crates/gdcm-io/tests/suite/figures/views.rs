@@ -8,6 +8,8 @@ use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{Mark, Role};
+use gdcm_study::results::analysis::NotAssessed;
+use gdcm_words::assessment::not_assessed_text;
 use gdcm_words::uncertainty::differences_summary;
 
 use super::*;
@@ -152,10 +154,12 @@ fn channels_stand_over_conditions_in_file_order_with_their_bounds() {
 fn an_assessment_names_what_is_left_out_and_why() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Assessment, example.on_axis());
+    let why = not_assessed_text(
+        &NotAssessed::NominalRejected,
+        &example.analysis.study.dataset,
+    );
     assert!(
-        figure
-            .caption
-            .contains("Condition 10 is left out: the nominal model is rejected"),
+        figure.caption.contains(&why) && figure.caption.contains(" 10 "),
         "{}",
         figure.caption
     );
@@ -464,4 +468,53 @@ fn a_physics_parameter_is_drawn_in_every_condition_with_the_misfit_that_remains(
     let remaining: Vec<f64> = misfit.panels[0].dots().map(|dot| dot.y).collect();
     assert_eq!(remaining, ratios);
     assert_eq!(remaining[0], 100.0, "without parameters");
+}
+
+/// J (eq. (14) to (19)) of the drawn curves, recomputed from their definition, is the J in the title.
+#[test]
+fn responses_before_and_after_the_parameters_keep_the_cost_of_their_shape() {
+    let figure = EXAMPLE.figure(FigureKind::PhysicsChange, Vec::new());
+    let effect = &EXAMPLE.physics.conditions[&CONDITION];
+    let (poles, responses) = figure.plots.split_last().unwrap();
+    assert!(poles.panels[0].dots().count() > 0);
+    assert_eq!(responses.len(), 5);
+    let mut improvements = Vec::new();
+    for (plot, response) in responses.iter().zip(&effect.responses) {
+        let cost = response.cost.with;
+        improvements.push(response.cost.without - cost);
+        let mut expected = 0.0;
+        // Weights of eq. (14): 20 for dB^2, 20 * 0.0175 for deg^2.
+        for (panel, weight) in plot.panels.iter().zip([20.0, 20.0 * 0.0175]) {
+            let identified = curve_named(panel, "identified");
+            let moved = curve_named(panel, "physics, parameters moved");
+            let errors = identified.y.iter().zip(moved.y.iter());
+            let mut squares: Vec<f64> = errors
+                .map(|(reference, moved)| {
+                    let error = moved - reference;
+                    // Turns are whole; only phases can differ by more than half a turn.
+                    let error = error - 360.0 * (error / 360.0).round();
+                    error * error
+                })
+                .collect();
+            expected += weight * gdcm_model::statistics::median(&mut squares);
+        }
+        // Relative tolerance: the errors are differences of values up to 1e3, rounded to 1e-13.
+        assert!(
+            (cost - expected).abs() < 1e-9 * expected.max(1.0),
+            "{cost} {expected}"
+        );
+    }
+    assert!(improvements[0] > 0.0);
+    assert!(improvements.is_sorted_by(|a, b| a >= b));
+}
+
+fn curve_named<'a>(panel: &'a Panel, name: &str) -> &'a Curve {
+    panel
+        .marks
+        .iter()
+        .find_map(|mark| match mark {
+            Mark::Curve(curve) if curve.name == name => Some(curve),
+            _ => None,
+        })
+        .unwrap()
 }

@@ -302,7 +302,7 @@ fn own_files() -> [NamedBytes; 4] {
     add_rules(&rules, &rules_path, &mut outputs).unwrap();
     add_tolerances(&ToleranceTable::default(), &tolerances_path, &mut outputs).unwrap();
     outputs.persist().unwrap();
-    let levels = br#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}, {"name": "Level 2", "axis": "Q", "points": [[1, 0.1], [3, 0.4]]}]"#;
+    let levels = br#"[{"name": "Level 1", "level": 1, "axis": "P", "points": [[2, 0], [2.5, 0.2]]}, {"name": "Level 2", "axis": "Q", "points": [[1, 0.1], [3, 0.4]]}]"#;
     let of = |name: &str, path: &Path| (name.to_owned(), std::fs::read(path).unwrap());
     [
         of(STUDY, &study_path),

@@ -1,4 +1,5 @@
-//! J of the physics representatives without and with couplings, averaged over the conditions (M16.4).
+//! J of the physics representatives without and with a correction of the physics models (couplings
+//! or physics parameters), averaged over the conditions (M16.4, M18.5).
 
 use gdcm_method::couplings::LeftOutFit;
 use gdcm_method::schedule::CostChange;
@@ -8,7 +9,7 @@ use crate::results::analysis::Analysis;
 use crate::results::assessment_table::{
     AssessedCorrection, AssessedModel, AssessmentChoice, assessed,
 };
-use crate::results::couplings_assessment::{AxisCost, CouplingCost, CouplingCosts};
+use crate::results::correction_costs::{AxisCost, CorrectionCost, CorrectionCosts};
 
 /// Results of a condition that is left out of the fit of couplings and the schedule.
 pub(super) struct LeftOutCondition {
@@ -19,7 +20,7 @@ pub(super) struct LeftOutCondition {
 /// J of a condition that is left out of the fits and the schedule.
 pub(super) struct LeftOutCost {
     pub(super) condition: ConditionId,
-    pub(super) cost: CouplingCost,
+    pub(super) cost: CorrectionCost,
     /// J without the correction assessed, response by response.
     without: PairTable<Option<CostChange>>,
     /// J with it, response by response.
@@ -82,18 +83,18 @@ fn changes(
 }
 
 /// Averages J over the conditions, without and with the correction assessed.
-pub(super) fn coupling_costs(
+pub(super) fn correction_costs(
     without: &Analysis,
     with: &Analysis,
     left_out: &[&LeftOutCost],
-) -> CouplingCosts {
+) -> CorrectionCosts {
     let own = cost_sums(without, with, AssessedCorrection::Own);
     let scheduled = cost_sums(without, with, AssessedCorrection::Scheduled);
     let mut unseen = CostSums::new(without.study.dataset.on_axis());
     for condition in left_out {
         unseen.add(&condition.without, &condition.with);
     }
-    CouplingCosts {
+    CorrectionCosts {
         uncorrected: own.uncorrected(),
         own: own.corrected(),
         scheduled: scheduled.corrected(),
@@ -110,8 +111,8 @@ pub(super) fn uncorrected_cost(analysis: &Analysis) -> AxisCost {
     cost_sums(analysis, analysis, AssessedCorrection::Own).uncorrected()
 }
 
-/// Sums J under a correction over the conditions that can be assessed both without and with
-/// couplings.
+/// Sums J under a channel correction over the conditions that can be assessed both without and with
+/// the correction of the physics models.
 fn cost_sums<'a>(
     without: &'a Analysis,
     with: &Analysis,
@@ -171,7 +172,8 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Adds the responses of a condition that can be compared both without and with couplings.
+    /// Adds the responses of a condition that can be compared both without and with the
+    /// correction.
     fn add(
         &mut self,
         without: &PairTable<Option<CostChange>>,
@@ -206,9 +208,9 @@ impl<'a> CostSums<'a> {
         self.means(|sum| sum.uncorrected)
     }
 
-    /// Returns the mean J without and with couplings.
-    fn corrected(&self) -> CouplingCost {
-        CouplingCost {
+    /// Returns the mean J without and with the correction.
+    fn corrected(&self) -> CorrectionCost {
+        CorrectionCost {
             without: self.means(|sum| sum.without),
             with: self.means(|sum| sum.with),
         }
@@ -269,6 +271,6 @@ mod tests {
             }
         );
         assert!(found.is_worth_it(), "a tenth less");
-        assert!(!CouplingCost::default().is_worth_it());
+        assert!(!CorrectionCost::default().is_worth_it());
     }
 }

@@ -1,0 +1,42 @@
+//! Reasons for the interpretation of a column in a table of frequency responses.
+
+/// Reason for the quantity of a column.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum QuantityReason {
+    #[error("its name is \"{0}\"")]
+    Name(String),
+    #[error("its name contains {0}")]
+    WordInName(String),
+    #[error("its unit is {0}")]
+    Unit(&'static str),
+    #[error("its unit is an angle")]
+    UnitOfAngle,
+    #[error("its name is between vertical bars")]
+    VerticalBars,
+    #[error("its name has an angle sign")]
+    AngleSign,
+    /// Neither name nor unit gives the quantity.
+    #[error("")]
+    Unknown,
+}
+
+/// Reason for the unit of a column, appended to the reason for its quantity.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnitReason {
+    /// The interpretation does not depend on the unit.
+    #[error("")]
+    NotNeeded,
+    #[error(", its unit is {0}")]
+    Unit(String),
+    /// The quantity implies the unit.
+    #[error(", which implies the unit")]
+    Implied,
+    #[error(", its unit is not dB")]
+    NotDecibel,
+    #[error(", some of its numbers are negative")]
+    NegativeNumbers,
+    #[error(", some of its numbers are above 1")]
+    NumbersAboveOne,
+    #[error(", its unit is γ, so it is squared")]
+    NotSquared,
+}

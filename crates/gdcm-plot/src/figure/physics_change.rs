@@ -1,0 +1,146 @@
+//! Effect of the physics parameters in a condition: the most improved responses without their
+//! differences in gain and delay, and the poles (M18.5).
+
+use std::sync::Arc;
+
+use gdcm_method::couplings::PoleShift;
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::number_format::decimals;
+use gdcm_study::results::physics_assessment::{ConditionPhysics, PhysicsAssessment};
+use gdcm_study::results::response_shapes::ResponseShapes;
+
+use super::axis::{Axis, FrequencyUnit, Range};
+use super::couplings::AXIS;
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Curve, Rule};
+use super::pole_shift::{PoleShiftNames, pole_shift_marks};
+
+const IDENTIFIED: Stroke = Stroke::solid(Color::new(Hue::Identified), 2.4);
+const BEFORE: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.2, Dash::Short);
+const AFTER: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.6);
+/// Maximum magnitude of the displayed poles, relative to the upper end of the band.
+const SHOWN_POLES: f64 = 1.5;
+/// Minimum height of the ranges of magnitude \[dB\] and phase \[deg\].
+const LEAST_DB: f64 = 4.0;
+const LEAST_DEG: f64 = 20.0;
+/// Margin above and below the curves, relative to their height.
+const MARGIN: f64 = 0.06;
+
+/// Plots the `most` most improved responses of a condition, and its poles; `None` if the physics
+/// models of the condition are not moved.
+pub fn physics_change_figure(
+    assessment: &PhysicsAssessment,
+    dataset: &Dataset,
+    condition: ConditionId,
+    most: usize,
+    unit: FrequencyUnit,
+) -> Option<Figure> {
+    let effect = assessment.conditions.get(&condition)?;
+    if effect.responses.is_empty() {
+        return None;
+    }
+    let mut figure = Figure::new(format!("Physics parameters in condition {condition}"))
+        .caption(
+            "Each response with its own G and D (eq. (5), (9)), which belong to the correction; J is \
+            what remains.",
+        )
+        .columns(most + 1)
+        .aspect(1.3);
+    let frequencies = assessment
+        .omega
+        .iter()
+        .map(|omega| unit.of_omega(*omega))
+        .collect();
+    let plots = ResponsePlots {
+        dataset,
+        frequencies,
+        unit,
+    };
+    for response in effect.responses.iter().take(most) {
+        figure = figure.plot(plots.plot(response));
+    }
+    let near = SHOWN_POLES * assessment.band.max();
+    Some(figure.plot(pole_plot(effect, near)))
+}
+
+/// Axis and names common to the plots of the responses.
+struct ResponsePlots<'a> {
+    dataset: &'a Dataset,
+    frequencies: Arc<[f64]>,
+    unit: FrequencyUnit,
+}
+
+impl ResponsePlots<'_> {
+    fn plot(&self, response: &ResponseShapes) -> Plot {
+        let name = self.dataset.pair_name(response.pair);
+        let before = decimals(response.cost.without, 1);
+        let after = decimals(response.cost.with, 1);
+        let magnitudes = Traces {
+            identified: &response.identified.magnitude_db,
+            before: &response.physics.without.magnitude_db,
+            after: &response.physics.with.magnitude_db,
+        };
+        let phases = Traces {
+            identified: &response.identified.phase_deg,
+            before: &response.physics.without.phase_deg,
+            after: &response.physics.with.phase_deg,
+        };
+        let magnitude = Axis::linear("[dB]").showing(magnitudes.range(LEAST_DB));
+        let phase = Axis::degrees("[deg]").showing(phases.range(LEAST_DEG));
+        Plot::new(format!("{name}, J {before} → {after}"))
+            .panel(self.panel(magnitude, &magnitudes))
+            .panel(self.panel(phase, &phases))
+    }
+
+    fn panel(&self, y: Axis, traces: &Traces<'_>) -> Panel {
+        let mut panel = Panel::new(Axis::logarithmic(self.unit.axis_label()), y);
+        for (name, stroke, values) in [
+            ("identified", IDENTIFIED, traces.identified),
+            ("physics", BEFORE, traces.before),
+            ("physics, parameters moved", AFTER, traces.after),
+        ] {
+            let curve = Curve::new(name, stroke, Arc::clone(&self.frequencies), values.to_vec());
+            panel = panel.with(curve.key(name));
+        }
+        panel
+    }
+}
+
+/// Magnitudes or phases of a response.
+struct Traces<'a> {
+    identified: &'a [f64],
+    before: &'a [f64],
+    after: &'a [f64],
+}
+
+impl Traces<'_> {
+    /// Returns a range that contains all finite values and is at least `least` high.
+    fn range(&self, least: f64) -> Option<Range> {
+        let values = [self.identified, self.before, self.after].concat();
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        Some(Range::spanning(finite)?.with_margin(MARGIN, least))
+    }
+}
+
+/// Plots the poles of the physics representative up to the magnitude `near` \[rad/s\], before and
+/// after.
+fn pole_plot(effect: &ConditionPhysics, near: f64) -> Plot {
+    let mut shown: Vec<PoleShift> = Vec::new();
+    for shift in effect.poles.iter().flatten() {
+        if shift.after.norm() <= near {
+            shown.push(*shift);
+        }
+    }
+    let names = PoleShiftNames {
+        before: "pole, physics",
+        after: "pole, parameters moved",
+        color: Color::new(Hue::Perturbed),
+    };
+    let x = Axis::linear("Re λ [rad/s]").including(0.0);
+    let y = Axis::linear("Im λ [rad/s]");
+    let panel = Panel::new(x, y)
+        .with(Rule::vertical(0.0, AXIS))
+        .with_all(pole_shift_marks(&shown, &names));
+    Plot::new("Poles").panel(panel)
+}

@@ -1,0 +1,43 @@
+//! Text for the models from which G is computed.
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_study::decisions::settings::Settings;
+
+/// Describes the models from which G is computed: "the representatives". The text includes the
+/// reason why the source has no effect with leads.
+pub fn gain_source_text(settings: &Settings) -> String {
+    let source = match settings.gain_source {
+        GainSource::Representatives => "the representatives",
+        GainSource::MeanOfPairs => "the mean over all kept pairs",
+    };
+    if settings.is_gain_source_idle() {
+        return format!(
+            "{source}, without effect: with leads, G is computed from the difference between \
+            the representatives that remains after the leads"
+        );
+    }
+    source.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_study::PhaseCorrection;
+
+    use super::*;
+    use crate::example_tests::EXAMPLE;
+
+    #[test]
+    fn a_source_without_effect_is_described_as_such() {
+        let mut settings = EXAMPLE.study.settings.clone();
+        settings.phase = PhaseCorrection::Lead;
+        assert_eq!(gain_source_text(&settings), "the representatives");
+        settings.gain_source = GainSource::MeanOfPairs;
+        assert!(
+            gain_source_text(&settings).starts_with("the mean over all kept pairs, without effect"),
+            "{}",
+            gain_source_text(&settings)
+        );
+        settings.phase = PhaseCorrection::Delay;
+        assert_eq!(gain_source_text(&settings), "the mean over all kept pairs");
+    }
+}

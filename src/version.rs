@@ -1,0 +1,13 @@
+//! Version and commit of this program.
+//!
+//! The build script finds the commit (`build.rs`); [`gdcm_io::software`] states it in every file.
+
+/// Words about the commit, from the build script: "commit 0123456789ab", with ", modified" if a
+/// source file differed from it, or "commit unknown".
+pub const BUILT_FROM: &str = env!("GDCM_BUILT_FROM");
+
+/// Sets the commit that files state. Called once, at the start of the program; libraries that are
+/// used without it, as in tests, state that the commit is unknown.
+pub fn set_commit() {
+    gdcm_io::software::set_commit(BUILT_FROM);
+}

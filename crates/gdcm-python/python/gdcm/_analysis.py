@@ -673,7 +673,7 @@ def analyze(
     hold_out: Optional[Sequence[int]] = None,
     sign: Optional[Mapping[str, Union[str, int]]] = None,
     attitude_command: Optional[Sequence[str]] = None,
-    levels: Optional[PathText] = None,
+    levels: Union[PathText, Sequence[PathText], None] = None,
     tolerances: Optional[PathText] = None,
     progress: Optional[Progress] = None,
 ) -> Analysis:
@@ -752,8 +752,10 @@ def analyze(
         "-1:physics"}``, ``{"NZ": "-1:all"}``; 1 restores.
     attitude_command : sequence of str
         Outputs whose attitude the stick commands.
-    levels, tolerances
-        Files of level boundaries and of tolerances, for requirements.
+    levels
+        Boundaries of levels for requirements: files, or names such as "ads-33e-prf-yaw-tracking".
+    tolerances
+        File of the tolerances of time histories.
     progress : callable
         Called with the completed share (0 to 1) of the present step and its name, in the calling
         thread. An exception stops the work and is raised; so does Ctrl+C.

@@ -5,7 +5,8 @@
 //! command it opens the window, [`gui::app::open`]. In the window, `gui::panels` and `gui::views`
 //! turn clicks into commands (`gui::commands`), which change the state (`gui::state`) and start
 //! background work. Commands and window use the threads of [`executor`], and tell the engineer what
-//! happened by a [`message`] with a stable code ([`message_codes`]). `docs/architecture.md`
+//! happened by a [`message`] with a stable code ([`message_codes`]). [`cli::calls`] offers the
+//! commands as functions, of which the Python module is made. `docs/architecture.md`
 //! shows the crates below this one, and follows a click and a flight record through them.
 
 pub mod cli;
@@ -15,3 +16,13 @@ pub mod licences;
 pub mod message;
 pub mod message_codes;
 pub mod version;
+
+use std::ffi::OsString;
+
+/// Runs the program: carries out a command, or opens the window. The first argument is the name of
+/// the program. Returns the exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    version::set_commit();
+    gdcm_io::output_set::report_size_limit();
+    cli::run(arguments, gui::app::open)
+}

@@ -31,6 +31,16 @@ use super::terminal::keep_caution;
 /// Returns the printed summary: settings, results of each condition, schedule, assessment, and
 /// output files.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
+    let mut names = RESULT_FILES.to_vec();
+    if analysis.applied_physics().is_some() {
+        names.push(PHYSICS_FILE);
+    }
+    let files = format!("{} in {}", names.join(", "), sanitized_path(out));
+    result_summary(analysis, loaded) + &line("Written", &files)
+}
+
+/// Returns the summary without the output files; adds its cautions to the JSON object.
+pub(super) fn result_summary(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let mut text = heading(analysis, loaded);
     text += &doubts_section(analysis);
     for condition in analysis.study.dataset.conditions() {
@@ -44,13 +54,7 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text += &schedule_section(analysis);
     text += &assessment_lines(analysis);
     text += &held_out_line(analysis);
-    text += &evidence_section(analysis);
-    let mut names = RESULT_FILES.to_vec();
-    if analysis.applied_physics().is_some() {
-        names.push(PHYSICS_FILE);
-    }
-    let files = format!("{} in {}", names.join(", "), sanitized_path(out));
-    text + &line("Written", &files)
+    text + &evidence_section(analysis)
 }
 
 /// Returns the doubts about signs and units, and adds them to the JSON object.

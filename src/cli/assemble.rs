@@ -79,7 +79,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 
 /// Reads the models, and applies the rules from a file (proposed rules if none is given) together
 /// with the declarations on the command line.
-fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
+pub(super) fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
     let given = match &arguments.rules {
         Some(path) => Some(rules_of_file(path)?),
         None => None,
@@ -112,7 +112,7 @@ fn rules_of_file(path: &Path) -> Result<Rules, Failure> {
 }
 
 /// Reports the conditions that have no identified model, which is needed as the reference.
-fn report_missing_references(dataset: &Dataset) {
+pub(super) fn report_missing_references(dataset: &Dataset) {
     let without = dataset.without_reference();
     if !without.is_empty() {
         let failure = ConditionFailure::NoReference;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use gdcm_io::FileError;
+use gdcm_io::export_fault::ExportFault;
 use gdcm_model::number_format::counted;
 use gdcm_model::progress::Cancelled;
 
@@ -18,6 +19,12 @@ pub(super) const WRONG_INPUT: u8 = 2;
 pub(super) enum Failure {
     #[error("{0}{remedy}", remedy = file_remedy(.0))]
     File(#[from] FileError),
+    /// A result that a call cannot hand over.
+    #[error(transparent)]
+    Export(#[from] ExportFault),
+    /// The options of a call cannot be read.
+    #[error("{words}")]
+    CommandLine { words: String },
     #[error("{option}: {reason}")]
     Option {
         option: &'static str,
@@ -121,6 +128,8 @@ impl Failure {
     pub(super) fn code(&self) -> &'static str {
         match self {
             Failure::File(error) => error.code(),
+            Failure::Export(fault) => fault.code(),
+            Failure::CommandLine { .. } => "wrong-command-line",
             Failure::Option { code, .. } => code,
             Failure::UnknownCommand { .. } => "unknown-command",
             Failure::Different { .. } => "different-dataset",
@@ -150,8 +159,14 @@ impl Failure {
             | Failure::NoThreads { .. }
             | Failure::Cancelled(_)
             | Failure::StandardOutput { .. } => NOT_DONE,
-            Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
+            Failure::File(FileError::Export { fault, .. }) | Failure::Export(fault)
+                if fault.is_of_analysis() =>
+            {
+                NOT_DONE
+            }
             Failure::File(_)
+            | Failure::Export(_)
+            | Failure::CommandLine { .. }
             | Failure::Option { .. }
             | Failure::UnknownCommand { .. }
             | Failure::Different { .. }

@@ -23,7 +23,7 @@ use gdcm_words::coupling_error::coupling_error_text;
 use super::dataset_lookup::{channel_names, condition_ids, condition_of, pairs_of};
 use super::failure::Failure;
 use super::option_values::PairChoice;
-use super::progress::TerminalProgress;
+use super::progress::ProgressReceiver;
 use super::result_arguments::FigureArguments;
 use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
@@ -35,40 +35,19 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
         CommandStudy::open(&arguments.study, arguments.force)?;
     figure_format(&arguments.out)?;
     outputs.check(&[&arguments.out])?;
-    let mut request = figure_request(&study, arguments)?;
-    let condition = figure_condition(&study, arguments)?;
+    let place = FigurePlace::requested(&study, arguments)?;
     let bars = if arguments.bars || arguments.view.needs_bars() {
         ErrorBars::Computed
     } else {
         ErrorBars::Omitted
     };
-    let StudyAnalysis {
-        analysis,
-        mut engine,
-    } = analyze_study(study, &arguments.study, bars)?;
-    if arguments.view == FigureKind::Requirements {
-        request.requirements = Some(Arc::new(engine.requirements(
-            &analysis,
-            &KnownPoles::default(),
-            &Unobserved,
-        )?));
-    }
-    if arguments.view == FigureKind::Couplings {
-        request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
-    }
-    if matches!(
+    let mut analysed = analyze_study(study, &arguments.study, bars)?;
+    let figure = drawn_figure(
+        place,
+        &mut analysed,
         arguments.view,
-        FigureKind::Physics | FigureKind::PhysicsChange
-    ) {
-        request.physics = Some(assessed_physics(&analysis.study, &mut engine)?);
-    }
-    let figure = match condition {
-        None => request.figure(Some(&analysis), None),
-        Some(condition) => figure_of_condition(&request, &analysis, condition, &mut engine)?,
-    };
-    let figure = figure.ok_or_else(|| Failure::NoResult {
-        reason: "there is nothing to draw".to_owned(),
-    })?;
+        ProgressReceiver::Terminal,
+    )?;
     write_figure(&figure, arguments.width, &arguments.out, outputs)?;
     print(&format!(
         "{}: {}\n",
@@ -77,17 +56,73 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     ))
 }
 
+/// A requested figure, with its condition.
+pub(super) struct FigurePlace {
+    request: FigureRequest,
+    /// `None` for a figure of all conditions.
+    condition: Option<ConditionId>,
+}
+
+impl FigurePlace {
+    /// Reads the request from the arguments; an error if the study lacks what they name.
+    pub(super) fn requested(study: &Study, arguments: &FigureArguments) -> Result<Self, Failure> {
+        Ok(Self {
+            request: figure_request(study, arguments)?,
+            condition: figure_condition(study, arguments)?,
+        })
+    }
+}
+
+/// Draws a requested figure of an analysed study.
+///
+/// # Errors
+/// There is nothing to draw, or the work was stopped.
+pub(super) fn drawn_figure(
+    place: FigurePlace,
+    analysed: &mut StudyAnalysis,
+    view: FigureKind,
+    receiver: ProgressReceiver<'_>,
+) -> Result<Figure, Failure> {
+    let FigurePlace {
+        mut request,
+        condition,
+    } = place;
+    let StudyAnalysis { analysis, engine } = analysed;
+    let analysis = &*analysis;
+    if view == FigureKind::Requirements {
+        request.requirements = Some(Arc::new(engine.requirements(
+            analysis,
+            &KnownPoles::default(),
+            &Unobserved,
+        )?));
+    }
+    if view == FigureKind::Couplings {
+        request.couplings = Some(assessed_couplings(&analysis.study, engine, receiver)?);
+    }
+    if matches!(view, FigureKind::Physics | FigureKind::PhysicsChange) {
+        request.physics = Some(assessed_physics(&analysis.study, engine, receiver)?);
+    }
+    let figure = match condition {
+        None => request.figure(Some(analysis), None),
+        Some(condition) => figure_of_condition(&request, analysis, condition, engine, receiver)?,
+    };
+    figure.ok_or_else(|| Failure::NoResult {
+        reason: "there is nothing to draw".to_owned(),
+    })
+}
+
 /// Assesses the couplings requested by the study; without a request, mixing and feedback.
 fn assessed_couplings(
     study: &Study,
     engine: &mut Engine,
+    receiver: ProgressReceiver<'_>,
 ) -> Result<Arc<CouplingsAssessment>, Failure> {
     let couplings = match study.settings.couplings {
         CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
         requested => requested,
     };
-    let progress = TerminalProgress::new("couplings");
-    let assessed = engine.assess_couplings(study, couplings, &progress)?;
+    let progress = receiver.begin("couplings");
+    let assessed = engine.assess_couplings(study, couplings, &*progress)?;
     match assessed {
         Some(Ok(assessment)) => Ok(assessment),
         Some(Err(why)) => Err(Failure::NoResult {
@@ -100,13 +135,17 @@ fn assessed_couplings(
 }
 
 /// Diagnoses the physics parameters applied by the study; if it applies none, the named ones.
-fn assessed_physics(study: &Study, engine: &mut Engine) -> Result<Arc<PhysicsAssessment>, Failure> {
+fn assessed_physics(
+    study: &Study,
+    engine: &mut Engine,
+    receiver: ProgressReceiver<'_>,
+) -> Result<Arc<PhysicsAssessment>, Failure> {
     let physics = match study.settings.physics {
         PhysicsCorrection::Off => PhysicsCorrection::Named,
         requested => requested,
     };
-    let progress = TerminalProgress::new("physics parameters");
-    match engine.assess_physics(study, physics, &progress)? {
+    let progress = receiver.begin("physics parameters");
+    match engine.assess_physics(study, physics, &*progress)? {
         Some(Ok(assessment)) => Ok(assessment),
         Some(Err(why)) => Err(Failure::NoResult {
             reason: why.to_string(),
@@ -123,6 +162,7 @@ fn figure_of_condition(
     analysis: &Analysis,
     condition: ConditionId,
     engine: &mut Engine,
+    receiver: ProgressReceiver<'_>,
 ) -> Result<Option<Figure>, Failure> {
     let study = &analysis.study;
     let result = match analysis.conditions.get(&condition) {
@@ -138,8 +178,8 @@ fn figure_of_condition(
         None => return Ok(None),
     };
     let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let progress = TerminalProgress::new("drawing");
-    let Some(curves) = engine.curves(&study.dataset, condition, grid, &progress)? else {
+    let progress = receiver.begin("drawing");
+    let Some(curves) = engine.curves(&study.dataset, condition, grid, &*progress)? else {
         return Ok(None);
     };
     drop(progress);

@@ -20,7 +20,7 @@ use super::failure::Failure;
 use super::receiving_dataset::RecordGroup;
 
 use super::identify_arguments::{IdentifyArguments, RecordArguments};
-use super::progress::TerminalProgress;
+use super::progress::ProgressReceiver;
 use super::record_table::record_table;
 use crate::executor::Pool;
 
@@ -58,13 +58,16 @@ impl IdentificationTask {
         })
     }
 
-    /// Identifies the models; shows the progress on a terminal.
-    pub(super) fn run(&self) -> Result<Identification, IdentificationError> {
+    /// Identifies the models, and reports the progress to `receiver`.
+    pub(super) fn run(
+        &self,
+        receiver: ProgressReceiver<'_>,
+    ) -> Result<Identification, IdentificationError> {
         let work = match self.condition {
             Some(id) => format!("identifying condition {id}"),
             None => "identifying".to_owned(),
         };
-        self.request.identify(&Pool, &TerminalProgress::new(&work))
+        self.request.identify(&Pool, &*receiver.begin(&work))
     }
 
     /// Returns whether a record with this name is used.

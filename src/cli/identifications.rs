@@ -1,6 +1,7 @@
 //! Runs the identifications of `gdcm identify` and writes their results: a file for each, and the
 //! dataset that receives the models.
 
+use std::mem::take;
 use std::path::{Path, PathBuf};
 
 use gdcm_io::files::dataset_file::add_dataset;
@@ -20,6 +21,7 @@ use super::failure::Failure;
 use super::flight_records::Duplicate;
 use super::identification_task::IdentificationTask;
 use super::identify_arguments::IdentifyArguments;
+use super::progress::ProgressReceiver;
 use super::receiving_dataset::ReceivingDataset;
 use super::terminal::{caution_for, note, print};
 use crate::message::Message;
@@ -79,7 +81,7 @@ impl<'a> Identifications<'a> {
         let tables: String = tasks.iter().map(IdentificationTask::table).collect();
         print(&tables)?;
         for (task, file) in tasks.iter().zip(&files) {
-            match task.run() {
+            match task.run(ProgressReceiver::Terminal) {
                 Ok(found) => self.take(task, file, &found)?,
                 Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
                 Err(why) if tasks.len() == 1 => {
@@ -104,35 +106,11 @@ impl<'a> Identifications<'a> {
         file: &Path,
         found: &Identification,
     ) -> Result<(), Failure> {
-        let records: Vec<ConditionRecord> = task
-            .records
-            .iter()
-            .zip(&found.record_uses)
-            .map(|(record, used)| record.entry(used, self.basis.channels))
-            .collect();
-        let facts: Vec<String> = found
-            .record_uses
-            .iter()
-            .flat_map(input_limit_texts)
-            .collect();
-        for fact in &facts {
-            note("record-preparation", fact);
-        }
-        let reading = [self.basis.reading, &facts].concat();
-        let cautions = self.cautions_of(task, found);
-        let channels = self.model_channels();
-        self.identifies_input |= identifies_any_input(found, &channels);
+        let described = self.describe(task, found);
         make_directory(&self.basis.arguments.out)?;
-        let models = IdentifiedModels {
-            found,
-            channels: &channels,
-            records: &records,
-            cautions: &cautions,
-            reading: &reading,
-        };
-        add_identified(&models, file, &mut self.outputs)?;
+        add_identified(&described.models(found), file, &mut self.outputs)?;
         if let (Some(destination), Some(condition)) = (&mut self.destination, task.condition) {
-            let entries = records.into_iter().map(|entry| {
+            let entries = described.records.into_iter().map(|entry| {
                 relative_entry(
                     entry,
                     &self.basis.arguments.source.records,
@@ -146,6 +124,46 @@ impl<'a> Identifications<'a> {
         self.lines += &task.outcome(file, found);
         self.count += 1;
         Ok(())
+    }
+
+    /// Returns what is written beside the models of a task, and prints its notes.
+    pub(super) fn describe(
+        &mut self,
+        task: &IdentificationTask,
+        found: &Identification,
+    ) -> DescribedIdentification {
+        let mut records: Vec<ConditionRecord> = Vec::new();
+        for (record, used) in task.records.iter().zip(&found.record_uses) {
+            records.push(record.entry(used, self.basis.channels));
+        }
+        let facts: Vec<String> = found
+            .record_uses
+            .iter()
+            .flat_map(input_limit_texts)
+            .collect();
+        for fact in &facts {
+            note("record-preparation", fact);
+        }
+        let channels = self.model_channels();
+        self.identifies_input |= identifies_any_input(found, &channels);
+        DescribedIdentification {
+            records,
+            cautions: self.cautions_of(task, found),
+            reading: [self.basis.reading, &facts].concat(),
+            channels,
+        }
+    }
+
+    /// Returns the failure of records that identify no input; `None` if they identify one.
+    pub(super) fn without_input(&self) -> Option<Failure> {
+        if self.identifies_input {
+            return None;
+        }
+        let inputs = &self.basis.channels.inputs;
+        let inputs: Vec<&str> = inputs.iter().map(|rule| rule.name.as_str()).collect();
+        Some(Failure::NotIdentified {
+            inputs: inputs.join(", "),
+        })
     }
 
     /// Returns the cautions of a task, and stores them to be printed at the end. Those about
@@ -183,7 +201,7 @@ impl<'a> Identifications<'a> {
     /// # Errors
     /// No task has a result, or the records identify no input.
     pub(super) fn finish(mut self, task_count: usize) -> Result<(), Failure> {
-        for shared in shared_messages(self.cautions) {
+        for shared in shared_messages(take(&mut self.cautions)) {
             let Message { code, text } = &shared.message;
             caution_for(code, &shared.conditions, text);
         }
@@ -200,21 +218,36 @@ impl<'a> Identifications<'a> {
                 counted(self.count, "condition")
             );
         }
+        let failure = self.without_input();
         self.outputs.persist()?;
         print(&self.lines)?;
-        if self.identifies_input {
-            return Ok(());
+        match failure {
+            None => Ok(()),
+            Some(failure) => Err(failure),
         }
-        let inputs = self
-            .basis
-            .channels
-            .inputs
-            .iter()
-            .map(|rule| rule.name.as_str());
-        let inputs: Vec<&str> = inputs.collect();
-        Err(Failure::NotIdentified {
-            inputs: inputs.join(", "),
-        })
+    }
+}
+
+/// What is written beside the models of an identification.
+pub(super) struct DescribedIdentification {
+    /// Channels of the models, without references.
+    pub(super) channels: RecordChannels,
+    pub(super) records: Vec<ConditionRecord>,
+    pub(super) cautions: Vec<CautionNote>,
+    /// Notes about assumptions made while the records were read and prepared.
+    pub(super) reading: Vec<String>,
+}
+
+impl DescribedIdentification {
+    /// Returns the models with their description, as written to a file.
+    pub(super) fn models<'d>(&'d self, found: &'d Identification) -> IdentifiedModels<'d> {
+        IdentifiedModels {
+            found,
+            channels: &self.channels,
+            records: &self.records,
+            cautions: &self.cautions,
+            reading: &self.reading,
+        }
     }
 }
 

@@ -73,8 +73,8 @@ pub(super) struct IdentificationTasks {
     /// Requested files that could not be read completely.
     pub(super) unread: Vec<PathBuf>,
     /// Notes about assumptions made while the records were read.
-    reading: Vec<String>,
-    duplicates: Vec<Duplicate>,
+    pub(super) reading: Vec<String>,
+    pub(super) duplicates: Vec<Duplicate>,
 }
 
 /// Creates the identification tasks: one for all records, or one per condition.

@@ -8,6 +8,7 @@ mod analyze;
 mod arguments;
 mod assemble;
 mod bandwidth_summary;
+pub mod calls;
 mod channel_declarations;
 mod channel_values;
 mod check;
@@ -59,7 +60,6 @@ mod time_histories;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Parser;
 
@@ -78,11 +78,12 @@ use study_arguments::OpeningArguments;
 use terminal::{OutputFormat, caution, print};
 
 /// Runs the command on the command line. Without a command, opens the window with a file or with
-/// the embedded example. Help, version and errors of the command line are printed here.
+/// the embedded example. Help, version and errors of the command line are printed here. Returns the
+/// exit status.
 pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
-    open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
-) -> ExitCode {
+    open_window: impl FnOnce(Option<PathBuf>) -> u8,
+) -> u8 {
     let mut arguments = with_values_joined(arguments);
     // Read the switches before parsing, so that an invalid command line is reported in the
     // requested format too.
@@ -114,7 +115,7 @@ pub fn run(
         }) => open_window(file),
         Err(wrong) if wrong.use_stderr() => {
             terminal::error("wrong-command-line", &usage_words(&wrong));
-            ExitCode::from(terminal::end(WRONG_INPUT))
+            terminal::end(WRONG_INPUT)
         }
         Err(help) => finish(print(&help.to_string())),
     }
@@ -217,7 +218,7 @@ fn existing(force: bool) -> Existing {
 }
 
 /// Prints the error if there is one; returns the exit status.
-fn finish(result: Result<(), Failure>) -> ExitCode {
+fn finish(result: Result<(), Failure>) -> u8 {
     let status = match result {
         Ok(()) => 0,
         Err(failure) => {
@@ -225,5 +226,5 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
             failure.status()
         }
     };
-    ExitCode::from(terminal::end(status))
+    terminal::end(status)
 }

@@ -25,6 +25,7 @@ use super::identify::{IdentificationTasks, identification_tasks};
 use super::option_values::PairName;
 use super::plan_arguments::PlanArguments;
 use super::printed_lines::listed_paths;
+use super::progress::ProgressReceiver;
 use super::receiving_dataset::ReceivingDataset;
 use super::requested_channels::{requested_band, requested_channels};
 use super::terminal::{caution_for, print};
@@ -49,7 +50,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let mut text = String::new();
     let mut failures: Vec<ConditionMessage> = Vec::new();
     for task in &tasks {
-        match task.run() {
+        match task.run(ProgressReceiver::Terminal) {
             Ok(found) => {
                 let plan = wanted.plan(task, &found)?;
                 text += &plan_text(&plan, &wanted.channels);

@@ -1,4 +1,4 @@
-//! Progress on a terminal.
+//! Progress of a command: on a terminal, or passed on to a program that embeds the commands.
 
 use std::time::{Duration, Instant};
 
@@ -10,6 +10,45 @@ use gdcm_model::progress::Progress;
 
 use super::interruption::Interruptible;
 use super::terminal::shows_progress;
+
+/// Where a command reports the progress of its parts.
+#[derive(Clone, Copy)]
+pub(super) enum ProgressReceiver<'a> {
+    /// A bar on the terminal.
+    Terminal,
+    /// The program that embeds the command.
+    Program(&'a dyn Progress),
+}
+
+impl<'a> ProgressReceiver<'a> {
+    /// Returns the receiver for a part of the work with the label `work`.
+    pub(super) fn begin(self, work: &str) -> Box<dyn Progress + 'a> {
+        match self {
+            Self::Terminal => Box::new(TerminalProgress::new(work)),
+            Self::Program(receiver) => Box::new(NamedProgress {
+                receiver,
+                work: work.to_owned(),
+            }),
+        }
+    }
+}
+
+/// Progress of a part of the work, passed on with the label of the part.
+struct NamedProgress<'a> {
+    receiver: &'a dyn Progress,
+    work: String,
+}
+
+impl Progress for NamedProgress<'_> {
+    fn cancelled(&self) -> bool {
+        self.receiver.cancelled()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        self.receiver.step(&self.work);
+        self.receiver.advanced(done, total);
+    }
+}
 
 /// Progress of reading files, shown only on a terminal.
 pub(super) struct ReadingProgress {
@@ -49,6 +88,9 @@ const QUICK: Duration = Duration::from_millis(500);
 /// incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
+    /// Whether the bar appears after [`QUICK`]; decided by the thread that begins the work, whose
+    /// output format it is.
+    is_shown: bool,
     started: Instant,
     interruptible: Interruptible,
 }
@@ -65,6 +107,7 @@ impl TerminalProgress {
         }
         Self {
             bar,
+            is_shown: shows_progress(),
             started: Instant::now(),
             interruptible: Interruptible::begin(),
         }
@@ -83,8 +126,8 @@ impl Progress for TerminalProgress {
     }
 
     fn advanced(&self, done: usize, total: usize) {
-        if self.bar.is_hidden() && self.started.elapsed() >= QUICK {
-            self.bar.set_draw_target(progress_target());
+        if self.is_shown && self.bar.is_hidden() && self.started.elapsed() >= QUICK {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);

@@ -7,7 +7,7 @@ use gdcm_words::caution::failure_text;
 
 use super::condition_messages::{ConditionMessage, SharedMessage, shared_messages};
 use super::failure::Failure;
-use super::progress::TerminalProgress;
+use super::progress::ProgressReceiver;
 use super::study_arguments::StudyArguments;
 use super::study_options::apply;
 use super::terminal::caution_for;
@@ -26,30 +26,44 @@ pub(super) struct StudyAnalysis {
     pub(super) engine: Engine,
 }
 
+/// Analyses a study as [`analyze_with_progress`] does, with a progress bar on the terminal.
+///
+/// # Errors
+/// No condition has a result, or the analysis was stopped.
+pub(super) fn analyze_study(
+    study: Study,
+    arguments: &StudyArguments,
+    bars: ErrorBars,
+) -> Result<StudyAnalysis, Failure> {
+    analyze_with_progress(study, arguments, bars, ProgressReceiver::Terminal)
+}
+
 /// Analyses a study; if requested, the suggested outliers are first rejected. With error bars, the
 /// couplings and the physics parameters are assessed too. Conditions without a result are reported on standard error.
 ///
 /// # Errors
-/// No condition has a result.
-pub(super) fn analyze_study(
+/// No condition has a result, or the analysis was stopped.
+pub(super) fn analyze_with_progress(
     mut study: Study,
     arguments: &StudyArguments,
     bars: ErrorBars,
+    receiver: ProgressReceiver<'_>,
 ) -> Result<StudyAnalysis, Failure> {
     let mut engine = Engine::with_executor(Box::new(Pool));
-    let progress = TerminalProgress::new("analysing");
-    let mut analysis = engine.analyze(&study, &progress)?;
+    let bar = receiver.begin("analysing");
+    let progress = &*bar;
+    let mut analysis = engine.analyze(&study, progress)?;
     if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
-        analysis = engine.analyze(&study, &progress)?;
+        analysis = engine.analyze(&study, progress)?;
     }
     if bars == ErrorBars::Computed {
-        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
-        let assessed = engine.assess_couplings(&study, study.settings.couplings, &progress)?;
+        analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, progress)?));
+        let assessed = engine.assess_couplings(&study, study.settings.couplings, progress)?;
         analysis.coupling_assessment = assessed.and_then(Result::ok);
-        let assessed = engine.assess_physics(&study, study.settings.physics, &progress)?;
+        let assessed = engine.assess_physics(&study, study.settings.physics, progress)?;
         analysis.physics_assessment = assessed.and_then(Result::ok);
     }
-    drop(progress);
+    drop(bar);
     report_failed_conditions(&analysis)?;
     Ok(StudyAnalysis { analysis, engine })
 }

@@ -75,7 +75,7 @@ pub(super) fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Res
 }
 
 /// Applies the options to the study; they override its settings.
-fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
+pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     for GivenSetting { setting, words } in &arguments.settings.given {
         let option = setting.option;
         let words: Vec<&str> = words.iter().map(String::as_str).collect();

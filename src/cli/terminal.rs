@@ -1,8 +1,9 @@
 //! Output of a command: results on standard output; notes, cautions and errors on standard error.
 //! Alternatively, a single JSON object with all of these.
 
+use std::cell::RefCell;
 use std::io::{ErrorKind, Write};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::mem::take;
 
 use serde::Serialize;
 
@@ -24,12 +25,10 @@ pub(super) struct OutputFormat {
 }
 
 /// Output collected for the JSON object.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Messages {
     #[serde(skip)]
     output: OutputFormat,
-    format: &'static str,
-    version: u32,
     status: u8,
     /// Text that would otherwise be printed on standard output.
     text: String,
@@ -40,6 +39,25 @@ struct Messages {
     errors: Vec<String>,
     /// Stable code of each error.
     error_codes: Vec<&'static str>,
+}
+
+/// The JSON object, with the name and the version of its format.
+#[derive(Serialize)]
+struct MessagesText<'m> {
+    format: &'static str,
+    version: u32,
+    #[serde(flatten)]
+    messages: &'m Messages,
+}
+
+impl<'m> MessagesText<'m> {
+    fn new(messages: &'m Messages) -> Self {
+        Self {
+            format: "gdcm-messages",
+            version: 1,
+            messages,
+        }
+    }
 }
 
 /// A caution with its conditions; without conditions, it concerns the whole result.
@@ -54,35 +72,38 @@ struct Caution {
     conditions: Vec<i64>,
 }
 
-/// Global, because a process carries out a single command.
-static MESSAGES: Mutex<Messages> = Mutex::new(Messages {
-    output: OutputFormat {
-        quiet: false,
-        json: false,
-    },
-    format: "gdcm-messages",
-    version: 1,
-    status: 0,
-    text: String::new(),
-    notes: Vec::new(),
-    note_codes: Vec::new(),
-    cautions: Vec::new(),
-    errors: Vec::new(),
-    error_codes: Vec::new(),
-});
+thread_local! {
+    /// Output of the command that this thread carries out. Only the thread that begins a command
+    /// writes output; a program that embeds the commands may carry out several at once.
+    static MESSAGES: RefCell<Messages> = RefCell::default();
+}
 
-fn messages() -> MutexGuard<'static, Messages> {
-    MESSAGES.lock().unwrap_or_else(PoisonError::into_inner)
+/// Carries out `work`, and returns its result together with its output as the JSON object, of which
+/// nothing is printed.
+pub(super) fn collected<T>(work: impl FnOnce() -> T) -> (T, serde_json::Value) {
+    let before = MESSAGES.take();
+    set_output(OutputFormat {
+        quiet: false,
+        json: true,
+    });
+    let result = work();
+    let messages = MESSAGES.replace(before);
+    let object = serde_json::to_value(MessagesText::new(&messages)).unwrap_or_default();
+    (result, object)
 }
 
 /// Sets the output format of the command.
 pub(super) fn set_output(output: OutputFormat) {
-    messages().output = output;
+    MESSAGES.with_borrow_mut(|messages| messages.output = output);
+}
+
+fn is_json() -> bool {
+    MESSAGES.with_borrow(|messages| messages.output.json)
 }
 
 /// Returns whether progress is shown: not if JSON or quiet output is requested.
 pub(super) fn shows_progress() -> bool {
-    messages().output == OutputFormat::default()
+    MESSAGES.with_borrow(|messages| messages.output == OutputFormat::default())
 }
 
 /// Prints a text, which includes its line end. If a reader closes the pipe early, as in `gdcm … |
@@ -95,9 +116,8 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
             plain_text.push('\n');
         }
     }
-    let mut messages = messages();
-    if messages.output.json {
-        messages.text += &plain_text;
+    if is_json() {
+        MESSAGES.with_borrow_mut(|messages| messages.text += &plain_text);
         return Ok(());
     }
     write_standard_output(&plain_text)
@@ -129,13 +149,14 @@ fn write_standard_error(kind: &str, words: &str) {
 
 /// Prints a note about an assumption that needs no action, or adds it to the JSON output.
 pub(super) fn note(code: &'static str, words: &str) {
-    let mut messages = messages();
-    if messages.output.json {
-        messages.notes.push(plain(words));
-        messages.note_codes.push(code);
-    } else if !messages.output.quiet {
-        write_standard_error("note", words);
-    }
+    MESSAGES.with_borrow_mut(|messages| {
+        if messages.output.json {
+            messages.notes.push(plain(words));
+            messages.note_codes.push(code);
+        } else if !messages.output.quiet {
+            write_standard_error("note", words);
+        }
+    });
 }
 
 /// Prints a caution about a problem that may need action although the command continues.
@@ -146,7 +167,7 @@ pub(super) fn caution(code: &'static str, words: &str) {
 /// Prints a caution about several conditions once, with a list of the conditions; or adds it to the
 /// JSON output.
 pub(super) fn caution_for(code: &'static str, conditions: &[ConditionId], words: &str) {
-    if messages().output.json {
+    if is_json() {
         keep_caution(code, conditions, words);
     } else {
         write_standard_error("caution", &with_conditions(conditions, words));
@@ -165,37 +186,39 @@ pub(super) fn keep_summary(
     conditions: &[ConditionId],
     words: &str,
 ) {
-    messages().cautions.push(Caution {
+    let caution = Caution {
         code,
         summarised_codes,
         text: plain(words),
         conditions: conditions.iter().map(|id| id.0).collect(),
-    });
+    };
+    MESSAGES.with_borrow_mut(|messages| messages.cautions.push(caution));
 }
 
 /// Prints an error, or adds it to the JSON output.
 pub(super) fn error(code: &'static str, words: &str) {
-    let mut messages = messages();
-    if messages.output.json {
-        messages.errors.push(plain(words));
-        messages.error_codes.push(code);
-    } else {
-        write_standard_error("error", words);
-    }
+    MESSAGES.with_borrow_mut(|messages| {
+        if messages.output.json {
+            messages.errors.push(plain(words));
+            messages.error_codes.push(code);
+        } else {
+            write_standard_error("error", words);
+        }
+    });
 }
 
 /// Ends the command: prints the JSON object if requested. Returns the exit status, which is
 /// `status` unless printing fails.
 pub(super) fn end(status: u8) -> u8 {
-    let mut messages = messages();
-    messages.status = status;
+    let mut messages = MESSAGES.with_borrow_mut(take);
     if !messages.output.json {
         return status;
     }
+    messages.status = status;
     // Cannot fail: strings, numbers and lists can always be serialised, and writing to a vector
     // never fails.
     let mut object = Vec::new();
-    let written = write_pretty(&*messages, &mut object);
+    let written = write_pretty(&MessagesText::new(&messages), &mut object);
     debug_assert!(written.is_ok(), "the messages serialise");
     match write_standard_output(&String::from_utf8_lossy(&object)) {
         Ok(()) => status,

@@ -9,6 +9,7 @@ use gdcm_io::{
 };
 
 mod assembling;
+mod calls;
 mod commands;
 mod couplings;
 mod documents;

@@ -245,6 +245,46 @@ impl FileError {
         }
     }
 
+    /// Returns the path of the file that cannot be read or written; the first of several.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Missing { path }
+            | Self::Directory { path }
+            | Self::NotAFile { path, .. }
+            | Self::OutputNotAFile { path, .. }
+            | Self::Unreadable { path, .. }
+            | Self::TooLarge { path, .. }
+            | Self::Gzip { path }
+            | Self::GzipCutOff { path }
+            | Self::CutOff { path, .. }
+            | Self::NotJson { path, .. }
+            | Self::Format { path, .. }
+            | Self::Version { path, .. }
+            | Self::Content { path, .. }
+            | Self::Variables { path, .. }
+            | Self::FolderTooDeep { path }
+            | Self::NoRecord { path, .. }
+            | Self::TooManyFiles { path, .. }
+            | Self::StudyDataset { path, .. }
+            | Self::NotADirectory { path }
+            | Self::Input { path }
+            | Self::FigureFormat { path }
+            | Self::FigureWithoutNumbers { path, .. }
+            | Self::Export { path, .. }
+            | Self::Unwritable { path, .. } => Some(path),
+            Self::Exists { paths } => paths.first().map(PathBuf::as_path),
+        }
+    }
+
+    /// Returns the line of the file at which the fault is, counted from 1, if it is known.
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            Self::CutOff { line, .. } | Self::NotJson { line, .. } => Some(*line),
+            Self::Content { line, .. } => *line,
+            _ => None,
+        }
+    }
+
     /// Returns the place in the content of a file; `None` if the error concerns the whole file.
     pub fn place(&self) -> Option<&Location> {
         match self {

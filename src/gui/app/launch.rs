@@ -8,7 +8,6 @@
 
 use std::error::Error;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
@@ -38,17 +37,18 @@ const NO_WINDOW: u8 = 1;
 const WRONG_FILE: u8 = 2;
 
 /// Opens the window on a dataset or a study, or on the embedded example, and returns once the
-/// window is closed. A folder, or a file from another program, opens the import of models.
+/// window is closed. A folder, or a file from another program, opens the import of models. Returns
+/// the exit status.
 ///
 /// Without a display, or if the window cannot be created, prints one line on standard error, which
 /// names the command that works without a window.
-pub fn open(path: Option<PathBuf>) -> ExitCode {
+pub fn open(path: Option<PathBuf>) -> u8 {
     let request = Request::new(path);
     let command = request.headless_command();
     let Request { dataset, models } = request;
     if let Some(reason) = missing_display() {
         if load_and_report(dataset).trouble.is_some() {
-            return ExitCode::from(WRONG_FILE);
+            return WRONG_FILE;
         }
         return fail(&no_window(&reason, &command));
     }
@@ -68,15 +68,15 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     let drawn = Arc::new(OnceLock::new());
     let outcome = caught(|| run(reading, models, &drawn));
     match ending(outcome, drawn.get(), &command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(message) => fail(&message),
     }
 }
 
 /// Prints an error that prevents a window; returns the exit status.
-fn fail(message: &str) -> ExitCode {
+fn fail(message: &str) -> u8 {
     eprintln!("error: {message}");
-    ExitCode::from(NO_WINDOW)
+    NO_WINDOW
 }
 
 /// Path from the command line: a dataset or study, or models to import.

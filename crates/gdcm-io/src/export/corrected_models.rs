@@ -11,6 +11,7 @@ use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::dataset_draft::ModelDraft;
 use gdcm_model::dataset::model::Origin;
+use gdcm_study::Analysis;
 use gdcm_study::results::export_note::FileSummary;
 
 use self::matlab::models_variable;
@@ -20,7 +21,7 @@ use super::export_notes::model_notes;
 use super::exported_model::ExportedModel;
 use super::file_head::variables_head;
 use super::requested_models::{contents_of_models, exported_models};
-use super::{Export, ExportFormat, Exported, FormatGroup};
+use super::{Export, ExportFormat, ExportRequest, Exported, FormatGroup};
 use crate::export_fault::ExportFault;
 use crate::files::model_collection::{
     ModelWithContents, bare_draft, labels, write_models_with_contents,
@@ -68,6 +69,23 @@ fn check_models_format(path: &Path, expected: ModelsFormat) -> Result<(), Export
     } else {
         Err(ExportFault::ModelsFormat)
     }
+}
+
+/// Returns the requested corrected models as the text of a file in the format `gdcm-models`.
+///
+/// # Errors
+/// The analysis lacks a requested model or correction, or a model cannot be written as matrices.
+pub fn corrected_models_json(
+    analysis: &Analysis,
+    request: &ExportRequest,
+) -> Result<Vec<u8>, ExportFault> {
+    let models = exported_models(analysis, request)?;
+    let models = models_with_contents(&models, &analysis.study.dataset);
+    let mut bytes = Vec::new();
+    write_models_with_contents(&models, &mut bytes).map_err(|error| ExportFault::Contents {
+        reason: error.to_string(),
+    })?;
+    Ok(bytes)
 }
 
 fn export_models<'e>(export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {

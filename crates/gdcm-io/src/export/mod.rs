@@ -35,7 +35,9 @@ use gdcm_study::{Analysis, AssessedCorrection};
 use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::lead_price::price_text;
 
+pub use self::corrected_models::corrected_models_json;
 use self::exported_schedule::ExportedSchedule;
+pub use self::requested_models::corrected_response;
 use crate::export_fault::ExportFault;
 use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;

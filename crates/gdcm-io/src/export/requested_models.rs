@@ -1,8 +1,11 @@
 //! The corrected models that an export requests: choice of the conditions, the physics model and
 //! the correction, and computation of the corrected model with its accuracy.
 
+use nalgebra::Complex;
+
 use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
-use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model, PairTable};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis};
 use gdcm_words::caution::failure_text;
 use gdcm_words::coupled_model_error::coupled_model_error_text;
@@ -21,17 +24,7 @@ pub(super) fn exported_models(
     analysis: &Analysis,
     request: &ExportRequest,
 ) -> Result<Vec<ExportedModel>, ExportFault> {
-    let dataset = &analysis.study.dataset;
-    analysis
-        .asked_couplings()
-        .map_err(|error| ExportFault::NoCouplings {
-            why: coupling_error_text(error, dataset),
-        })?;
-    analysis
-        .asked_physics()
-        .map_err(|failure| ExportFault::NoPhysics {
-            why: failure.to_string(),
-        })?;
+    check_available(analysis)?;
     // The models as compared and corrected: moved by the physics parameters, where there are any.
     let dataset = analysis.moved_dataset();
     let chosen = request.chosen(analysis);
@@ -47,6 +40,60 @@ pub(super) fn exported_models(
         }
     }
     Ok(models)
+}
+
+/// Returns `M_O H~ M_I` at the frequencies `omega` \[rad/s\]: the response of the requested physics
+/// model of a condition with its couplings, and with the requested correction. Delays are exact.
+///
+/// # Errors
+/// The analysis lacks the condition, the model, or a requested part of the correction.
+pub fn corrected_response(
+    analysis: &Analysis,
+    request: &ExportRequest,
+    condition: ConditionId,
+    omega: &[f64],
+) -> Result<PairTable<Vec<Complex<f64>>>, ExportFault> {
+    check_available(analysis)?;
+    let condition = analysis
+        .moved_dataset()
+        .condition(condition)
+        .ok_or(ExportFault::NoCondition { condition })?;
+    let model = model_of(analysis, &request.role, condition)?;
+    let correction = correction_of(analysis, request.correction, condition)?;
+    let grid = FrequencyGrid::at(omega.to_vec());
+    let mut response = FrequencyResponse::from_dynamics(&model.dynamics, &grid);
+    if let Some(fitted) = analysis.fitted_couplings() {
+        let airspeed_kt = condition.flight_state().airspeed_kt;
+        response = fitted.matrices().response(&response, airspeed_kt);
+    }
+    Ok(response.curves().map(|pair, curve| {
+        let leads = correction::Channel::of_pair(pair).map(|channel| correction.lead(channel));
+        let gain = correction.net_gain(pair);
+        let delay_s =
+            correction.output_delays_s[pair.output] + correction.input_delays_s[pair.input];
+        // A gain of the schedule may be negative; the factor of gain 1 applies to it too.
+        let factor = GainDelay::new(1.0, delay_s).with_leads(leads);
+        let corrected = curve.iter().zip(omega);
+        corrected
+            .map(|(value, omega)| value * factor.at(*omega) * gain)
+            .collect()
+    }))
+}
+
+/// Checks that couplings and physics parameters are available if the study requests them.
+fn check_available(analysis: &Analysis) -> Result<(), ExportFault> {
+    let dataset = &analysis.study.dataset;
+    analysis
+        .asked_couplings()
+        .map_err(|error| ExportFault::NoCouplings {
+            why: coupling_error_text(error, dataset),
+        })?;
+    analysis
+        .asked_physics()
+        .map_err(|failure| ExportFault::NoPhysics {
+            why: failure.to_string(),
+        })?;
+    Ok(())
 }
 
 /// Returns the correction parts in the requested models; none if the study lacks the requested

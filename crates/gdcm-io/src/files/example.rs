@@ -140,7 +140,7 @@ impl Example {
     }
 
     /// Returns the archive with the flight records of [`Self::record_conditions`].
-    pub(crate) fn records(self) -> &'static [u8] {
+    pub fn records(self) -> &'static [u8] {
         match self {
             Self::Simulated => SIMULATED_RECORDS,
             Self::RealAircraft => PELICAN_RECORDS,

@@ -1,6 +1,7 @@
 //! Files with models identified from flight records, `gdcm-identified` 1, written by `gdcm
 //! identify`. `model_collection` reads their models.
 
+use std::io;
 use std::path::Path;
 
 use serde::Serialize;
@@ -73,6 +74,21 @@ pub fn add_identified(
     path: &Path,
     outputs: &mut OutputSet,
 ) -> Result<(), FileError> {
+    let text = identified_text(results);
+    outputs.add(path, |file| write_compact(&text, file))
+}
+
+/// Returns the contents of a file with identification results, as [`add_identified`] writes it.
+///
+/// # Errors
+/// None of the values is known to cause one; the JSON writer may return one.
+pub fn identified_json(results: &IdentifiedModels<'_>) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write_compact(&identified_text(results), &mut bytes)?;
+    Ok(bytes)
+}
+
+fn identified_text<'m>(results: &IdentifiedModels<'m>) -> IdentifiedText<'m> {
     let found = results.found;
     let mut models = vec![ModelText {
         recommended: Some(true),
@@ -88,7 +104,7 @@ pub fn add_identified(
     for (index, record) in results.records.iter().enumerate() {
         records.push(record_json(found, index, record));
     }
-    let text = IdentifiedText {
+    IdentifiedText {
         format: IDENTIFIED.name,
         version: IDENTIFIED.version,
         software: software(),
@@ -99,8 +115,7 @@ pub fn add_identified(
         records,
         cautions: results.cautions.iter().map(caution_json).collect(),
         reading: results.reading,
-    };
-    outputs.add(path, |file| write_compact(&text, file))
+    }
 }
 
 fn identified_model_text(model: &Model, channels: &RecordChannels) -> ModelText {

@@ -2,6 +2,7 @@
 //! for other folders.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,16 @@ pub fn load_rules(path: &Path) -> Result<(Rules, Vec<FileCaution>), FileError> {
 pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
     let text = RulesText::from_rules(rules);
     outputs.add(path, |file| write_pretty(&text, file))
+}
+
+/// Returns the rules as the text of a rules file.
+///
+/// # Errors
+/// None of the values is known to cause one; the JSON writer may return one.
+pub fn rules_json(rules: &Rules) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write_pretty(&RulesText::from_rules(rules), &mut bytes)?;
+    Ok(bytes)
 }
 
 /// Format and version of a rules file.

@@ -168,7 +168,7 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
 /// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals. The last two columns
 /// contain the gain that the condition's own leads add to the response at ten times the band, and
 /// the limit of validity (M15.6).
-pub(crate) fn write_assessment_csv(
+pub fn write_assessment_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,

@@ -102,7 +102,7 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
 /// the lead filters (M15). With couplings, further columns give, in the row of an input, its
 /// coefficients for each input (mixing) and each output (feedback) (M16). A missing value is an
 /// empty cell.
-pub(crate) fn write_corrections_csv(
+pub fn write_corrections_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,

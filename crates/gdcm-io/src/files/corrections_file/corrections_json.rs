@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
+use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, PairTable};
 use gdcm_study::Analysis;
@@ -81,6 +82,17 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         corrections,
         &["signs", "physics", "couplings", "uncertainty"],
     )
+}
+
+/// Returns a correction of the channels, such as that of the schedule at an airspeed: `gains`,
+/// `delays_s`, and with leads `lead`, as in a condition of `corrections.json`.
+pub fn channel_correction(analysis: &Analysis, correction: &ChannelCorrection) -> Value {
+    let names = LabelledAnalysis::new(analysis);
+    json!({
+        "gains": names.gains(correction),
+        "delays_s": names.delays_s(correction),
+        "lead": names.leads(correction),
+    })
 }
 
 /// Returns the change in J of a condition's nominal model due to the schedule.

@@ -25,9 +25,9 @@ use crate::file_error::FileError;
 use crate::json_writing::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
 
-pub(crate) use self::assessment_csv::write_assessment_csv;
-pub(crate) use self::corrections_csv::write_corrections_csv;
-pub use self::corrections_json::corrections;
+pub use self::assessment_csv::write_assessment_csv;
+pub use self::corrections_csv::write_corrections_csv;
+pub use self::corrections_json::{channel_correction, corrections};
 pub(crate) use self::physics::write_physics_csv;
 
 const NAME: &str = "gdcm-corrections";

@@ -5,7 +5,7 @@ mod json_form;
 mod model_conversion;
 
 use std::fmt;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -200,6 +200,16 @@ pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
     let mut outputs = OutputSet::new(Existing::Replace, Vec::new());
     add_dataset(dataset, path, &mut outputs)?;
     outputs.persist()
+}
+
+/// Returns a dataset as the text of a dataset file, uncompressed.
+///
+/// # Errors
+/// None of the values is known to cause one; the JSON writer may return one.
+pub fn dataset_json(dataset: &Dataset) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write_compact(&DatasetText::from_dataset(dataset), &mut bytes)?;
+    Ok(bytes)
 }
 
 /// Adds a dataset to `outputs`; compressed with gzip if the name ends in `.gz`.

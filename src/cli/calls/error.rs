@@ -1,0 +1,96 @@
+//! Error of a call, with the code of the command.
+
+use std::fmt;
+
+use serde_json::{Map, Value, json};
+
+use gdcm_io::FileError;
+
+use crate::cli::failure::Failure;
+
+/// Reason why a call has no result.
+#[derive(Clone, Debug)]
+pub struct CallError {
+    /// Stable code, as that of the command.
+    pub code: &'static str,
+    pub text: String,
+    /// Exit status of the command.
+    pub status: u8,
+    /// What the text is about, by name: `option`, `path`, `line`.
+    pub fields: Map<String, Value>,
+    /// What the command would print before the error, as the object of `--json`.
+    pub messages: Value,
+}
+
+impl CallError {
+    pub(super) fn new(failure: &Failure, messages: Value) -> Self {
+        Self {
+            code: failure.code(),
+            text: failure.to_string(),
+            status: failure.status(),
+            fields: failure_fields(failure),
+            messages,
+        }
+    }
+}
+
+impl fmt::Display for CallError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.text)
+    }
+}
+
+impl std::error::Error for CallError {}
+
+/// Returns the values in the text of a failure, by name.
+fn failure_fields(failure: &Failure) -> Map<String, Value> {
+    let fields = match failure {
+        Failure::File(error) => return file_fields(error),
+        Failure::Export(_) | Failure::Cancelled(_) => json!({}),
+        Failure::CommandLine { words } => json!({"reason": words}),
+        Failure::Option { option, reason, .. } => json!({"option": option, "reason": reason}),
+        Failure::UnknownCommand { found, suggestion } => {
+            json!({"found": found, "suggestion": suggestion})
+        }
+        Failure::Different { path, count } | Failure::Faulty { path, count } => {
+            json!({"path": path, "count": count})
+        }
+        Failure::Models { path } => json!({"path": path}),
+        Failure::Incomplete { count, rules } => json!({"count": count, "rules": rules}),
+        Failure::Records { wrong, count } => json!({"wrong": wrong, "count": count}),
+        Failure::Nothing { paths, noun } => json!({"paths": paths, "noun": noun}),
+        Failure::Unread { paths } => json!({"paths": paths}),
+        Failure::NotIdentified { inputs } => json!({"inputs": inputs}),
+        Failure::NoThreads { reason }
+        | Failure::NoModels { reason }
+        | Failure::NoResult { reason }
+        | Failure::StandardOutput { reason } => json!({"reason": reason}),
+    };
+    match fields {
+        Value::Object(fields) => fields,
+        _ => Map::new(),
+    }
+}
+
+/// Returns the path of a file error, and where it has them the place in the content, the line and
+/// the column.
+fn file_fields(error: &FileError) -> Map<String, Value> {
+    let mut fields = Map::new();
+    if let Some(path) = error.path() {
+        fields.insert("path".to_owned(), path.to_string_lossy().into());
+    }
+    if let FileError::Exists { paths } = error {
+        let paths: Vec<Value> = paths
+            .iter()
+            .map(|path| path.to_string_lossy().into())
+            .collect();
+        fields.insert("paths".to_owned(), Value::Array(paths));
+    }
+    if let Some(place) = error.place() {
+        fields.insert("place".to_owned(), place.to_string().into());
+    }
+    if let Some(line) = error.line() {
+        fields.insert("line".to_owned(), line.into());
+    }
+    fields
+}

@@ -24,7 +24,9 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, small};
 const ROW: f32 = 19.0;
 /// Right edges of the numbers, as a share of the width: modulus and damping ratio of the model, and
 /// of the identified model.
-const NUMBERS: [f32; 4] = [0.41, 0.50, 0.63, 0.72];
+const NUMBERS: [f32; 4] = [0.42, 0.515, 0.635, 0.73];
+/// Gap between the last number and the verdict \[pt\].
+const VERDICT_GAP: f32 = 8.0;
 /// Right edge of the names, as a share of the width.
 const NAME: f32 = 0.32;
 
@@ -86,7 +88,7 @@ fn paint_headings(ui: &Ui, row: Rect, model: &str, palette: &Palette) {
     let painter = ui.painter();
     for (edge, text) in [
         (NUMBERS[1], format!("{model} \u{3c9}, \u{3b6}")),
-        (NUMBERS[3], "identified \u{3c9}, \u{3b6}".to_owned()),
+        (NUMBERS[3], "ident. \u{3c9}, \u{3b6}".to_owned()),
     ] {
         let at = pos2(row.left() + edge * row.width(), row.center().y);
         painter.text(at, Align2::RIGHT_CENTER, text, small(), palette.dim_text);
@@ -126,10 +128,13 @@ impl ModeRow<'_> {
             ModeVerdict::Outside => palette.warning,
             _ => palette.dim_text,
         };
-        let room = (1.0 - NUMBERS[3]) * row.width() - 10.0;
+        let room = (1.0 - NUMBERS[3]) * row.width() - VERDICT_GAP;
         let verdict = verdict_words(found.verdict);
         let shown = elided(ui, verdict, room, SMALL_SIZE);
-        let at = pos2(row.left() + NUMBERS[3] * row.width() + 10.0, row.center().y);
+        let at = pos2(
+            row.left() + NUMBERS[3] * row.width() + VERDICT_GAP,
+            row.center().y,
+        );
         painter.text(at, Align2::LEFT_CENTER, shown, small(), color);
         let words = format!("Mode {name}: {}", mode_verdict_words(found.verdict));
         let response = named(response, Role::Button, words);
@@ -168,7 +173,7 @@ impl ModeRow<'_> {
             let at = pos2(row.left() + edge * row.width(), row.center().y);
             let color = self.palette.text;
             ui.painter()
-                .text(at, Align2::RIGHT_CENTER, text, body(), color);
+                .text(at, Align2::RIGHT_CENTER, text, small(), color);
         }
     }
 }

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 /// Creates the exception `gdcm.Error` for the error of a call.
 pub(crate) fn exception(py: Python<'_>, error: &CallError) -> PyErr {
-    let fields = serde_json::Value::Object(error.fields.clone()).to_string();
+    let fields = serde_json::Value::Object((*error.fields).clone()).to_string();
     let arguments = (
         error.code,
         error.text.as_str(),

@@ -17,9 +17,9 @@ pub struct CallError {
     /// Exit status of the command.
     pub status: u8,
     /// What the text is about, by name: `option`, `path`, `line`.
-    pub fields: Map<String, Value>,
+    pub fields: Box<Map<String, Value>>,
     /// What the command would print before the error, as the object of `--json`.
-    pub messages: Value,
+    pub messages: Box<Value>,
 }
 
 impl CallError {
@@ -28,8 +28,8 @@ impl CallError {
             code: failure.code(),
             text: failure.to_string(),
             status: failure.status(),
-            fields: failure_fields(failure),
-            messages,
+            fields: Box::new(failure_fields(failure)),
+            messages: Box::new(messages),
         }
     }
 }

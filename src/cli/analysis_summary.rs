@@ -1,4 +1,4 @@
-//! Summary printed by `gdcm analyze`.
+//! Summary printed by `gdcm analyze`: the verdict first, then the details.
 
 use std::path::Path;
 
@@ -18,6 +18,7 @@ use gdcm_words::convention_doubt::doubt_text;
 use gdcm_words::coupling_remark::coupling_remark_text;
 use gdcm_words::couplings::{coupling_cost_table, coupling_matrix_tables, couplings_heading};
 use gdcm_words::gain_source::gain_source_text;
+use gdcm_words::verdict::{study_verdict_text, verdict_table};
 
 use super::condition_summary::condition_section;
 use super::evidence_summary::evidence_section;
@@ -25,23 +26,55 @@ use super::leave_one_out::nominal_choice;
 use super::physics_summary::physics_section;
 use super::printed_lines::{detail, indented, line};
 use super::schedule_summary::schedule_section;
-use super::shared_cautions::cautions_section;
+use super::shared_cautions::{cautions_section, coded_cautions};
 use super::terminal::keep_caution;
 
-/// Returns the printed summary: settings, results of each condition, schedule, assessment, and
-/// output files.
-pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
-    let mut names = RESULT_FILES.to_vec();
-    if analysis.applied_physics().is_some() {
-        names.push(PHYSICS_FILE);
-    }
-    let files = format!("{} in {}", names.join(", "), sanitized_path(out));
-    result_summary(analysis, loaded) + &line("Written", &files)
+/// Printed summary of an analysis.
+pub(super) struct Summary {
+    /// Verdict on the study and on each condition, one line each; assessment; codes of the cautions.
+    pub(super) verdict: String,
+    /// Settings, results of each condition, cautions, schedule, and evidence.
+    pub(super) details: String,
+    /// Output files.
+    pub(super) written: String,
 }
 
 /// Returns the summary without the output files; adds its cautions to the JSON object.
 pub(super) fn result_summary(analysis: &Analysis, loaded: &LoadedDataset) -> String {
-    let mut text = heading(analysis, loaded);
+    verdict_section(analysis, loaded) + &details(analysis)
+}
+
+impl Summary {
+    /// Forms the summary, and adds the cautions to the JSON object.
+    pub(super) fn new(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> Self {
+        Self {
+            verdict: verdict_section(analysis, loaded),
+            details: details(analysis),
+            written: written_line(analysis, out),
+        }
+    }
+}
+
+/// Returns the first half of the summary, which `--brief` prints alone.
+fn verdict_section(analysis: &Analysis, loaded: &LoadedDataset) -> String {
+    let dataset = &analysis.study.dataset;
+    let name = format!("{}, {}", sanitized(dataset.name()), loaded.origin);
+    let mut text = line("Dataset", &name);
+    text += &line("Verdict", &study_verdict_text(analysis));
+    let mut table = verdict_table(analysis);
+    for cell in table.rows.iter_mut().flatten() {
+        *cell = sanitized(cell);
+    }
+    text += &indented(&table, 2);
+    text += &line("Assessment", &sanitized(&assessment_sentence(analysis)));
+    text += &held_out_line(analysis);
+    text + &caution_codes_line(analysis)
+}
+
+/// Returns the second half of the summary, which `--brief` omits.
+fn details(analysis: &Analysis) -> String {
+    let mut text = "\n".to_owned();
+    text += &settings_lines(analysis);
     text += &doubts_section(analysis);
     for condition in analysis.study.dataset.conditions() {
         text += "\n";
@@ -52,9 +85,34 @@ pub(super) fn result_summary(analysis: &Analysis, loaded: &LoadedDataset) -> Str
     text += "\n";
     text += &cautions_section(analysis);
     text += &schedule_section(analysis);
-    text += &assessment_lines(analysis);
-    text += &held_out_line(analysis);
+    text += &left_out_lines(analysis);
     text + &evidence_section(analysis)
+}
+
+fn written_line(analysis: &Analysis, out: &Path) -> String {
+    let mut names = RESULT_FILES.to_vec();
+    if analysis.applied_physics().is_some() {
+        names.push(PHYSICS_FILE);
+    }
+    let files = format!("{} in {}", names.join(", "), sanitized_path(out));
+    line("Written", &files)
+}
+
+/// Lists the codes of the cautions, each with its conditions; empty without cautions.
+fn caution_codes_line(analysis: &Analysis) -> String {
+    let mut entries = Vec::new();
+    for coded in coded_cautions(analysis) {
+        let ids: Vec<String> = coded.conditions.iter().map(ToString::to_string).collect();
+        entries.push(match ids.as_slice() {
+            [] => coded.code.to_owned(),
+            [id] => format!("{} in condition {id}", coded.code),
+            _ => format!("{} in conditions {}", coded.code, ids.join(", ")),
+        });
+    }
+    if entries.is_empty() {
+        return String::new();
+    }
+    line("Cautions", &format!("{}.", entries.join("; ")))
 }
 
 /// Returns the doubts about signs and units, and adds them to the JSON object.
@@ -78,11 +136,10 @@ pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String 
     words
 }
 
-/// Describes the dataset and the settings.
-fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
+/// Describes the settings.
+fn settings_lines(analysis: &Analysis) -> String {
     let study = &analysis.study;
     let settings = &study.settings;
-    let dataset = format!("{}, {}", sanitized(study.dataset.name()), loaded.origin);
     let band = format!(
         "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
         six_digits(settings.band.min()),
@@ -91,7 +148,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
         six_digits(settings.alpha_gain),
         six_digits(settings.alpha_delay)
     );
-    let mut text = line("Dataset", &dataset) + &line("Band", &band);
+    let mut text = line("Band", &band);
     if settings.gain_source != GainSource::default() {
         text += &line("G from", &gain_source_text(settings));
     }
@@ -173,10 +230,9 @@ fn couplings_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the change of J of the nominal models due to the scheduled correction, and the
-/// conditions that were not assessed.
-fn assessment_lines(analysis: &Analysis) -> String {
-    let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
+/// Lists the conditions that were not assessed.
+fn left_out_lines(analysis: &Analysis) -> String {
+    let mut text = String::new();
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
     for left_out in AssessmentTable::assess(analysis, choice).left_out {
         let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));

@@ -3,7 +3,7 @@
 use gdcm_io::files::corrections_file::{result_paths, write_results};
 use gdcm_io::output_set::make_directory;
 
-use super::analysis_summary::summary;
+use super::analysis_summary::Summary;
 use super::failure::Failure;
 use super::leave_one_out::leave_one_out_section;
 use super::result_arguments::AnalyzeArguments;
@@ -30,7 +30,13 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
         &arguments.out,
         outputs,
     )?;
-    print(&summary(&analysis, &loaded, &arguments.out))?;
+    // The full summary is formed in any case: it adds the cautions to the JSON object.
+    let summary = Summary::new(&analysis, &loaded, &arguments.out);
+    print(&summary.verdict)?;
+    if !arguments.brief {
+        print(&summary.details)?;
+    }
+    print(&summary.written)?;
     if arguments.leave_one_out {
         print(&leave_one_out_section(&analysis))?;
     }

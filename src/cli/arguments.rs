@@ -96,6 +96,10 @@ pub enum Command {
         #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
         sign: Vec<ChannelSign>,
     },
+    /// Compare the program with figures that independent code computed, on this machine and within seconds: certified optima, an
+    /// analysis by other code, closed forms, the identification of a known system. Needs no file and writes none.
+    #[command(after_help = "Examples:\n  gdcm verify\n  gdcm verify --json")]
+    Verify,
     /// Write the embedded example (synthetic data) as a file that shows the format; with --real, a real aircraft with its
     /// physics model and flight records.
     #[command(after_help = "Examples:\n  gdcm example .\n  gdcm example real --real --force")]

@@ -74,6 +74,9 @@ pub(super) enum Failure {
     NoResult { reason: String },
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The program does not compute what independent code computed.
+    #[error("{failed} of {} failed: do not use results of this program on this machine", counted(*count, "comparison"))]
+    Deviating { failed: usize, count: usize },
     #[error("standard output cannot be written: {reason}")]
     StandardOutput { reason: String },
 }
@@ -144,6 +147,7 @@ impl Failure {
             Failure::NoModels { .. } => "no-models",
             Failure::NoResult { .. } => "no-result",
             Failure::Cancelled(_) => "stopped",
+            Failure::Deviating { .. } => "verification-failed",
             Failure::StandardOutput { .. } => "standard-output",
         }
     }
@@ -158,6 +162,7 @@ impl Failure {
             | Failure::NotIdentified { .. }
             | Failure::NoThreads { .. }
             | Failure::Cancelled(_)
+            | Failure::Deviating { .. }
             | Failure::StandardOutput { .. } => NOT_DONE,
             Failure::File(FileError::Export { fault, .. }) | Failure::Export(fault)
                 if fault.is_of_analysis() =>

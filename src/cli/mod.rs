@@ -57,6 +57,7 @@ mod study_arguments;
 mod study_options;
 mod terminal;
 mod time_histories;
+mod verify;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -138,6 +139,7 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
             opening,
             sign,
         } => check::check(file, opening, sign),
+        Command::Verify => verify::verify(),
         Command::Example {
             directory,
             real,

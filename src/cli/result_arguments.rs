@@ -28,6 +28,9 @@ pub struct AnalyzeArguments {
     /// Assess the schedule by leaving each condition in turn out of its fit: print the change of J in that condition.
     #[arg(long)]
     pub leave_one_out: bool,
+    /// Print the verdict alone: one line per condition, the assessment, and the codes of the cautions.
+    #[arg(long)]
+    pub brief: bool,
     /// Overwrite existing results.
     #[arg(long)]
     pub force: bool,

@@ -3,10 +3,12 @@
 //!
 //! A caution is a [`Remark`] of the kind [`RemarkKind::Caution`].
 
+use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
 use gdcm_model::number_format::NO_VALUE;
 use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::coupling_remark_search::analysis_coupling_remarks;
 use gdcm_study::results::remark::Remark;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{Analysis, ConditionAnalysis};
@@ -73,6 +75,68 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
         text += &line("Caution", &sanitized(&shared.words()));
     }
     text
+}
+
+/// Code of a caution, with the conditions that it is about; without conditions, it is about the
+/// whole study.
+pub(super) struct CodedCaution {
+    pub(super) code: &'static str,
+    pub(super) conditions: Vec<ConditionId>,
+}
+
+/// Collects the codes of all cautions: doubts about signs and units, cautions about conditions,
+/// couplings, and the schedule.
+pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
+    let mut coded = Vec::new();
+    for doubt in &analysis.doubts {
+        for id in &doubt.conditions {
+            add_code(&mut coded, "convention-doubt", Some(*id));
+        }
+    }
+    for result in analysis.conditions.values().flatten() {
+        let id = Some(result.condition.id());
+        for caution in condition_cautions(analysis, result) {
+            add_code(&mut coded, caution.code(), id);
+        }
+        if lead_limit_words(result).is_some() {
+            add_code(&mut coded, "lead-limit", id);
+        }
+    }
+    for remark in analysis_coupling_remarks(analysis) {
+        if remark.kind() != RemarkKind::Good {
+            add_code(&mut coded, remark.code(), None);
+        }
+    }
+    if let Ok(schedule) = &analysis.schedule {
+        for caution in &schedule.cautions {
+            let id = match caution {
+                ScheduleCaution::CostsMore(cost) => Some(cost.condition),
+                ScheduleCaution::SignedDelayApart { condition, .. } => Some(*condition),
+                _ => None,
+            };
+            add_code(&mut coded, caution.code(), id);
+        }
+    }
+    coded
+}
+
+/// Adds a condition to the entry of a code; the first occurrence of a code adds the entry.
+fn add_code(coded: &mut Vec<CodedCaution>, code: &'static str, id: Option<ConditionId>) {
+    let place = match coded.iter().position(|known| known.code == code) {
+        Some(place) => place,
+        None => {
+            coded.push(CodedCaution {
+                code,
+                conditions: Vec::new(),
+            });
+            coded.len() - 1
+        }
+    };
+    if let Some(id) = id
+        && !coded[place].conditions.contains(&id)
+    {
+        coded[place].conditions.push(id);
+    }
 }
 
 /// Returns the cautions about a condition, without the doubts about signs and units, which are

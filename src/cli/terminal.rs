@@ -11,6 +11,7 @@ use gdcm_io::file_error::system_words;
 use gdcm_io::json_writing::write_pretty;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized, shortened_message};
+use gdcm_verify::CheckResult;
 
 use super::condition_messages::with_conditions;
 use super::failure::Failure;
@@ -39,6 +40,58 @@ struct Messages {
     errors: Vec<String>,
     /// Stable code of each error.
     error_codes: Vec<&'static str>,
+    /// Comparisons of `gdcm verify`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    checks: Vec<ComparedCheck>,
+}
+
+/// A comparison with independent figures.
+#[derive(Debug, Serialize)]
+struct ComparedCheck {
+    /// Stable code of the comparison.
+    code: &'static str,
+    /// Sections of the method: "M8".
+    sections: &'static str,
+    passed: bool,
+    instances: Option<usize>,
+    values: Option<usize>,
+    /// Maximum deviation; null if it is not finite or nothing could be compared.
+    worst: Option<f64>,
+    tolerance: f64,
+    measure: &'static str,
+    /// Code of the reason why nothing could be compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fault: Option<&'static str>,
+}
+
+impl ComparedCheck {
+    fn new(result: &CheckResult) -> Self {
+        let check = result.check;
+        let compared = Self {
+            code: check.code,
+            sections: check.sections,
+            passed: result.passed(),
+            instances: None,
+            values: None,
+            worst: None,
+            tolerance: check.tolerance,
+            measure: check.measure,
+            fault: None,
+        };
+        match &result.outcome {
+            Ok(found) => Self {
+                instances: Some(found.instances),
+                values: Some(found.values),
+                // JSON has no infinity: it becomes null.
+                worst: Some(found.worst),
+                ..compared
+            },
+            Err(fault) => Self {
+                fault: Some(fault.code()),
+                ..compared
+            },
+        }
+    }
 }
 
 /// The JSON object, with the name and the version of its format.
@@ -193,6 +246,12 @@ pub(super) fn keep_summary(
         conditions: conditions.iter().map(|id| id.0).collect(),
     };
     MESSAGES.with_borrow_mut(|messages| messages.cautions.push(caution));
+}
+
+/// Adds the comparisons of `gdcm verify` to the JSON object.
+pub(super) fn keep_checks(results: &[CheckResult]) {
+    let checks = results.iter().map(ComparedCheck::new).collect();
+    MESSAGES.with_borrow_mut(|messages| messages.checks = checks);
 }
 
 /// Prints an error, or adds it to the JSON output.

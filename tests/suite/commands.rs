@@ -10,10 +10,12 @@ use serde_json::{Value, json};
 
 use gdcm_io::{Example, load_dataset, load_example, save_study};
 use gdcm_model::dataset::BundleKind;
-use gdcm_study::Study;
 use gdcm_study::decisions::setting_table;
+use gdcm_study::results::verdict::PhaseVerdict;
+use gdcm_study::{Engine, Study, Unobserved};
+use gdcm_words::verdict::{phase_verdict_text, study_verdict_text};
 
-use crate::{entries, members, read_json};
+use crate::{FEW, entries, members, read_json};
 
 pub(crate) const SMALL: &str = include_str!("../data/small-dataset.json");
 
@@ -300,6 +302,70 @@ fn the_embedded_example_is_analysed_without_a_file() {
         .max()
         .unwrap();
     assert!(widest <= 120, "{widest} columns");
+}
+
+/// The verdict is the window's: the same counts and the same words, one line per condition.
+#[test]
+fn a_brief_analysis_prints_one_line_per_condition_and_keeps_every_caution() {
+    let desk = Desk::with_few();
+    let brief = desk.messages(&["analyze", "few.json", "--out", "brief", "--brief"]);
+    let full = desk.messages(&["analyze", "few.json", "--out", "full"]);
+    brief.assert_success();
+    full.assert_success();
+    let study = Study::new(FEW.dataset.clone());
+    let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+    assert!(brief.text.contains(&study_verdict_text(&analysis)));
+    for condition in FEW.dataset.conditions() {
+        let result = analysis.condition(condition.id()).unwrap();
+        let phase = PhaseVerdict::new(&study, result);
+        assert_eq!(phase.code(), "lag-remains");
+        let state = condition.flight_state();
+        let start = format!("  {}: {} kt", state.id, state.airspeed_kt);
+        let lines: Vec<&str> = brief
+            .text
+            .lines()
+            .filter(|line| line.starts_with(&start))
+            .collect();
+        let [line] = lines[..] else {
+            panic!("{lines:?}")
+        };
+        assert!(line.contains("5 of 5") && line.contains("0 of 5"), "{line}");
+        assert!(line.contains(&phase_verdict_text(phase, &study)), "{line}");
+    }
+    let lines = brief.text.lines().count();
+    assert!(
+        lines < 8 + 2 * FEW.dataset.conditions().len(),
+        "{lines} lines"
+    );
+    let (first, _) = brief.text.rsplit_once("Written").unwrap();
+    assert!(full.text.starts_with(first), "the full text begins with it");
+    let codes = |messages: &Messages| -> Vec<String> {
+        let cautions = messages.cautions.iter();
+        cautions.map(|caution| caution.code.clone()).collect()
+    };
+    assert_eq!(codes(&brief), codes(&full));
+    for code in ["needs-lead", "common-lead"] {
+        assert!(brief.text.contains(code), "{code}");
+    }
+}
+
+#[test]
+fn the_program_agrees_with_independent_code_on_this_machine() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["verify", "--json"]);
+    ended.assert_done();
+    let object: Value = serde_json::from_str(&ended.out).unwrap();
+    let checks = object["checks"].as_array().unwrap();
+    assert_eq!(checks.len(), gdcm_verify::CHECKS.len());
+    for (found, check) in checks.iter().zip(gdcm_verify::CHECKS) {
+        assert_eq!(
+            (&found["code"], &found["passed"]),
+            (&json!(check.code), &json!(true))
+        );
+        let worst = found["worst"].as_f64().unwrap();
+        assert!(worst <= check.tolerance, "{}: {worst}", check.code);
+        assert!(object["text"].as_str().unwrap().contains(check.code));
+    }
 }
 
 /// Returns the result of a condition in a corrections file.

@@ -19,6 +19,7 @@ use gdcm_study::results::record_simulations::time_histories_of;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::time_histories::HistoryRecords;
+use gdcm_study::results::verdict::PhaseVerdict;
 use gdcm_study::{Analysis, Edit, Engine, Execution, Study};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
@@ -26,23 +27,29 @@ use gdcm_words::assessment::not_assessed_text;
 use gdcm_words::remark::remark_text;
 use gdcm_words::requirements::summary_table;
 use gdcm_words::time_histories::{record_table, share_table};
+use gdcm_words::verdict::phase_verdict_text;
 
 use crate::commands::Desk;
 use crate::window::{click, few_window, settle, state};
 use crate::{EXAMPLE, FEW};
 
-const SECTIONS: [&str; 11] = [
-    "1 Summary",
-    "2 Settings",
-    "3 Provenance",
-    "4 Models left out",
-    "5 Conditions",
-    "6 Channels and schedule",
-    "7 Uncertainty",
-    "8 Assessment",
-    "9 Requirements",
-    "10 The method",
-    "11 Sources of the models",
+const SECTIONS: [&str; 16] = [
+    "1 Verdict",
+    "2 Schedule over airspeed",
+    "3 Conditions",
+    "4 Assessment",
+    "5 Uncertainty",
+    "6 Requirements",
+    "7 Models left out",
+    "8 Settings",
+    "9 Provenance",
+    "A Details of the conditions",
+    "B Channels over the conditions",
+    "C Details of the assessment",
+    "D Details of the uncertainty",
+    "E Details of the requirements",
+    "F The method",
+    "G Sources of the models",
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
@@ -106,8 +113,9 @@ fn texts<'t>(document: &Document<'t>, tag: &str) -> Vec<String> {
 #[test]
 fn the_report_of_the_example_has_every_section_and_every_condition() {
     let document = parsed(&REPORT);
-    let sections = texts(&document, "h2");
-    assert_eq!(sections[1..], SECTIONS, "after the contents");
+    let mut sections = texts(&document, "h2");
+    assert_eq!(sections.remove(1), "Contents", "after the first page");
+    assert_eq!(sections, SECTIONS);
     let parts = texts(&document, "h3");
     for condition in FEW.dataset.conditions() {
         let heading = format!(
@@ -121,8 +129,18 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
         );
     }
     let figures = texts(&document, "figcaption");
+    for condition in FEW.dataset.conditions() {
+        let caption = format!(
+            "Condition {}: {}.",
+            condition.id(),
+            condition.flight_state().name
+        );
+        assert!(
+            figures.iter().any(|figure| figure.ends_with(&caption)),
+            "{caption} in {figures:?}"
+        );
+    }
     for words in [
-        "responses on axis",
         "difference between identified and physics models",
         "magnitude of every response",
         "poles of its models",
@@ -145,6 +163,52 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
             "{words} in {figures:?}"
         );
     }
+}
+
+/// The first page: verdict, corrections of every condition, signatures; then the contents.
+#[test]
+fn page_one_has_the_verdict_the_corrections_and_the_signatures() {
+    let first = REPORT.split("<nav").next().unwrap();
+    assert!(first.contains(&gdcm_words::verdict::study_verdict_text(&ANALYSIS)[1..]));
+    let document = parsed(&REPORT);
+    let cells = texts(&document, "td");
+    for condition in FEW.dataset.conditions() {
+        let result = ANALYSIS.condition(condition.id()).unwrap();
+        let phase = PhaseVerdict::new(&ANALYSIS.study, result);
+        let phase = phase_verdict_text(phase, &ANALYSIS.study);
+        let state = condition.flight_state();
+        let name = format!("{}: {} kt", state.id, state.airspeed_kt);
+        let row = cells.iter().position(|cell| *cell == name).unwrap();
+        assert_eq!(cells[row + 1..row + 3], ["5 of 5".to_owned(), phase]);
+        let pair = FEW.dataset.on_axis().marked().next().unwrap();
+        let net_gain = format!("{:.3} \u{b1} ", result.correction.net_gain(pair));
+        assert!(cells[row + 3].starts_with(&net_gain), "{}", cells[row + 3]);
+        assert!(first.contains(&name));
+    }
+    for role in ["Prepared by", "Checked by", "Approved by"] {
+        assert!(first.contains(role), "{role}");
+    }
+    assert_eq!(REPORT.matches("<nav").count(), 1);
+}
+
+/// A figure is at most a quarter of a page high, so that the length stays in proportion.
+#[test]
+fn four_figures_fit_on_a_page() {
+    let document = parsed(&REPORT);
+    let mut figures = 0;
+    for svg in document
+        .descendants()
+        .filter(|node| node.has_tag_name("svg"))
+    {
+        let height: f64 = svg
+            .attribute("height")
+            .and_then(|height| height.trim_end_matches("mm").parse().ok())
+            .expect("a figure has a height in mm");
+        // Letter paper, 279 mm, less the margins and four captions.
+        assert!(4.0 * height < 249.0 - 4.0 * 9.0, "{height} mm");
+        figures += 1;
+    }
+    assert!(figures > 15, "{figures} figures");
 }
 
 #[test]

@@ -134,6 +134,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("record_use", &[]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
+            ("verdict", &["caution", "table"]),
             ("flight_plan", &["table"]),
             ("time_histories", &["table"]),
             (
@@ -221,6 +222,16 @@ const MAY_DEPEND: &[(&str, &[&str])] = &[
             "gdcm-study",
             "gdcm-words",
             "gdcm-plot",
+        ],
+    ),
+    (
+        "gdcm-verify",
+        &[
+            "gdcm-model",
+            "gdcm-method",
+            "gdcm-sysid",
+            "gdcm-study",
+            "gdcm-io",
         ],
     ),
 ];

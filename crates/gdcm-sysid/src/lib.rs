@@ -47,6 +47,9 @@
 //! ```
 
 pub mod diagnostics;
+#[cfg(test)]
+#[path = "../../../tests/support/evidence.rs"]
+mod evidence;
 pub mod identification;
 pub mod identification_error;
 pub mod likelihood;

@@ -8,7 +8,7 @@
 //!
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
-//! suspected faults; [`missing_results`] for results that do not exist; [`coupling_error`],
+//! suspected faults; [`verdict`] for the held responses; [`missing_results`] for results that do not exist; [`coupling_error`],
 //! [`coupled_model_error`], [`coupling_remark`], [`couplings`], [`physics`], [`assessment`],
 //! [`schedule`], [`uncertainty`] for a study; [`edit`], [`decision_differences`] and [`dataset_differences`]; [`export`] for
 //! exported files; [`identification_caution`] for identified models,
@@ -60,6 +60,7 @@ pub mod suggested_runs;
 pub mod table;
 pub mod time_histories;
 pub mod uncertainty;
+pub mod verdict;
 
 pub use derivation::ExplainTarget;
 pub use table::Table;

@@ -52,6 +52,7 @@ fn failure_fields(failure: &Failure) -> Map<String, Value> {
         Failure::UnknownCommand { found, suggestion } => {
             json!({"found": found, "suggestion": suggestion})
         }
+        Failure::Deviating { failed, count } => json!({"failed": failed, "count": count}),
         Failure::Different { path, count } | Failure::Faulty { path, count } => {
             json!({"path": path, "count": count})
         }

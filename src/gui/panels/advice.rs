@@ -9,6 +9,7 @@ use gdcm_study::decisions::setting_table;
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::correction_costs::CorrectionCost;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
+use gdcm_words::verdict::unbroken;
 
 use super::sign_reversal::sign_reversal_entry;
 use crate::gui::commands::command::Command;
@@ -177,11 +178,6 @@ fn off_axis_note(cost: CorrectionCost) -> String {
     }
 }
 
-/// Replaces the spaces in a name by no-break spaces, so that it is not split at a line end.
-pub(super) fn joined(name: &str) -> String {
-    name.replace(' ', "\u{a0}")
-}
-
 /// Returns the command that opens the export form.
 pub(super) fn export() -> Command {
     Command::Form(FormCommand::ShowForm(Some(FormKind::Export)))
@@ -189,7 +185,7 @@ pub(super) fn export() -> Command {
 
 fn release_step(state: &State, pair: Pair) -> Step {
     Step::new(
-        format!("Release {}", joined(&state.dataset().pair_name(pair))),
+        format!("Release {}", unbroken(&state.dataset().pair_name(pair))),
         Edit::Hold(pair, false),
     )
 }

@@ -48,6 +48,5 @@ mod trim_columns;
 pub mod verdict;
 mod verdict_caution;
 mod verdict_view;
-mod verdict_words;
 mod view_bar;
 mod view_frame;

@@ -9,12 +9,13 @@ use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting::Setting;
 use gdcm_study::decisions::setting_table;
+use gdcm_words::verdict::band_text;
 
 use super::advice::export;
 use super::matrix_panel::MatrixSpace;
 use super::reasons::reasons_inspector_ui;
 use super::result_panel::OLDER;
-use super::verdict::{Verdict, band_words};
+use super::verdict::Verdict;
 use super::verdict_view::{shown_verdict, verdict_ui};
 use super::{matrix_panel, response_card, result_panel};
 use crate::gui::commands::command::Command;
@@ -198,7 +199,11 @@ fn settings_parts(state: &State) -> Vec<LinePart> {
             &[&setting_table::ALPHA_GAIN, &setting_table::ALPHA_DELAY],
             &mut changed,
         ),
-        LinePart::new(band_words(state), &[&setting_table::BAND], &mut changed),
+        LinePart::new(
+            band_text(&state.study),
+            &[&setting_table::BAND],
+            &mut changed,
+        ),
         LinePart::new(phase.to_owned(), &[&setting_table::PHASE], &mut changed),
     ];
     if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {

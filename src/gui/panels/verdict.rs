@@ -1,18 +1,17 @@
 //! Verdict: whether the constrained responses of the corrected model are matched, and the next step
-//! if they are not. `verdict_words.rs` and `verdict_caution.rs` form its texts, `advice.rs` chooses
-//! the steps, `verdict_view.rs` draws it.
+//! if they are not. `gdcm_words::verdict` and `verdict_caution.rs` form its texts, `advice.rs`
+//! chooses the steps, `verdict_view.rs` draws it.
 
-use gdcm_method::correction::solution::Solution;
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::units::{s_to_ms, six_digits};
+use gdcm_study::ConditionAnalysis;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::{ConditionAnalysis, PhaseCorrection};
+use gdcm_study::results::verdict::{GainVerdict, MatchCount, PhaseVerdict};
 use gdcm_words::caution::failure_text;
+use gdcm_words::verdict::{gain_verdict_text, match_count_text, phase_verdict_text};
 
 use super::advice::{Advice, Step};
 use super::reasons::remarks_shown;
 use super::verdict_caution::{caution, unstable_in_band};
-use super::verdict_words::{RemainingLag, gain_message};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
@@ -38,43 +37,6 @@ pub struct Verdict {
     pub unstable_in_band: usize,
     /// Number of remarks in the sheet of reasons.
     pub reasons: usize,
-}
-
-/// Number of constrained responses, and how many of them are matched, in gain or in phase.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MatchCount {
-    pub matched: usize,
-    pub constrained: usize,
-}
-
-impl MatchCount {
-    /// Counts the constrained responses that `solution` matches.
-    fn new(shown: &ConditionAnalysis, solution: &Solution) -> Self {
-        let constrained = shown.held().marked().count();
-        Self {
-            matched: constrained.saturating_sub(solution.unmatched.len()),
-            constrained,
-        }
-    }
-
-    fn gains(shown: &ConditionAnalysis) -> Self {
-        Self::new(shown, &shown.gains)
-    }
-
-    fn delays(shown: &ConditionAnalysis) -> Self {
-        Self::new(shown, &shown.delays)
-    }
-
-    /// Sums the counts over all conditions with a result; `None` without an analysis.
-    fn everywhere(state: &State, count: fn(&ConditionAnalysis) -> Self) -> Option<Self> {
-        let mut total = Self::default();
-        for shown in state.analysis()?.conditions.values().flatten() {
-            let added = count(shown);
-            total.matched += added.matched;
-            total.constrained += added.constrained;
-        }
-        Some(total)
-    }
 }
 
 /// Gains or phases of the constrained responses.
@@ -106,7 +68,7 @@ impl VerdictRow {
     /// Returns "5 of 5", or "–" without a result.
     pub fn count_text(count: Option<MatchCount>) -> String {
         match count {
-            Some(count) => format!("{} of {}", count.matched, count.constrained),
+            Some(count) => match_count_text(count),
             None => "–".to_owned(),
         }
     }
@@ -196,58 +158,35 @@ impl Verdict {
 }
 
 fn gain_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
-    let here = MatchCount::gains(shown);
-    let is_any_held = here.constrained > 0;
+    let verdict = GainVerdict::new(shown);
+    let text = gain_verdict_text(verdict, state.dataset());
     VerdictRow {
         name: "Gain",
-        here: Some(here),
-        everywhere: MatchCount::everywhere(state, MatchCount::gains),
-        message: if is_any_held {
-            gain_message(state, shown)
-        } else {
-            Message::new("none-held", "fitted, none held")
-        },
-        is_met: is_any_held && shown.gains.matched,
+        here: Some(MatchCount::of_gains(shown)),
+        everywhere: everywhere(state, MatchCount::of_gains),
+        message: Message::new(verdict.code(), text),
+        is_met: verdict == GainVerdict::Matched,
     }
 }
 
 fn phase_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
-    if state.study.settings.phase == PhaseCorrection::None {
-        return VerdictRow::without_result("Phase", Message::new("not-corrected", "not corrected"));
+    let verdict = PhaseVerdict::new(&state.study, shown);
+    let message = Message::new(verdict.code(), phase_verdict_text(verdict, &state.study));
+    if verdict == PhaseVerdict::NotCorrected {
+        return VerdictRow::without_result("Phase", message);
     }
-    let here = MatchCount::delays(shown);
-    let is_any_held = here.constrained > 0;
-    let message = if !is_any_held {
-        Message::new("none-held", "fitted, none held")
-    } else if shown.delays.matched {
-        Message::new("matched", format!("matched, {}", band_words(state)))
-    } else {
-        let mut left_ms: Vec<f64> = shown
-            .delays
-            .unmatched
-            .iter()
-            .map(|missed| s_to_ms(missed.excess))
-            .collect();
-        let lag = RemainingLag::new(&mut left_ms);
-        Message::new("lag-remains", lag.words())
-    };
     VerdictRow {
         name: "Phase",
-        here: Some(here),
-        everywhere: MatchCount::everywhere(state, MatchCount::delays),
+        here: Some(MatchCount::of_phases(shown)),
+        everywhere: everywhere(state, MatchCount::of_phases),
         message,
-        is_met: is_any_held && shown.delays.matched,
+        is_met: verdict == PhaseVerdict::Matched,
     }
 }
 
-/// Formats the band: "0.5–12 rad/s".
-pub(crate) fn band_words(state: &State) -> String {
-    let band = state.study.settings.band;
-    format!(
-        "{}–{} rad/s",
-        six_digits(band.min()),
-        six_digits(band.max())
-    )
+/// Sums the counts over all conditions with a result; `None` without an analysis.
+fn everywhere(state: &State, count: fn(&ConditionAnalysis) -> MatchCount) -> Option<MatchCount> {
+    Some(MatchCount::over_conditions(state.analysis()?, count))
 }
 
 #[cfg(test)]
@@ -261,10 +200,9 @@ mod tests {
     use gdcm_study::decisions::setting::Value;
     use gdcm_study::decisions::setting_table;
     use gdcm_study::results::couplings_assessment::UnstablePole;
-    use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
+    use gdcm_study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
 
     use super::super::advice::export;
-    use super::super::verdict_words::shared_channel;
     use super::*;
     use crate::gui::commands::study::StudyCommand;
     use crate::gui::state::sheet::Sheet;
@@ -294,11 +232,8 @@ mod tests {
         Edit::reject_physics(ConditionId(10), &state.open_suggestions(shown))
     }
 
-    fn count(matched: usize, constrained: usize) -> Option<MatchCount> {
-        Some(MatchCount {
-            matched,
-            constrained,
-        })
+    fn count(matched: usize, held: usize) -> Option<MatchCount> {
+        Some(MatchCount { matched, held })
     }
 
     fn commands(verdict: &Verdict) -> Vec<&Command> {
@@ -429,56 +364,6 @@ mod tests {
         assert_eq!(codes(&verdict), ["none-held"; 2]);
         assert_eq!(commands(&verdict), [&Command::from(Edit::ConstrainOnAxis)]);
         assert!(!verdict.is_met());
-    }
-
-    #[test]
-    fn responses_with_a_common_channel_are_reported_by_its_name() {
-        let state = state_of(&[]);
-        let channel = |pairs: &[(usize, usize)]| {
-            let pairs: Vec<Pair> = pairs
-                .iter()
-                .map(|(output, input)| Pair::new(*output, *input))
-                .collect();
-            shared_channel(&state, &pairs)
-        };
-        assert_eq!(channel(&[(2, 2), (4, 2)]), Some("PED"));
-        assert_eq!(channel(&[(1, 0), (1, 3), (1, 2)]), Some("Q"));
-        assert_eq!(
-            (channel(&[(2, 2), (5, 3)]), channel(&[(2, 2)]), channel(&[])),
-            (None, None, None)
-        );
-    }
-
-    #[test]
-    fn a_common_lag_is_one_number_and_unequal_lags_are_a_range() {
-        for (left_ms, lag, words) in [
-            (vec![60.0], RemainingLag::Equal(60.0), ["60", "lags"]),
-            (
-                vec![60.0, 70.0, 64.0],
-                RemainingLag::AboutEqual(64.0),
-                ["64", "≈"],
-            ),
-            (
-                vec![40.0, 106.0, 62.0],
-                RemainingLag::Range([40.0, 106.0]),
-                ["40–106", "lags"],
-            ),
-            (
-                vec![-5.0, 106.0, 62.0],
-                RemainingLag::Range([-5.0, 106.0]),
-                ["−5 to 106", "lags"],
-            ),
-            (
-                vec![-90.0, -10.0, -30.0],
-                RemainingLag::Range([-10.0, -90.0]),
-                ["10–90", "leads"],
-            ),
-        ] {
-            let found = RemainingLag::new(&mut left_ms.clone());
-            assert_eq!(found, lag, "{left_ms:?}");
-            let text = found.words();
-            assert!(words.iter().all(|word| text.contains(word)), "{text}");
-        }
     }
 
     #[test]

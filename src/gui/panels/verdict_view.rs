@@ -183,9 +183,7 @@ fn row_ui(ui: &Ui, rect: Rect, row: &VerdictRow, is_all_met: bool, palette: &Pal
     let response = ui.interact(rect, id, Sense::hover());
     named(response, Role::Label, row.sentence());
     painted_text(ui, rect, 0.0, row.name, body(), palette.dim_text);
-    let is_missed = row
-        .here
-        .is_some_and(|count| count.matched < count.constrained);
+    let is_missed = row.here.is_some_and(|count| count.matched < count.held);
     let color = if is_all_met {
         palette.good
     } else if is_missed {

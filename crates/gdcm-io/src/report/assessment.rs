@@ -17,8 +17,10 @@ use super::limits::{CONDITIONS_DRAWN, PAIRS_DRAWN};
 use super::page::Page;
 use super::wording::capital;
 
-/// Maximum number of responses in a figure, in four rows.
+/// Maximum number of responses in a figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 12;
+/// Maximum number of plots in a row of a figure.
+const PLOTS_IN_A_ROW: usize = 6;
 /// Maximum number of conditions side by side in a table that fits on a page.
 const CONDITIONS_SIDE_BY_SIDE: usize = 12;
 
@@ -43,19 +45,26 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
         ));
     }
     page.list(left_out);
-    let measuring = analysis.study.dataset.measuring_pairs();
     let has_on_axis = analysis.study.dataset.on_axis().marked().next().is_some();
-    let on_axis: Vec<Pair> = measuring.marked().collect();
-    let off_axis: Vec<Pair> = measuring.pairs().filter(|pair| !measuring[*pair]).collect();
-    let on_axis_name = if has_on_axis {
+    let name = if has_on_axis {
         "on-axis responses"
     } else {
         "responses"
     };
+    let on_axis: Vec<Pair> = analysis.study.dataset.measuring_pairs().marked().collect();
     if !on_axis.is_empty() {
-        add_responses(page, analysis, &table, &on_axis, on_axis_name);
-        page.table(&parts_table(analysis, &table, &on_axis));
+        add_responses(page, analysis, &table, &on_axis, name);
     }
+}
+
+/// Adds the appendix with J of the on-axis responses in parts, and with the off-axis responses.
+pub(super) fn add_assessment_details(page: &mut Page, analysis: &Analysis) {
+    page.appendix("Details of the assessment");
+    let table = AssessmentTable::assess(analysis, usual_choice(analysis));
+    let measuring = analysis.study.dataset.measuring_pairs();
+    let on_axis: Vec<Pair> = measuring.marked().collect();
+    let off_axis: Vec<Pair> = measuring.pairs().filter(|pair| !measuring[*pair]).collect();
+    page.table(&parts_table(analysis, &table, &on_axis));
     if !off_axis.is_empty() {
         add_responses(page, analysis, &table, &off_axis, "off-axis responses");
     }
@@ -70,13 +79,12 @@ fn add_responses(
     pairs: &[Pair],
     name: &str,
 ) {
-    page.subsection(&capital(name));
     let measuring = analysis.study.dataset.measuring_pairs();
     let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| {
         pairs.contains(&pair)
     });
     let summary = summary_text(&table.summary(&marked), &analysis.study.dataset);
-    page.paragraph(&format!("{}.", capital(&summary)));
+    page.paragraph(&format!("{}: {summary}.", capital(name)));
     add_figures(page, analysis, pairs, name);
     add_tables(page, analysis, table, pairs, name);
 }
@@ -86,6 +94,7 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(PAIRS_IN_A_FIGURE) {
         let figure = assessment_figure(analysis, pairs, usual_choice(analysis));
+        let figure = figure.columns(PLOTS_IN_A_ROW);
         page.figure(
             &figure,
             &format!("Change of J of {name}"),

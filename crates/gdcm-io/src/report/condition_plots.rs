@@ -1,22 +1,46 @@
 //! Plots of a condition in the report.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
+use gdcm_plot::figure::condition_source::condition_words;
 use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::poles::{PoleContents, poles_figure};
 use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role};
 use gdcm_study::jobs::curve_jobs::ConditionModes;
-use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, ConditionCurves, curves_band};
 use gdcm_study::{Analysis, ConditionAnalysis, Engine};
 
 use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 use super::shown_models::models_hidden;
 
-/// Computes the curves of a condition and adds its plots.
+/// Adds Bode plots of the responses in the objective (on-axis; all if none is on-axis).
+pub(super) fn add_response_plots(
+    page: &mut Page,
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<(), Cancelled> {
+    if let Some(curves) = curves(analysis, result, engine, progress)? {
+        let source = source(analysis, result, &curves);
+        let options = options(&source, result);
+        let title = condition_words(result.condition.flight_state());
+        for pairs in drawn_pairs(&source).chunks(PAIRS_IN_A_FIGURE) {
+            let figure = bode_figure(&source, pairs, &options);
+            page.figure(&figure.columns(PLOTS_IN_A_ROW), &title, "");
+        }
+        add_number_drawn(page, &source);
+    }
+    Ok(())
+}
+
+/// Computes the curves of a condition and adds its other plots: ratios and phase differences of the
+/// responses in the objective, an overview of all responses, and the poles.
 pub(super) fn add_condition_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -24,62 +48,83 @@ pub(super) fn add_condition_plots(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<(), Cancelled> {
-    let study = &analysis.study;
-    let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let curves = engine.curves(&study.dataset, result.condition.id(), grid, progress)?;
-    if let Some(curves) = curves {
-        let source = ConditionSource {
-            study,
-            analysis: Some(result),
-            schedule: analysis.schedule.as_ref().ok(),
-            curves: &curves,
-            variant: None,
-        };
-        add_plots(page, result, &source);
+    if let Some(curves) = curves(analysis, result, engine, progress)? {
+        let source = source(analysis, result, &curves);
+        let options = options(&source, result);
+        add_error_plots(page, &source, &options);
+        add_overview(page, &source, &options);
+        add_poles(page, &source, &options);
     }
     Ok(())
 }
 
-/// Maximum number of responses in a figure, in at most two rows.
-const PAIRS_IN_A_FIGURE: usize = 10;
-/// Maximum number of responses in the overview, which shows magnitudes alone.
-const PAIRS_IN_OVERVIEW: usize = 6 * PAIRS_IN_A_FIGURE;
-
-/// Adds the plots of a condition: the responses in the objective, their ratios and phase
-/// differences, an overview of all responses, and the poles.
-fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
-    let options = BodeOptions {
-        hidden_models: models_hidden(source.study, result),
-        ..BodeOptions::default()
-    };
-    add_response_plots(page, source, &options);
-    add_overview(page, source, &options);
-    add_poles(page, source, &options);
+fn curves(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<Option<Arc<ConditionCurves>>, Cancelled> {
+    let study = &analysis.study;
+    let grid = (curves_band(&study.settings), CURVE_POINTS);
+    engine.curves(&study.dataset, result.condition.id(), grid, progress)
 }
 
-/// Adds Bode plots of the responses in the objective (on-axis; all if none is on-axis), and plots
-/// of ratio and phase difference between the identified representative and the physics models.
-fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
-    let id = source.curves.condition.id();
-    let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
-    let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    for pairs in drawn.chunks(PAIRS_IN_A_FIGURE) {
-        let title = format!("Condition {id}, responses{}", on_axis_words(source));
-        let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
-                       correction.";
-        page.figure(&bode_figure(source, pairs, options), &title, caption);
-        let title = format!("Condition {id}, difference between identified and physics models");
-        let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
-                       bounds and the quantiles.";
-        let figure = without_values(error_figure(source, pairs, options));
-        page.figure(&figure, &title, caption);
+fn source<'a>(
+    analysis: &'a Analysis,
+    result: &'a ConditionAnalysis,
+    curves: &'a Arc<ConditionCurves>,
+) -> ConditionSource<'a> {
+    ConditionSource {
+        study: &analysis.study,
+        analysis: Some(result),
+        schedule: analysis.schedule.as_ref().ok(),
+        curves,
+        variant: None,
     }
-    if drawn.len() < measuring.len() {
+}
+
+fn options(source: &ConditionSource<'_>, result: &ConditionAnalysis) -> BodeOptions {
+    BodeOptions {
+        hidden_models: models_hidden(source.study, result),
+        ..BodeOptions::default()
+    }
+}
+
+/// Returns the responses in the objective, at most [`PAIRS_DRAWN`].
+fn drawn_pairs(source: &ConditionSource<'_>) -> Vec<Pair> {
+    let measuring = source.study.dataset.measuring_pairs();
+    measuring.marked().take(PAIRS_DRAWN).collect()
+}
+
+/// Adds a sentence if there are more responses in the objective than are drawn.
+fn add_number_drawn(page: &mut Page, source: &ConditionSource<'_>) {
+    let measuring = source.study.dataset.measuring_pairs().marked().count();
+    if measuring > PAIRS_DRAWN {
         page.paragraph(&format!(
-            "{} of {} responses in the objective are drawn.",
-            drawn.len(),
-            measuring.len()
+            "{PAIRS_DRAWN} of {measuring} responses in the objective are drawn."
         ));
+    }
+}
+
+/// Maximum number of responses in a figure, in one row.
+const PAIRS_IN_A_FIGURE: usize = 6;
+/// Maximum number of plots in a row of a figure.
+const PLOTS_IN_A_ROW: usize = PAIRS_IN_A_FIGURE;
+/// Maximum number of responses in the overview, which shows magnitudes alone.
+const PAIRS_IN_OVERVIEW: usize = 60;
+/// Number of plots in a row of the overview, in whole outputs.
+const OVERVIEW_PLOTS_IN_A_ROW: usize = 10;
+
+/// Adds plots of ratio and phase difference between the identified representative and the physics
+/// models, of the responses in the objective.
+fn add_error_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
+    let id = source.curves.condition.id();
+    for pairs in drawn_pairs(source).chunks(PAIRS_IN_A_FIGURE) {
+        let title = format!("Condition {id}, difference between identified and physics models");
+        let caption = "Identified representative against each kept physics model, with G, D, \
+            bounds and quantiles.";
+        let figure = without_values(error_figure(source, pairs, options));
+        page.figure(&figure.columns(PLOTS_IN_A_ROW), &title, caption);
     }
 }
 
@@ -89,7 +134,9 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
         hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
         ..options.clone()
     };
-    let overview = overview_figure(source, &without_bundles);
+    let inputs = source.study.dataset.inputs().len().max(1);
+    let outputs_in_a_row = (OVERVIEW_PLOTS_IN_A_ROW / inputs).max(1);
+    let overview = overview_figure(source, &without_bundles).columns(inputs * outputs_in_a_row);
     if overview.plots.len() <= PAIRS_IN_OVERVIEW {
         let id = source.curves.condition.id();
         page.figure(
@@ -118,8 +165,8 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
     page.figure(
         &poles_figure(source, contents, options),
         &format!("Condition {id}, poles of its models"),
-        "Physics models ×, identified models +; rays of equal damping ratio. Corrections of \
-        channels do not move poles; couplings do.",
+        "Physics models ×, identified models +; rays of equal damping ratio. Couplings move \
+        poles, corrections of channels do not.",
     );
 }
 
@@ -132,14 +179,4 @@ fn without_values(mut figure: Figure) -> Figure {
         }
     }
     figure
-}
-
-/// Returns " on axis" if the dataset marks on-axis responses. Otherwise all responses enter the
-/// objective, and the words are empty.
-fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
-    if source.study.dataset.on_axis().marked().next().is_some() {
-        " on axis"
-    } else {
-        ""
-    }
 }

@@ -1,19 +1,85 @@
-//! Tables of a condition in the report: its channels, responses and models.
+//! Tables of the conditions in the report: an overview; channels, responses and models of one
+//! condition.
 
-use gdcm_method::correction::Channel;
+use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_model::dataset::{BundleKind, ModelId, Pair};
+use gdcm_model::dataset::{BundleKind, Condition, ModelId, Pair};
 use gdcm_model::number_format::{counted, decimals};
-use gdcm_model::units::{s_to_ms, signed};
+use gdcm_model::units::{number, s_to_ms, signed};
 use gdcm_plot::figure::all_channels;
+use gdcm_study::results::verdict::MatchCount;
 use gdcm_study::{Analysis, ConditionAnalysis, Study};
 use gdcm_words::Table;
 use gdcm_words::caution::undefined_text;
+use gdcm_words::verdict::match_count_text;
 
 use super::limits::PAIRS_LISTED;
 use super::page::Page;
 use super::shown_models::models_shown;
 use super::wording::{MISSING, names};
+
+/// Tabulates the conditions: kept models, matched held responses, and whether the gains are proven
+/// optimal.
+pub(super) fn condition_table(analysis: &Analysis) -> Table {
+    let title = "Conditions: kept models, matched held responses, and whether the gains are \
+        proven optimal";
+    let columns = [
+        "condition",
+        "name",
+        "V [kt]",
+        "physics",
+        "identified",
+        "gains",
+        "delays",
+        "optimum",
+        "scheduled",
+    ];
+    let mut table = Table::new(title, columns);
+    for condition in analysis.study.dataset.conditions() {
+        let state = condition.flight_state();
+        let result = analysis.condition(condition.id());
+        let (gains, delays, optimum) = match result {
+            Some(result) => (
+                match_count_text(MatchCount::of_gains(result)),
+                match_count_text(MatchCount::of_phases(result)),
+                proof_word(result),
+            ),
+            None => (MISSING.to_owned(), MISSING.to_owned(), "no result"),
+        };
+        let scheduled = result.is_some() && analysis.study.choice(condition.id()).scheduled;
+        table.row([
+            state.id.to_string(),
+            state.name.clone(),
+            number(state.airspeed_kt),
+            kept_words(&analysis.study, condition, BundleKind::Physics),
+            kept_words(&analysis.study, condition, BundleKind::Identified),
+            gains,
+            delays,
+            optimum.to_owned(),
+            if scheduled { "yes" } else { "no" }.to_owned(),
+        ]);
+    }
+    table
+}
+
+/// Returns how many models of a bundle are kept: "8 of 9".
+fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String {
+    let models = condition.bundle(kind);
+    let rejected = &study.choice(condition.id()).bundle(kind).rejected;
+    let kept = models
+        .iter()
+        .filter(|model| !rejected.contains(&model.name))
+        .count();
+    format!("{kept} of {}", models.len())
+}
+
+/// Returns the proof status of the gains as a single word.
+pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
+    match result.gains.proof.outcome {
+        Outcome::Proven { .. } => "global optimum",
+        Outcome::NotProven { .. } => "not proven",
+    }
+}
 
 /// Tabulates gain and delay of each channel.
 pub(super) fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
@@ -154,14 +220,8 @@ fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     lines
 }
 
-/// Adds a table of a bundle's models; of a long bundle, only the models that [`models_shown`]
-/// selects.
-pub(super) fn add_models(
-    page: &mut Page,
-    study: &Study,
-    result: &ConditionAnalysis,
-    kind: BundleKind,
-) {
+/// Tabulates a bundle's models; of a long bundle, only the models that [`models_shown`] selects.
+pub(super) fn model_table(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> Table {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
     let is_physics = kind == BundleKind::Physics;
@@ -206,7 +266,18 @@ pub(super) fn add_models(
             ratio_words,
         ]);
     }
-    page.table(&table);
+    table
+}
+
+/// Adds a sentence on the models of a long bundle that are neither listed nor drawn.
+pub(super) fn add_models_omitted(
+    page: &mut Page,
+    study: &Study,
+    result: &ConditionAnalysis,
+    kind: BundleKind,
+) {
+    let models = result.condition.bundle(kind);
+    let shown = models_shown(study, result, kind);
     if shown.len() < models.len() {
         page.paragraph(&format!(
             "{} of {} {kind} models are listed and drawn.",

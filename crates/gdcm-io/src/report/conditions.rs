@@ -1,30 +1,34 @@
-//! Report section on the conditions: representatives, gains and delays with their basis, and plots.
+//! Report section on the conditions, with cautions and a figure of each; and the appendix with
+//! representatives, gains and delays with their basis, and all plots.
 //!
 //! The tables are in `condition_tables`, the plots in `condition_plots`.
 
-use gdcm_method::correction::Outcome;
-use gdcm_model::dataset::{BundleKind, Condition};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId};
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::{number, s_to_ms};
 use gdcm_plot::figure::condition_source::condition_words;
 use gdcm_plot::figure::gains::class_names;
 use gdcm_study::results::condition_remarks::condition_remarks;
+use gdcm_study::results::remark::Remark;
 use gdcm_study::results::remark_kind::RemarkKind;
-use gdcm_study::{Analysis, ConditionAnalysis, Engine};
+use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 use gdcm_words::caution::failure_text;
 use gdcm_words::leads::lead_words;
 use gdcm_words::remark::remark_text;
 use gdcm_words::solution_details::details;
 
 use super::CancellationOnly;
-use super::condition_plots::add_condition_plots;
-use super::condition_tables::{add_models, add_responses, channel_table};
+use super::condition_plots::{add_condition_plots, add_response_plots};
+use super::condition_tables::{
+    add_models_omitted, add_responses, channel_table, condition_table, model_table, proof_word,
+};
 use super::limits::CONDITIONS_DRAWN;
 use super::page::Page;
+use super::wording::names;
 
-/// Adds a subsection for each condition: representatives, gains and delays with their basis, and
-/// plots.
+/// Adds the section on the conditions: an overview, the remarks that need attention, and a figure of
+/// the on-axis responses of each condition.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -35,6 +39,8 @@ pub(super) fn add_conditions(
     progress: &dyn Progress,
 ) -> Result<(), Cancelled> {
     page.section("Conditions");
+    page.table(&condition_table(analysis));
+    page.list(shared_remarks(analysis));
     let conditions = analysis.study.dataset.conditions();
     if conditions.len() > CONDITIONS_DRAWN {
         page.paragraph(&format!(
@@ -42,6 +48,76 @@ pub(super) fn add_conditions(
             of the others."
         ));
     }
+    page.paragraph(
+        "Magnitude and phase of every model, and of the representative under its own and under \
+        the scheduled correction:",
+    );
+    for condition in conditions.iter().take(CONDITIONS_DRAWN) {
+        if let Some(result) = analysis.condition(condition.id()) {
+            let step = CancellationOnly(progress);
+            add_response_plots(page, analysis, result, engine, &step)?;
+        }
+    }
+    Ok(())
+}
+
+/// Remarks of the same code, worded for the first condition that has one.
+struct SharedRemark {
+    code: &'static str,
+    words: String,
+    conditions: Vec<ConditionId>,
+}
+
+/// Returns the cautions and the unmatched responses: each kind once, worded for its first
+/// condition, with the other conditions that have a remark of this kind.
+fn shared_remarks(analysis: &Analysis) -> Vec<String> {
+    let study = &analysis.study;
+    let mut shared: Vec<SharedRemark> = Vec::new();
+    for result in analysis.conditions.values().flatten() {
+        let id = result.condition.id();
+        for remark in condition_remarks(study, result, None) {
+            if remark.kind() == RemarkKind::Good {
+                continue;
+            }
+            match shared.iter_mut().find(|known| known.code == remark.code()) {
+                Some(known) if known.conditions.contains(&id) => {}
+                Some(known) => known.conditions.push(id),
+                None => shared.push(SharedRemark {
+                    code: remark.code(),
+                    words: remark_words(&remark, study),
+                    conditions: vec![id],
+                }),
+            }
+        }
+    }
+    let mut lines = Vec::with_capacity(shared.len());
+    for remark in shared {
+        let ids: Vec<String> = remark.conditions.iter().map(ToString::to_string).collect();
+        let [first, others @ ..] = ids.as_slice() else {
+            continue;
+        };
+        let also = match others {
+            [] => String::new(),
+            _ => format!(" Likewise in {}.", names(others)),
+        };
+        lines.push(format!("Condition {first}: {}{also}", remark.words));
+    }
+    lines
+}
+
+/// Adds an appendix with a subsection for each condition: representatives, gains and delays with
+/// their basis, and plots.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` requests it.
+pub(super) fn add_condition_details(
+    page: &mut Page,
+    analysis: &Analysis,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<(), Cancelled> {
+    page.appendix("Details of the conditions");
+    let conditions = analysis.study.dataset.conditions();
     for (index, condition) in conditions.iter().enumerate() {
         if progress.cancelled() {
             return Err(Cancelled);
@@ -66,18 +142,23 @@ pub(super) fn add_conditions(
     Ok(())
 }
 
+/// Returns a remark as a sentence that begins with its kind.
+fn remark_words(remark: &Remark, study: &Study) -> String {
+    let text = remark_text(remark, &study.dataset);
+    match remark.kind() {
+        RemarkKind::Good => text,
+        RemarkKind::Caution => format!("Caution: {text}"),
+        RemarkKind::Trouble => format!("Not matched: {text}"),
+    }
+}
+
 /// Adds the results of a condition as text and tables.
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
     let mut lines = Vec::new();
     for remark in condition_remarks(study, result, None) {
-        let text = remark_text(&remark, &study.dataset);
-        lines.push(match remark.kind() {
-            RemarkKind::Good => text,
-            RemarkKind::Caution => format!("Caution: {text}"),
-            RemarkKind::Trouble => format!("Not matched: {text}"),
-        });
+        lines.push(remark_words(&remark, study));
     }
     page.heading_within("Matched and unmatched responses, with reasons");
     page.list(lines);
@@ -87,17 +168,14 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
         page.list(lead_words(study, result, analysis.uncertainty.as_deref()));
     }
     add_responses(page, study, result);
+    page.begin_side_by_side();
     page.table(&channel_table(analysis, result));
     for kind in BundleKind::BOTH {
-        add_models(page, study, result, kind);
+        page.table(&model_table(study, result, kind));
     }
-}
-
-/// Returns the proof status of the gains as a single word.
-pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
-    match result.gains.proof.outcome {
-        Outcome::Proven { .. } => "global optimum",
-        Outcome::NotProven { .. } => "not proven",
+    page.end_side_by_side();
+    for kind in BundleKind::BOTH {
+        add_models_omitted(page, study, result, kind);
     }
 }
 

@@ -1,13 +1,18 @@
 //! Report of a study: a single HTML file without external resources, for printing on A4 or letter
 //! paper. The bytes depend only on the study.
+//!
+//! The first page has the verdict, the corrections and the signatures. The contents follow, then the
+//! sections that a reader needs, with figures four to a page, and appendices with the rest.
 
 mod assessment;
 mod condition_plots;
 mod condition_tables;
 mod conditions;
 mod couplings;
+mod first_page;
 mod limits;
 mod models_left_out;
+mod noted_table;
 mod page;
 mod physics;
 mod provenance;
@@ -15,7 +20,6 @@ mod requirements;
 mod schedule;
 mod settings;
 mod shown_models;
-mod summary;
 mod uncertainty;
 mod wording;
 
@@ -34,7 +38,7 @@ use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
 use crate::software::software;
 
-pub use self::summary::assessment_sentence;
+pub use self::first_page::assessment_sentence;
 
 /// File names and hash of a study, stated in the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,26 +96,29 @@ pub fn report(
     let with_couplings = couplings::with_couplings(with_bars, engine, progress)?;
     let analysis = &physics::with_physics(with_couplings, engine, progress)?;
     let mut page = Page::default();
-    summary::add_summary(&mut page, analysis);
-    settings::add_settings(&mut page, &analysis.study);
-    provenance::add_files(&mut page, &analysis.study, source);
-    models_left_out::add_models_left_out(&mut page, analysis);
+    let subject = ReportSubject {
+        analysis,
+        ..subject
+    };
+    let requirements = requirements::evaluate(subject, engine, progress)?;
+    first_page::add_first_page(&mut page, analysis);
+    page.contents_here();
+    schedule::add_schedule(&mut page, analysis);
     physics::add_physics(&mut page, analysis);
     couplings::add_couplings(&mut page, analysis);
     conditions::add_conditions(&mut page, analysis, engine, progress)?;
-    schedule::add_schedule(&mut page, analysis);
-    uncertainty::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
-    requirements::add_requirements(
-        &mut page,
-        ReportSubject {
-            analysis,
-            ..subject
-        },
-        engine,
-        progress,
-    )?;
-    page.section("The method");
+    uncertainty::add_uncertainty(&mut page, analysis);
+    requirements::add_requirements(&mut page, &requirements, subject);
+    models_left_out::add_models_left_out(&mut page, analysis);
+    settings::add_settings(&mut page, &analysis.study);
+    provenance::add_files(&mut page, &analysis.study, source);
+    conditions::add_condition_details(&mut page, analysis, engine, progress)?;
+    schedule::add_channels_of_conditions(&mut page, analysis);
+    assessment::add_assessment_details(&mut page, analysis);
+    uncertainty::add_uncertainty_details(&mut page, analysis);
+    requirements::add_requirement_details(&mut page, &requirements, subject);
+    page.appendix("The method");
     page.fixed(include_str!("method.html"));
     provenance::add_models(&mut page, &analysis.study);
     let title = format!(

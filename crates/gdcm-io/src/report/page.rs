@@ -7,6 +7,7 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
+use super::noted_table::NotedTable;
 use super::wording::counted_are;
 
 /// Maximum distance \[pt\] between a simplified line in a figure and its original points: less than
@@ -18,6 +19,11 @@ const ROWS: usize = 1000;
 const ROWS_ON_A_SHEET: usize = 30;
 /// Maximum number of characters in a cell that is kept on one line.
 const SHORT: usize = 24;
+/// Maximum height of a figure \[pt\]: four figures with their captions fill a page of A4 or letter
+/// paper.
+const FIGURE_PT: f64 = 145.0;
+/// Minimum ratio of height to width of a plot that is flattened to a quarter of a page.
+const LEAST_ASPECT: f64 = 0.3;
 const STYLE: &str = include_str!("style.css");
 /// Security policy of the page: no external resources and no scripts, whatever text it contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
@@ -33,7 +39,11 @@ struct Heading {
 pub(super) struct Page {
     body: String,
     headings: Vec<Heading>,
+    /// Position of the table of contents in `body`; at the beginning if `None`.
+    contents_at: Option<usize>,
     section: usize,
+    /// Number of appendices begun; their sections are lettered.
+    appendix: usize,
     subsection: usize,
     tables: usize,
     figures: usize,
@@ -47,10 +57,59 @@ impl Page {
         self.heading("h2", self.section.to_string(), title);
     }
 
+    /// Begins an appendix, lettered from A; its tables and texts are in small print.
+    pub(super) fn appendix(&mut self, title: &str) {
+        if self.appendix == 0 {
+            self.body.push_str("<div class=\"appendix\">\n");
+        }
+        self.appendix += 1;
+        self.subsection = 0;
+        self.heading("h2", self.section_number(), title);
+    }
+
     /// Begins a numbered subsection.
     pub(super) fn subsection(&mut self, title: &str) {
         self.subsection += 1;
-        self.heading("h3", format!("{}.{}", self.section, self.subsection), title);
+        let number = format!("{}.{}", self.section_number(), self.subsection);
+        self.heading("h3", number, title);
+    }
+
+    /// Returns the number of the current section, or the letter of the current appendix.
+    fn section_number(&self) -> String {
+        match self.appendix {
+            0 => self.section.to_string(),
+            count => appendix_letters(count),
+        }
+    }
+
+    /// Places the table of contents here.
+    pub(super) fn contents_here(&mut self) {
+        self.contents_at = Some(self.body.len());
+    }
+
+    /// Adds a table with a row for each role, to be signed by hand.
+    pub(super) fn signatures(&mut self, roles: &[&str]) {
+        let columns = ["", "name", "organisation", "date", "signature"];
+        self.body
+            .push_str("<table class=\"signatures\">\n<thead>\n");
+        self.body
+            .push_str(&table_row("th", &columns.map(str::to_owned), &[""; 5]));
+        self.body.push_str("</thead>\n<tbody>\n");
+        for role in roles {
+            let cells = [role, "", "", "", ""].map(str::to_owned);
+            self.body.push_str(&table_row("td", &cells, &[""; 5]));
+        }
+        self.body.push_str("</tbody>\n</table>\n");
+    }
+
+    /// Begins a group of narrow tables, which stand side by side where they fit.
+    pub(super) fn begin_side_by_side(&mut self) {
+        self.body.push_str("<div class=\"side\">\n");
+    }
+
+    /// Ends a group of narrow tables.
+    pub(super) fn end_side_by_side(&mut self) {
+        self.body.push_str("</div>\n");
     }
 
     fn heading(&mut self, tag: &str, number: String, title: &str) {
@@ -113,6 +172,8 @@ impl Page {
         if table.rows.is_empty() {
             return;
         }
+        let NotedTable { table, notes } = NotedTable::new(table);
+        let table = &table;
         self.tables += 1;
         let mut classes = Vec::with_capacity(table.columns.len());
         for column in 0..table.columns.len() {
@@ -135,6 +196,9 @@ impl Page {
             self.body.push_str(&table_row("td", cells, &classes));
         }
         self.body.push_str("</tbody>\n</table>\n");
+        if !notes.is_empty() {
+            self.body.push_str(&classed("p", "notes", &notes.join(" ")));
+        }
         if table.rows.len() > ROWS {
             let more = table.rows.len() - ROWS;
             self.paragraph(&format!("{} omitted here.", counted_are(more, "more row")));
@@ -167,7 +231,7 @@ impl Page {
             caption: String::new(),
             ..figure.clone()
         };
-        let drawing = bare.drawing(ColumnWidth::Double).thinned(TOLERANCE_PT);
+        let drawing = quarter_page(bare).thinned(TOLERANCE_PT);
         let drawing = Drawing {
             title: title.to_owned(),
             ..drawing
@@ -194,13 +258,17 @@ impl Page {
         let contents = self.contents();
         let head = words(title);
         let style = STYLE.trim_end();
-        let body = self.body;
+        let mut body = self.body;
+        body.insert_str(self.contents_at.unwrap_or(0), &contents);
+        if self.appendix > 0 {
+            body.push_str("</div>\n");
+        }
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\"/>\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
              <title>{head}</title>\n<style>\n{style}\n</style>\n</head>\n<body>\n<header>\n<h1>{head}</h1>\n{below}</header>\n\
-             {contents}<main>\n{body}</main>\n</body>\n</html>\n"
+             <main>\n{body}</main>\n</body>\n</html>\n"
         )
     }
 
@@ -220,6 +288,36 @@ impl Page {
         }
         format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n{entries}</ul>\n</nav>\n")
     }
+}
+
+/// Returns the letter of an appendix: A to Z, then A1, B1, …
+fn appendix_letters(count: usize) -> String {
+    let index = count - 1;
+    let letter = char::from(b'A' + (index % 26) as u8);
+    match index / 26 {
+        0 => letter.to_string(),
+        round => format!("{letter}{round}"),
+    }
+}
+
+/// Draws a figure as wide as the page and at most a quarter of it high: plots are flattened as far
+/// as necessary. The height is linear in the aspect ratio, except for the widths of tick labels.
+fn quarter_page(figure: Figure) -> Drawing {
+    let [_, height] = figure.drawing(ColumnWidth::Double).size;
+    if height <= FIGURE_PT {
+        return figure.drawing(ColumnWidth::Double);
+    }
+    let flatter = figure.clone().aspect(0.5 * figure.aspect);
+    let [_, half_height] = flatter.drawing(ColumnWidth::Double).size;
+    let per_aspect = (height - half_height) / (0.5 * figure.aspect);
+    if per_aspect <= 0.0 {
+        return flatter.drawing(ColumnWidth::Double);
+    }
+    let aspect = figure.aspect - (height - FIGURE_PT) / per_aspect;
+    let least = LEAST_ASPECT.min(figure.aspect);
+    figure
+        .aspect(aspect.max(least))
+        .drawing(ColumnWidth::Double)
 }
 
 /// Returns a table row; `classes` holds the class of each column.

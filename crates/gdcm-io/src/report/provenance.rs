@@ -65,7 +65,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
             }
         }
     }
-    page.section("Sources of the models");
+    page.appendix("Sources of the models");
     if models.is_empty() {
         page.paragraph("The dataset does not state the source files of its models.");
         return;

@@ -24,23 +24,29 @@ use super::{CancellationOnly, ReportSubject};
 
 /// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
+/// Maximum number of plots in a row of the figure of bandwidths.
+const BANDWIDTH_COLUMNS: usize = 4;
 
-/// Adds the section on the requirements, with time histories if flight records are available.
+/// Evaluates the requirements.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
-pub(super) fn add_requirements(
-    page: &mut Page,
+pub(super) fn evaluate(
     subject: ReportSubject<'_>,
     engine: &Engine,
     progress: &dyn Progress,
-) -> Result<(), Cancelled> {
-    let ReportSubject {
-        analysis,
-        histories,
-        known,
-    } = subject;
-    let requirements = engine.requirements(analysis, known, &CancellationOnly(progress))?;
+) -> Result<Requirements, Cancelled> {
+    engine.requirements(subject.analysis, subject.known, &CancellationOnly(progress))
+}
+
+/// Adds the section on the requirements: bandwidths as a figure, summary costs, and the grid of all
+/// requirements.
+pub(super) fn add_requirements(
+    page: &mut Page,
+    requirements: &Requirements,
+    subject: ReportSubject<'_>,
+) {
+    let study = &subject.analysis.study;
     page.section("Requirements");
     page.paragraph(
         "Criteria used to accept simulators and flight control laws, evaluated for the physics \
@@ -48,17 +54,37 @@ pub(super) fn add_requirements(
         identified representative. These values do not replace a qualification, which requires \
         flight tests at specified conditions with specified inputs, and a pilot's assessment.",
     );
-    add_bandwidth(page, &requirements, &analysis.study);
-    add_modes(page, &requirements);
-    page.subsection("Summary costs");
+    if requirements.bandwidth.iter().any(is_known) {
+        let figure = requirements_figure(requirements, &study.dataset, &study.requirements.levels);
+        let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
+        let title = figure.title.clone();
+        page.figure(&figure.columns(BANDWIDTH_COLUMNS), &title, caption);
+    }
     page.paragraph(
         "Means of J (M4), and of the share of the band (in ln \u{3c9}) inside the envelopes of \
         maximum unnoticeable added dynamics (MIL-STD-1797A, appendix A, 4.2.1.2), relative to \
         the identified representative.",
     );
-    page.wide_table_behind(&summary_table(&requirements, histories), 3, COLUMNS - 2);
-    add_grids(page, &requirements, histories, &analysis.study);
-    if let Some(histories) = histories {
+    page.wide_table_behind(
+        &summary_table(requirements, subject.histories),
+        3,
+        COLUMNS - 2,
+    );
+    add_grids(page, requirements, subject.histories, study);
+}
+
+/// Adds the appendix on the requirements: bandwidths, modes, and time histories if flight records
+/// are available.
+pub(super) fn add_requirement_details(
+    page: &mut Page,
+    requirements: &Requirements,
+    subject: ReportSubject<'_>,
+) {
+    let study = &subject.analysis.study;
+    page.appendix("Details of the requirements");
+    add_bandwidth(page, requirements, study);
+    add_modes(page, requirements);
+    if let Some(histories) = subject.histories {
         add_histories(page, histories);
     }
     let mut remarks = ConditionRemarks::default();
@@ -68,11 +94,10 @@ pub(super) fn add_requirements(
         remarks.add(missing.condition, words);
     }
     for caution in &requirements.cautions {
-        let words = reversed_phase_text(caution, &analysis.study.dataset);
+        let words = reversed_phase_text(caution, &study.dataset);
         remarks.add(Some(caution.condition), words);
     }
     page.list(remarks.lines());
-    Ok(())
 }
 
 /// Adds the grid of all requirements for the own corrections and, if there is one, for the schedule.
@@ -82,7 +107,6 @@ fn add_grids(
     histories: Option<&TimeHistories>,
     study: &Study,
 ) {
-    page.subsection("All requirements");
     let names = RequirementNames {
         dataset: &study.dataset,
         tolerances: &study.requirements.tolerances,
@@ -123,11 +147,6 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     }
     let mut known = requirements.clone();
     known.bandwidth.retain(is_known);
-    if !known.bandwidth.is_empty() {
-        let figure = requirements_figure(requirements, dataset, &study.requirements.levels);
-        let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
-        page.figure(&figure, &figure.title, caption);
-    }
     page.table(&bandwidth_table(
         &known,
         dataset,

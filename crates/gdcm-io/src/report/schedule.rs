@@ -6,9 +6,9 @@ use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::{number, s_to_ms, six_digits};
-use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
+use gdcm_plot::figure::{Figure, all_channels};
 use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
 use gdcm_words::lead_price::price_text;
@@ -25,10 +25,18 @@ const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
 
-/// Adds the section on channels and schedule.
+/// Adds the section on the schedule.
 pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
-    page.section("Channels and schedule");
-    page.subsection("Channels over the conditions");
+    page.section("Schedule over airspeed");
+    match &analysis.schedule {
+        Ok(schedule) => add_airspeed(page, analysis, schedule),
+        Err(error) => page.paragraph(&format!("{error}.")),
+    }
+}
+
+/// Adds the appendix on the gains and delays of the channels in each condition.
+pub(super) fn add_channels_of_conditions(page: &mut Page, analysis: &Analysis) {
+    page.appendix("Channels over the conditions");
     let dataset = &analysis.study.dataset;
     let inputs: Vec<Channel> = (0..dataset.inputs().len()).map(Channel::Input).collect();
     let outputs: Vec<Channel> = (0..dataset.outputs().len()).map(Channel::Output).collect();
@@ -42,11 +50,12 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
             add_channels(page, analysis, channels, axes, &title);
         }
     }
-    page.subsection("Schedule over airspeed");
-    match &analysis.schedule {
-        Ok(schedule) => add_airspeed(page, analysis, schedule, &[inputs, outputs].concat()),
-        Err(error) => page.paragraph(&format!("{error}.")),
-    }
+}
+
+/// Places the plots of a figure in at most two rows, of at least five plots each.
+fn in_two_rows(figure: Figure) -> Figure {
+    let columns = figure.plots.len().div_ceil(2).max(5);
+    figure.columns(columns)
 }
 
 /// Adds figures of the channels.
@@ -59,7 +68,7 @@ fn add_channels(
 ) {
     for channels in channels.chunks(CHANNELS_IN_A_FIGURE) {
         let uncertainty = analysis.uncertainty.as_deref();
-        let figure = channels_figure(analysis, uncertainty, channels, axes);
+        let figure = in_two_rows(channels_figure(analysis, uncertainty, channels, axes));
         let caption = "Optimum of each condition, and the bounds of its search; dashed: no \
             correction.";
         page.figure(&figure, title, caption);
@@ -67,7 +76,8 @@ fn add_channels(
 }
 
 /// Adds the results that depend on airspeed: facts, remarks, coefficients, gains and figures.
-fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
+fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
+    let channels = all_channels(&analysis.study.dataset);
     add_schedule_facts(page, analysis, schedule);
     add_schedule_remarks(page, analysis, schedule);
     add_coefficients(page, analysis, schedule);
@@ -82,10 +92,11 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
             measure,
             across: Across::Airspeed,
         };
-        add_channels(page, analysis, channels, axes, &title);
+        add_channels(page, analysis, &channels, axes, &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
-        let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
+        let uncertainty = analysis.uncertainty.as_deref();
+        let figure = in_two_rows(net_gain_figure(analysis, uncertainty, pairs));
         let caption =
             "Optimum of each condition, with its id, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);

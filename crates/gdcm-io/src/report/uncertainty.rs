@@ -17,6 +17,9 @@ use super::CancellationOnly;
 use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 
+/// Maximum number of responses in a row of the figure of evidence.
+const EVIDENCE_COLUMNS: usize = 8;
+
 /// Returns the analysis with confidence intervals, which are computed if missing.
 ///
 /// # Errors
@@ -73,13 +76,25 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
         let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the \
             mean of each airspeed and about the schedule; above the bars, the ratio of the \
             scatter to the expected scatter.";
-        page.figure(&figure, &figure.title, caption);
+        let columns = figure.plots.len().min(EVIDENCE_COLUMNS);
+        let title = figure.title.clone();
+        page.figure(&figure.columns(columns), &title, caption);
     }
     page.table(&scatter_table(dataset, uncertainty));
-    page.table(&difference_table(dataset, uncertainty).0);
-    page.table(&second_variable_table(dataset, uncertainty));
-    page.table(&bar_table(analysis, uncertainty));
     if let Some(words) = held_out_verdict(analysis, usual_choice(analysis)) {
         page.paragraph(&format!("Conditions {words}."));
     }
+}
+
+/// Adds the appendix with the differences at equal airspeed, the need for a second variable, and the
+/// error bars of every condition; nothing if confidence intervals are not available.
+pub(super) fn add_uncertainty_details(page: &mut Page, analysis: &Analysis) {
+    let Some(uncertainty) = &analysis.uncertainty else {
+        return;
+    };
+    let dataset = &analysis.study.dataset;
+    page.appendix("Details of the uncertainty");
+    page.table(&difference_table(dataset, uncertainty).0);
+    page.table(&second_variable_table(dataset, uncertainty));
+    page.table(&bar_table(analysis, uncertainty));
 }

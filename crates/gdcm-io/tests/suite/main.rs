@@ -9,6 +9,8 @@ use gdcm_model::executor::{Executor, Task};
 
 mod analysis;
 mod dataset_file;
+#[path = "../../../../tests/support/evidence.rs"]
+mod evidence;
 mod figures;
 mod file_forms;
 mod foreign_files;

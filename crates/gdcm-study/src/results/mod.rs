@@ -52,4 +52,5 @@ pub mod suggested_runs;
 pub mod test_input_responses;
 pub mod time_histories;
 pub mod uncertainty;
+pub mod verdict;
 pub mod without_and_with;

@@ -23,6 +23,7 @@ use gdcm_study::decisions::setting_table;
 use gdcm_study::results::uncertainty::Uncertainty;
 
 use super::uncertainty::{normal, set, study_of, uncertainty_of};
+use crate::evidence;
 
 /// Confidence level of all bars in these tests.
 const LEVEL: f64 = 0.9;
@@ -276,9 +277,10 @@ fn binomial_range(expected: f64) -> RangeInclusive<f64> {
     expected - 4.0 * deviation..=expected + 4.0 * deviation
 }
 
-/// Asserts the coverage and the width ratio of a population as stated in `docs/uncertainty.md`.
+/// Asserts the coverage and the width ratio of a population as stated in `docs/uncertainty.md`, and
+/// returns the coverage.
 #[track_caller]
-fn assert_coverage(population: Population, fraction: f64, width_ratio: f64) {
+fn assert_coverage(population: Population, fraction: f64, width_ratio: f64) -> Coverage {
     let found = population.coverage(FEW, SEED);
     let range = binomial_range(fraction);
     assert!(
@@ -293,11 +295,24 @@ fn assert_coverage(population: Population, fraction: f64, width_ratio: f64) {
         "{} instead of {width_ratio}",
         found.width_ratio()
     );
+    found
+}
+
+/// Records a coverage for `docs/verification.md`.
+fn record(code: &str, found: &Coverage) {
+    evidence::record_coverage(evidence::Coverage {
+        code,
+        intervals: found.net_gains,
+        covered: found.covered,
+        nominal: LEVEL,
+        seeds: &SEED.to_string(),
+    });
 }
 
 #[test]
 fn bars_of_three_independent_models_are_wide() {
-    assert_coverage(THREE_INDEPENDENT, 0.999, 2.89);
+    let found = assert_coverage(THREE_INDEPENDENT, 0.999, 2.89);
+    record("bars-of-independent-models", &found);
     assert_coverage(
         Population {
             trim: 0.5,
@@ -310,7 +325,7 @@ fn bars_of_three_independent_models_are_wide() {
 
 #[test]
 fn bars_hold_their_level_where_models_share_half_of_their_error() {
-    assert_coverage(
+    let found = assert_coverage(
         Population {
             shared: 0.5,
             ..THREE_INDEPENDENT
@@ -318,11 +333,12 @@ fn bars_hold_their_level_where_models_share_half_of_their_error() {
         0.932,
         1.84,
     );
+    record("bars-of-shared-errors", &found);
 }
 
 #[test]
 fn bars_hold_their_level_where_the_trim_makes_most_of_the_error() {
-    assert_coverage(
+    let found = assert_coverage(
         Population {
             trim: 4.0,
             ..THREE_INDEPENDENT
@@ -330,6 +346,7 @@ fn bars_hold_their_level_where_the_trim_makes_most_of_the_error() {
         0.902,
         1.78,
     );
+    record("bars-of-trim", &found);
 }
 
 fn shared_error_line(population: Population) -> String {

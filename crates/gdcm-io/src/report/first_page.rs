@@ -1,0 +1,234 @@
+//! First page of the report: verdict, corrections, signatures.
+
+use gdcm_method::correction::Channel;
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::{Condition, Pair};
+use gdcm_model::number_format::{counted, decimals};
+use gdcm_model::units::{number, s_to_ms, signed, told_apart};
+use gdcm_plot::figure::assessment::usual_choice;
+use gdcm_study::results::verdict::{GainVerdict, MatchCount, MeanCost, PhaseVerdict};
+use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, PhaseCorrection, Study};
+use gdcm_words::Table;
+use gdcm_words::assessment::summary_text;
+use gdcm_words::caution::failure_text;
+use gdcm_words::verdict::{
+    gain_verdict_text, match_count_text, phase_verdict_text, study_verdict_text,
+};
+
+use super::page::Page;
+use super::wording::{MISSING, capital, counted_are};
+
+/// Maximum number of responses in the table of corrections, which then fits on the page.
+const PAIRS_SHOWN: usize = 6;
+/// Maximum number of rows of the tables on the first page, which leaves room for the signatures.
+const ROWS_SHOWN: usize = 24;
+/// Net delays up to this magnitude are displayed as zero \[ms\].
+const NO_DELAY_MS: f64 = 0.05;
+/// Who signs the report.
+const ROLES: [&str; 3] = ["Prepared by", "Checked by", "Approved by"];
+
+/// Adds the verdict on the study, the corrections of all conditions, and the block of signatures.
+pub(super) fn add_first_page(page: &mut Page, analysis: &Analysis) {
+    page.section("Verdict");
+    page.paragraph(&verdict_sentence(analysis));
+    page.paragraph(&assessment_sentence(analysis));
+    page.list(failures(analysis));
+    let pairs = shown_pairs(&analysis.study);
+    let mut tables = vec![correction_table(analysis, &pairs)];
+    tables.extend(delay_table(analysis, &pairs));
+    let rows = ROWS_SHOWN / tables.len();
+    let mut omitted = 0;
+    for mut table in tables {
+        omitted = table.rows.len().saturating_sub(rows);
+        table.rows.truncate(rows);
+        page.table(&table);
+    }
+    if omitted > 0 {
+        page.paragraph(&format!(
+            "{} not listed on this page; section Conditions and its appendix list all.",
+            counted_are(omitted, "more condition")
+        ));
+    }
+    page.signatures(&ROLES);
+}
+
+fn verdict_sentence(analysis: &Analysis) -> String {
+    let mut rejected = 0;
+    for id in analysis.study.dataset.ids() {
+        rejected += analysis.study.rejected_names(id).len();
+    }
+    format!(
+        "{}. The schedule is fitted to {}; {} rejected.",
+        capital(&study_verdict_text(analysis)),
+        counted(analysis.scheduled().len(), "condition"),
+        counted_are(rejected, "model")
+    )
+}
+
+/// Returns a sentence for each condition without a result.
+fn failures(analysis: &Analysis) -> Vec<String> {
+    let mut failures = Vec::new();
+    for (id, outcome) in &analysis.conditions {
+        if let Err(failure) = outcome {
+            let why = failure_text(failure, &analysis.study.dataset);
+            failures.push(format!("Condition {id} has no result: {why}."));
+        }
+    }
+    failures
+}
+
+/// Returns the held responses; those in the objective if none is held. At most [`PAIRS_SHOWN`].
+fn shown_pairs(study: &Study) -> Vec<Pair> {
+    let held = study.settings.constrained.marked();
+    let mut pairs: Vec<Pair> = held.take(PAIRS_SHOWN).collect();
+    if pairs.is_empty() {
+        let measuring = study.dataset.measuring_pairs();
+        pairs = measuring.marked().take(PAIRS_SHOWN).collect();
+    }
+    pairs
+}
+
+/// Tabulates verdict, net gains with their error bars, and mean J of each condition.
+fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
+    let study = &analysis.study;
+    let interval = match &analysis.uncertainty {
+        Some(uncertainty) => format!(" \u{b1} {:.0} % interval", 100.0 * uncertainty.level),
+        None => String::new(),
+    };
+    let held = study.settings.constrained.marked().count();
+    let which = match held {
+        0 => "the responses in the objective".to_owned(),
+        _ if held > pairs.len() => format!("{} of {held} held responses", pairs.len()),
+        _ => "the held responses".to_owned(),
+    };
+    let title =
+        format!("Corrections: net gains of {which}{interval}, and mean J of these responses");
+    let mut columns = vec![
+        "condition".to_owned(),
+        "gain".to_owned(),
+        "phase".to_owned(),
+    ];
+    for pair in pairs {
+        columns.push(study.dataset.pair_name(*pair));
+    }
+    columns.extend(["J before", "J after"].map(str::to_owned));
+    let mut table = Table::new(title, columns);
+    for condition in study.dataset.conditions() {
+        let mut cells = vec![condition_cell(condition)];
+        match analysis.condition(condition.id()) {
+            Some(result) => cells.extend(correction_cells(analysis, result, pairs)),
+            None => {
+                cells.push("no result".to_owned());
+                cells.resize(pairs.len() + 5, MISSING.to_owned());
+            }
+        }
+        table.row(cells);
+    }
+    table
+}
+
+/// "3: 45 kt".
+fn condition_cell(condition: &Condition) -> String {
+    let state = condition.flight_state();
+    format!("{}: {} kt", state.id, number(state.airspeed_kt))
+}
+
+fn correction_cells(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+    pairs: &[Pair],
+) -> Vec<String> {
+    let study = &analysis.study;
+    let gain = GainVerdict::new(result);
+    let gain = match gain {
+        GainVerdict::Matched => match_count_text(MatchCount::of_gains(result)),
+        _ => gain_verdict_text(gain, &study.dataset),
+    };
+    let phase = phase_verdict_text(PhaseVerdict::new(study, result), study);
+    let mut cells = vec![gain, phase];
+    for pair in pairs {
+        let net_gain = decimals(result.correction.net_gain(*pair), 3);
+        cells.push(match half_width_percent(analysis, result, *pair) {
+            Some(percent) => format!("{net_gain} \u{b1} {} %", decimals(percent, 1)),
+            None => net_gain,
+        });
+    }
+    let (before, after) = match MeanCost::new(study, result) {
+        Some(mean) => told_apart(mean.before, mean.after, 1),
+        None => (MISSING.to_owned(), MISSING.to_owned()),
+    };
+    cells.extend([before, after]);
+    cells
+}
+
+/// Returns the half-width of the error bar of a net gain \[%\].
+fn half_width_percent(analysis: &Analysis, result: &ConditionAnalysis, pair: Pair) -> Option<f64> {
+    let uncertainty = analysis.uncertainty.as_ref()?;
+    let bar = uncertainty.bar(result.condition.id(), Scalar::NetGain(pair))?;
+    Some(100.0 * bar.half_width(uncertainty.level)?)
+}
+
+/// Tabulates the net delays of each condition; negative values are leads. `None` if the correction
+/// delays no response.
+fn delay_table(analysis: &Analysis, pairs: &[Pair]) -> Option<Table> {
+    let study = &analysis.study;
+    if study.settings.phase == PhaseCorrection::None {
+        return None;
+    }
+    let mut columns = vec!["condition".to_owned()];
+    for pair in pairs {
+        columns.push(study.dataset.pair_name(*pair));
+    }
+    let mut table = Table::new(
+        "Net delays of these responses [ms]; negative values are leads",
+        columns,
+    );
+    let mut has_delay = false;
+    for condition in study.dataset.conditions() {
+        let mut cells = vec![condition_cell(condition)];
+        let result = analysis.condition(condition.id());
+        for pair in pairs {
+            cells.push(match result {
+                Some(result) => {
+                    let delay_ms = net_signed_delay_ms(result, *pair);
+                    has_delay |= delay_ms.abs() > NO_DELAY_MS;
+                    signed(delay_ms, 1)
+                }
+                None => MISSING.to_owned(),
+            });
+        }
+        table.row(cells);
+    }
+    if has_delay { Some(table) } else { None }
+}
+
+fn net_signed_delay_ms(result: &ConditionAnalysis, pair: Pair) -> f64 {
+    let delays_s = result.correction.signed_delays_s();
+    s_to_ms(delays_s[Channel::Input(pair.input)] + delays_s[Channel::Output(pair.output)])
+}
+
+/// Returns a sentence on the change of J of the nominal models due to the schedule.
+pub fn assessment_sentence(analysis: &Analysis) -> String {
+    let dataset = &analysis.study.dataset;
+    let measuring = dataset.measuring_pairs();
+    let which = if dataset.on_axis().marked().next().is_some() {
+        "on-axis responses"
+    } else {
+        "responses"
+    };
+    let table = AssessmentTable::assess(analysis, usual_choice(analysis));
+    let found = summary_text(&table.summary(&measuring), dataset);
+    let fails_between = match &analysis.schedule {
+        Ok(schedule) => schedule.interpolation_fails(),
+        Err(_) => false,
+    };
+    let between = if fails_between {
+        " Between the conditions' airspeeds the schedule must not be used (see its cautions)."
+    } else {
+        ""
+    };
+    format!(
+        "Change in J of the nominal models due to the schedule, over the {which} of all assessed \
+        conditions: {found}.{between}"
+    )
+}

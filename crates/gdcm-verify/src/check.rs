@@ -1,0 +1,132 @@
+//! A comparison with independent figures, and its outcome.
+
+use crate::reference_study::ReferenceStudy;
+
+/// A comparison of the program with independent figures.
+#[derive(Clone, Copy, Debug)]
+pub struct Check {
+    /// Stable code, for scripts and tests.
+    pub code: &'static str,
+    /// Sections of `docs/method.md` and the pages beside it: "M8", "M3 to M7".
+    pub sections: &'static str,
+    /// What is compared.
+    pub what: &'static str,
+    /// Origin of the expected values.
+    pub source: &'static str,
+    /// Unit or reference of deviation and tolerance.
+    pub measure: &'static str,
+    /// Maximum deviation, in the unit of `measure`.
+    pub tolerance: f64,
+    /// Reason for the tolerance.
+    pub reason: &'static str,
+    /// Computes the deviations.
+    pub run: fn(&mut ReferenceStudy) -> Result<Found, CheckFault>,
+}
+
+/// Deviations from the expected values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Found {
+    /// Number of problems, models or conditions that are compared.
+    pub instances: usize,
+    /// Number of compared values.
+    pub values: usize,
+    /// Maximum deviation, in the unit of the check's measure. Infinite where a value is not a number
+    /// or a yes-or-no result differs.
+    pub worst: f64,
+}
+
+impl Found {
+    /// Counts a problem, model or condition.
+    pub fn instance(&mut self) {
+        self.instances += 1;
+    }
+
+    /// Adds a deviation.
+    pub fn deviation(&mut self, deviation: f64) {
+        self.values += 1;
+        let size = deviation.abs();
+        if size.is_nan() {
+            self.worst = f64::INFINITY;
+        } else {
+            self.worst = self.worst.max(size);
+        }
+    }
+
+    /// Compares a value with its reference, relative to the reference.
+    pub fn relative(&mut self, found: f64, expected: f64) {
+        self.deviation((found - expected) / expected);
+    }
+
+    /// Compares a value with its reference, relative to the reference or to `scale` if the reference
+    /// is smaller.
+    pub fn scaled(&mut self, found: f64, expected: f64, scale: f64) {
+        self.deviation((found - expected) / expected.abs().max(scale));
+    }
+
+    /// Compares lists of values as [`Self::scaled`] does; lists of different lengths disagree.
+    pub fn all_scaled(&mut self, found: &[f64], expected: &[f64], scale: f64) {
+        if found.len() != expected.len() {
+            self.agree(false);
+        }
+        for (found, expected) in found.iter().zip(expected) {
+            self.scaled(*found, *expected, scale);
+        }
+    }
+
+    /// Adds a yes-or-no result; a difference is an infinite deviation.
+    pub fn agree(&mut self, agrees: bool) {
+        self.values += 1;
+        if !agrees {
+            self.worst = f64::INFINITY;
+        }
+    }
+}
+
+/// Reason why a comparison could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CheckFault {
+    #[error("reference {file}: {member} is missing or of the wrong kind")]
+    Reference { file: &'static str, member: String },
+    #[error("no result: {reason}")]
+    NoResult { reason: String },
+}
+
+impl CheckFault {
+    /// Returns the fault for a computation that ended without a result.
+    pub fn no_result(reason: impl ToString) -> Self {
+        Self::NoResult {
+            reason: reason.to_string(),
+        }
+    }
+
+    /// Returns the stable code for scripts.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Reference { .. } => "wrong-reference",
+            Self::NoResult { .. } => "no-result",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_an_infinite_deviation() {
+        let mut found = Found::default();
+        found.relative(1.0 + 1e-9, 1.0);
+        assert!(found.worst < 2e-9);
+        found.relative(f64::NAN, 1.0);
+        assert_eq!(found.worst, f64::INFINITY);
+        found.deviation(0.0);
+        assert_eq!((found.worst, found.values), (f64::INFINITY, 3));
+    }
+
+    #[test]
+    fn lists_of_different_lengths_disagree() {
+        let mut found = Found::default();
+        found.all_scaled(&[1.0], &[1.0, 2.0], 1.0);
+        assert_eq!(found.worst, f64::INFINITY);
+    }
+}

@@ -1,0 +1,90 @@
+//! Lead filters and programs of signed delays (M15).
+
+use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
+use gdcm_method::correction::{Bounds, Outcome, Problem};
+use gdcm_model::dataset::{Band, Pair, PairTable};
+use gdcm_model::response::{FrequencyGrid, LeadOrder};
+
+use super::optimum::solved;
+use crate::check::{CheckFault, Found};
+use crate::reference::{LEADS, Reference};
+use crate::reference_study::ReferenceStudy;
+
+/// Smallest time that matters \[s\].
+const TIME_SCALE_S: f64 = 1e-3;
+
+fn design(entry: &Reference) -> Result<LeadDesign, CheckFault> {
+    let band = Band::new(0.5, 12.0).map_err(CheckFault::no_result)?;
+    let grid = FrequencyGrid::logarithmic(band, 200);
+    let order = match entry.integer("order")? {
+        1 => LeadOrder::First,
+        _ => LeadOrder::Second,
+    };
+    let settings = LeadSettings {
+        order,
+        pole: entry.number("pole")?,
+        limit: 10.0,
+    };
+    Ok(LeadDesign::new(settings, grid.omega().into()))
+}
+
+/// Compares filters, their delays in the band, and the lead of a signed delay.
+pub(super) fn filters(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+    let reference = LEADS.read()?;
+    let mut found = Found::default();
+    for entry in reference.list("filters")? {
+        let design = design(&entry)?;
+        let lead_s = entry.number("lead_s")?;
+        let filter = design.filter_for_lead(lead_s);
+        found.instance();
+        let omegas = entry.numbers("omega")?;
+        let re = entry.numbers("re")?;
+        let im = entry.numbers("im")?;
+        for (index, omega) in omegas.iter().enumerate() {
+            let own = filter.at(*omega);
+            found.deviation((own.re - re[index]) / own.norm());
+            found.deviation((own.im - im[index]) / own.norm());
+        }
+        found.relative(filter.gain_at_infinity(), entry.number("gain_at_infinity")?);
+        found.scaled(
+            design.band_delay_s(lead_s),
+            entry.number("band_delay_s")?,
+            TIME_SCALE_S,
+        );
+    }
+    for entry in reference.list("lead_time")? {
+        found.instance();
+        let lead_s = design(&entry)?.lead_s(entry.number("tau_s")?);
+        found.scaled(lead_s, entry.number("lead_s")?, TIME_SCALE_S);
+    }
+    Ok(found)
+}
+
+/// Compares the minima of programs of signed delays; a minimum that is not proven disagrees.
+pub(super) fn programs(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+    let mut found = Found::default();
+    for entry in LEADS.read()?.list("programs")? {
+        let delta = entry.table("D_s")?.map(|_, delay_s| Some(*delay_s));
+        let mut held = PairTable::filled(delta.outputs(), delta.inputs(), false);
+        for on in entry.list("on")? {
+            if let [output, input] = on.as_numbers()?[..] {
+                held[Pair::new(output as usize, input as usize)] = true;
+            }
+        }
+        let bounds = Bounds {
+            lower: entry.number("lower_s")?,
+            upper: entry.number("upper_s")?,
+        };
+        let fitted = entry.table("weight")?.map(|_, weight| *weight != 0.0);
+        let solution = solved(&Problem {
+            alpha: entry.number("alpha")?,
+            fitted,
+            ..Problem::signed_delays(delta, held, bounds)
+        })?;
+        found.instance();
+        found.relative(solution.objective, entry.number("objective")?);
+        found.agree(solution.matched == entry.flag("matched")?);
+        found.agree(matches!(solution.proof.outcome, Outcome::Proven { .. }));
+    }
+    Ok(found)
+}

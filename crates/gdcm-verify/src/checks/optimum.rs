@@ -1,0 +1,97 @@
+//! Gains and delays (M8, M9).
+
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget, Solution};
+use gdcm_model::dataset::{Pair, PairTable};
+
+use crate::check::{CheckFault, Found};
+use crate::reference::{DELAY_INSTANCES, GAIN_INSTANCES, Reference};
+use crate::reference_study::ReferenceStudy;
+
+/// Maximum relative gap of a proof.
+const PROOF_GAP: f64 = 1e-9;
+
+/// The on-axis responses of the instances of eq. (11), `[output, input]` (Table 2).
+const ON_AXIS: [[usize; 2]; 5] = [[0, 1], [1, 0], [2, 2], [4, 2], [5, 3]];
+
+/// Solves a problem within the default budget of the proof.
+pub(super) fn solved(problem: &Problem) -> Result<Solution, CheckFault> {
+    solve(problem, ProofBudget::default(), &|| false).map_err(CheckFault::no_result)
+}
+
+fn gain_problem(instance: &Reference) -> Result<Problem, CheckFault> {
+    let bounds = Bounds {
+        lower: instance.number("lb")?,
+        upper: instance.number("ub")?,
+    };
+    let delta = instance.table("G")?.map(|_, gain| Some(*gain));
+    let held = instance.table("on_axis")?.map(|_, mark| *mark != 0.0);
+    Ok(Problem {
+        alpha: instance.number("alpha")?,
+        ..Problem::gains(delta, held, bounds)
+    })
+}
+
+/// Compares the minima of eq. (7) with certified ones. A minimum that is not proven, or proven to a
+/// bound above the certified minimum, disagrees.
+pub(super) fn certified_gains(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+    let mut found = Found::default();
+    for instance in GAIN_INSTANCES.read()?.list("instances")? {
+        let answer = if instance.has("two_stage") {
+            instance.member("two_stage")?
+        } else {
+            instance.clone()
+        };
+        let objective = answer.number("objective")?;
+        let solution = solved(&gain_problem(&instance)?)?;
+        found.instance();
+        found.relative(solution.objective, objective);
+        let outcome = &solution.proof.outcome;
+        found.agree(matches!(outcome, Outcome::Proven { gap } if *gap <= PROOF_GAP));
+        found.agree(solution.proof.lower_bound <= objective * (1.0 + 1e-8));
+        found.agree(solution.matched != instance.has("two_stage"));
+    }
+    Ok(found)
+}
+
+/// Compares held products with their targets, and gains with their bounds.
+pub(super) fn held_products(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+    let mut found = Found::default();
+    for instance in GAIN_INSTANCES.read()?.list("instances")? {
+        let problem = gain_problem(&instance)?;
+        let solution = solved(&problem)?;
+        found.instance();
+        for pair in problem.constrained.marked() {
+            let product = solution.inputs[pair.input] * solution.outputs[pair.output];
+            match solution.targets[pair] {
+                Some(target) => found.relative(product, target),
+                None => found.agree(false),
+            }
+        }
+        let range = problem.bounds.lower..=problem.bounds.upper;
+        for gain in solution.inputs.iter().chain(&solution.outputs) {
+            found.agree(range.contains(gain));
+        }
+    }
+    Ok(found)
+}
+
+/// Compares the minima of eq. (11).
+pub(super) fn certified_delays(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+    let mut found = Found::default();
+    for instance in DELAY_INSTANCES.read()?.list("instances")? {
+        let delta = instance.table("D")?.map(|_, delay_s| Some(*delay_s));
+        let held = PairTable::from_fn(delta.outputs(), delta.inputs(), |pair: Pair| {
+            ON_AXIS.contains(&[pair.output, pair.input])
+        });
+        let problem = Problem {
+            alpha: instance.number("alpha")?,
+            ..Problem::delays(delta, held, instance.number("ub")?)
+        };
+        let solution = solved(&problem)?;
+        found.instance();
+        found.relative(solution.objective, instance.number("objective")?);
+        found.agree(solution.matched == instance.flag("matched")?);
+    }
+    Ok(found)
+}

@@ -1,0 +1,125 @@
+//! Named physics parameters (M18).
+
+use std::sync::Arc;
+
+use gdcm_method::physics::increments::RunStep;
+use gdcm_method::physics::problem::PhysicsOptions;
+use gdcm_method::physics::{
+    ConditionIncrements, ModelFamily, ParameterValue, PhysicsCondition, PhysicsProblem, diagnose,
+};
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{ConditionId, Dynamics, Model, Pair, PairTable, StateSpace};
+use gdcm_model::executor::Sequential;
+use gdcm_model::progress::Unobserved;
+use gdcm_model::response::FrequencyResponse;
+
+use crate::check::{CheckFault, Found};
+use crate::reference::{PHYSICS, Reference};
+use crate::reference_study::ReferenceStudy;
+
+/// Parameters of the synthetic aircraft: the first has two runs, the second one.
+const PARAMETERS: [&str; 2] = ["a", "b"];
+
+/// A run of a parameter, with its step in plausible standard deviations.
+struct Run {
+    z: f64,
+    model: StateSpace,
+}
+
+/// Reads a model stored as `[A, B, C, D]`.
+fn state_space(value: &Reference) -> Result<StateSpace, CheckFault> {
+    let matrices = value.elements()?;
+    let [a, b, c, d] = matrices.as_slice() else {
+        return Err(CheckFault::no_result("a model has four matrices"));
+    };
+    StateSpace::new(
+        a.as_matrix()?,
+        b.as_matrix()?,
+        c.as_matrix()?,
+        d.as_matrix()?,
+    )
+    .map_err(CheckFault::no_result)
+}
+
+fn condition(
+    id: i64,
+    value: &Reference,
+    flight: FrequencyResponse,
+) -> Result<PhysicsCondition, CheckFault> {
+    let base = state_space(&value.member("base")?)?;
+    let mut runs: Vec<Vec<Run>> = Vec::new();
+    for parameter in PARAMETERS {
+        let mut of_parameter = Vec::new();
+        for run in value.list("runs")? {
+            if run.text("parameter")? == parameter {
+                of_parameter.push(Run {
+                    z: run.number("z")?,
+                    model: state_space(&run.member("matrices")?)?,
+                });
+            }
+        }
+        runs.push(of_parameter);
+    }
+    let mut steps: Vec<Vec<RunStep<'_>>> = Vec::new();
+    for runs in &runs {
+        let mut of_parameter = Vec::new();
+        for run in runs {
+            of_parameter.push(RunStep {
+                z: run.z,
+                base: &base,
+                run: &run.model,
+            });
+        }
+        steps.push(of_parameter);
+    }
+    let origin = Origin::Nominal { perturbation: None };
+    let model = Model::new("nominal", origin, Dynamics::StateSpace(base.clone()));
+    let increments = ConditionIncrements::new(&model, &steps).map_err(CheckFault::no_result)?;
+    let Some(family) = ModelFamily::from_matrices(&model, &increments) else {
+        return Err(CheckFault::no_result("the runs do not fit the model"));
+    };
+    Ok(PhysicsCondition {
+        id: ConditionId(id),
+        usable: PairTable::filled(family.outputs(), family.inputs(), true),
+        family: Arc::new(family),
+        flight: Arc::new(flight),
+        others: Vec::new(),
+        deviation: None,
+        coherence: None,
+    })
+}
+
+/// Compares the parameters of the synthetic aircraft after each pass, with exact and with disturbed
+/// flight responses.
+pub(super) fn synthetic_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+    let toy = PHYSICS.read()?.member("toy")?;
+    let models = toy.list("models")?;
+    let mut found = Found::default();
+    for (flight, case) in [("R", "exact"), ("R_disturbed", "disturbed")] {
+        let mut conditions = Vec::new();
+        for (index, value) in toy.list(flight)?.iter().enumerate() {
+            let id = index as i64 + 1;
+            conditions.push(condition(id, &models[index], value.as_response()?)?);
+        }
+        let problem = PhysicsProblem {
+            omega: toy.numbers("omega_rad_s")?.into(),
+            on_axis: PairTable::from_fn(2, 2, |pair: Pair| pair.output == pair.input),
+            parameters: vec![ParameterValue::Fitted; PARAMETERS.len()],
+            conditions,
+            options: PhysicsOptions::default(),
+        };
+        let own = diagnose(&problem, &Sequential, &Unobserved).map_err(CheckFault::no_result)?;
+        let expected = toy.member(case)?;
+        let passes = expected.list("passes")?;
+        found.agree(own.fit.passes.len() == passes.len());
+        for (own, expected) in own.fit.passes.iter().zip(passes) {
+            found.instance();
+            found.all_scaled(&own.z, &expected.numbers("z")?, 1.0);
+            found.deviation(own.misfit_square - expected.number("s2")?);
+        }
+        let delays_s = &own.fit.delays_s;
+        let delays_s = [&delays_s.outputs[..], &delays_s.inputs[..]].concat();
+        found.all_scaled(&delays_s, &expected.numbers("tau")?, 1.0);
+    }
+    Ok(found)
+}

@@ -1,0 +1,233 @@
+//! Recorded figures of the tests.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+/// Deviations up to this size are rounding, which differs from processor to processor.
+const ROUNDING: f64 = 1e-9;
+/// Maximum ratio of two larger deviations that count as the same figure: they depend on where an
+/// iteration stops.
+const SAME_RATIO: f64 = 2.0;
+/// Maximum difference of two shares of covered values that count as the same figure.
+const SAME_SHARE: f64 = 0.005;
+
+/// Deviations of a test from independent figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Deviations {
+    pub code: String,
+    /// Crate and name of the test.
+    #[serde(rename = "crate")]
+    pub package: String,
+    pub test: String,
+    pub instances: usize,
+    pub values: usize,
+    pub worst: f64,
+    pub tolerance: f64,
+}
+
+/// Share of intervals that contain the true value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coverage {
+    pub code: String,
+    #[serde(rename = "crate")]
+    pub package: String,
+    pub test: String,
+    /// Number of intervals.
+    pub intervals: usize,
+    /// Number of intervals that contain the true value.
+    pub covered: usize,
+    /// Nominal share.
+    pub nominal: f64,
+    /// Seeds of the generated data.
+    pub seeds: String,
+}
+
+/// All figures of the page, by code.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    pub deviations: BTreeMap<String, Deviations>,
+    pub coverage: BTreeMap<String, Coverage>,
+}
+
+/// A figure that cannot be read, or that differs from the figure of the page.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureFault {
+    #[error("{path}: {reason}")]
+    Unreadable { path: String, reason: String },
+    #[error("{code}: recorded by no test")]
+    Missing { code: String },
+    #[error("{code}: {fresh} instead of {known}")]
+    Differs {
+        code: String,
+        known: String,
+        fresh: String,
+    },
+}
+
+impl Figures {
+    /// Reads the lines that tests wrote into `folder`.
+    ///
+    /// # Errors
+    /// [`FigureFault::Unreadable`] if the folder or a line cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, FigureFault> {
+        let mut figures = Self::default();
+        let entries = std::fs::read_dir(folder).map_err(|error| unreadable(folder, &error))?;
+        for entry in entries {
+            let path = match entry {
+                Ok(entry) => entry.path(),
+                Err(error) => return Err(unreadable(folder, &error)),
+            };
+            let text = std::fs::read_to_string(&path).map_err(|error| unreadable(&path, &error))?;
+            for line in text.lines() {
+                figures
+                    .add(line)
+                    .map_err(|error| unreadable(&path, &error))?;
+            }
+        }
+        Ok(figures)
+    }
+
+    /// Adds a line of JSON.
+    fn add(&mut self, line: &str) -> Result<(), serde_json::Error> {
+        let value: serde_json::Value = serde_json::from_str(line)?;
+        if value.get("nominal").is_some() {
+            let coverage: Coverage = serde_json::from_value(value)?;
+            self.coverage.insert(coverage.code.clone(), coverage);
+        } else {
+            let deviations: Deviations = serde_json::from_value(value)?;
+            self.deviations.insert(deviations.code.clone(), deviations);
+        }
+        Ok(())
+    }
+
+    /// Compares fresh figures with these figures of the page, code by code.
+    pub fn differences(&self, fresh: &Self) -> Vec<FigureFault> {
+        let mut faults = Vec::new();
+        for (code, known) in &self.deviations {
+            match fresh.deviations.get(code) {
+                None => faults.push(FigureFault::Missing { code: code.clone() }),
+                Some(fresh) if known.agrees(fresh) => {}
+                Some(fresh) => faults.push(FigureFault::Differs {
+                    code: code.clone(),
+                    known: format!("{known:?}"),
+                    fresh: format!("{fresh:?}"),
+                }),
+            }
+        }
+        for (code, known) in &self.coverage {
+            match fresh.coverage.get(code) {
+                None => faults.push(FigureFault::Missing { code: code.clone() }),
+                Some(fresh) if known.agrees(fresh) => {}
+                Some(fresh) => faults.push(FigureFault::Differs {
+                    code: code.clone(),
+                    known: format!("{known:?}"),
+                    fresh: format!("{fresh:?}"),
+                }),
+            }
+        }
+        faults
+    }
+
+    /// Replaces the figures that differ from fresh ones, and adds new ones.
+    pub fn update(&mut self, fresh: &Self) {
+        for (code, fresh) in &fresh.deviations {
+            match self.deviations.get(code) {
+                Some(known) if known.agrees(fresh) => {}
+                _ => {
+                    self.deviations.insert(code.clone(), fresh.clone());
+                }
+            }
+        }
+        for (code, fresh) in &fresh.coverage {
+            match self.coverage.get(code) {
+                Some(known) if known.agrees(fresh) => {}
+                _ => {
+                    self.coverage.insert(code.clone(), fresh.clone());
+                }
+            }
+        }
+    }
+}
+
+fn unreadable(path: &Path, error: &dyn std::error::Error) -> FigureFault {
+    FigureFault::Unreadable {
+        path: path.display().to_string(),
+        reason: error.to_string(),
+    }
+}
+
+impl Deviations {
+    /// Returns whether two figures of a test are the same, but for rounding.
+    fn agrees(&self, other: &Self) -> bool {
+        let is_same_test = self.package == other.package && self.test == other.test;
+        let is_same_count = self.instances == other.instances && self.values == other.values;
+        let is_same_worst = if self.worst <= ROUNDING || other.worst <= ROUNDING {
+            self.worst <= ROUNDING && other.worst <= ROUNDING
+        } else {
+            self.worst <= SAME_RATIO * other.worst && other.worst <= SAME_RATIO * self.worst
+        };
+        is_same_test && is_same_count && is_same_worst && self.tolerance == other.tolerance
+    }
+}
+
+impl Coverage {
+    /// Returns the share of covered values.
+    pub fn share(&self) -> f64 {
+        self.covered as f64 / self.intervals as f64
+    }
+
+    /// Returns whether two figures of a test are the same, but for rounding.
+    fn agrees(&self, other: &Self) -> bool {
+        self.package == other.package
+            && self.test == other.test
+            && self.intervals == other.intervals
+            && self.seeds == other.seeds
+            && self.nominal == other.nominal
+            && (self.share() - other.share()).abs() <= SAME_SHARE
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figures(worst: f64, covered: usize) -> Figures {
+        let mut figures = Figures::default();
+        let deviation = format!(
+            "{{\"code\":\"a\",\"crate\":\"c\",\"test\":\"t\",\"instances\":3,\"values\":9,\
+             \"worst\":{worst},\"tolerance\":1e-6}}"
+        );
+        let coverage = format!(
+            "{{\"code\":\"b\",\"crate\":\"c\",\"test\":\"u\",\"intervals\":1000,\"covered\":{covered},\
+             \"nominal\":0.9,\"seeds\":\"1\"}}"
+        );
+        for line in [deviation, coverage] {
+            figures.add(&line).expect("a line of figures");
+        }
+        figures
+    }
+
+    #[test]
+    fn rounding_is_the_same_figure_and_larger_changes_are_not() {
+        let known = figures(3e-13, 905);
+        for (fresh, differences) in [
+            (figures(9e-12, 905), 0),
+            (figures(3e-13, 908), 0),
+            (figures(2e-8, 905), 1),
+            (figures(3e-13, 880), 1),
+            (Figures::default(), 2),
+        ] {
+            assert_eq!(known.differences(&fresh).len(), differences, "{fresh:?}");
+        }
+    }
+
+    #[test]
+    fn only_changed_figures_are_replaced() {
+        let mut known = figures(3e-13, 905);
+        known.update(&figures(9e-12, 880));
+        assert_eq!(known.deviations["a"].worst, 3e-13);
+        assert_eq!(known.coverage["b"].covered, 880);
+    }
+}

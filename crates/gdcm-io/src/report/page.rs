@@ -301,7 +301,7 @@ fn appendix_letters(count: usize) -> String {
 }
 
 /// Draws a figure as wide as the page and at most a quarter of it high: plots are flattened as far
-/// as necessary. The height is linear in the aspect ratio, except for the widths of tick labels.
+/// as necessary, but not below [`LEAST_ASPECT`]. The height is linear in the aspect ratio, except for the widths of tick labels.
 fn quarter_page(figure: Figure) -> Drawing {
     let [_, height] = figure.drawing(ColumnWidth::Double).size;
     if height <= FIGURE_PT {

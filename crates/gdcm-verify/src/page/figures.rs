@@ -1,6 +1,6 @@
 //! Recorded figures of the tests.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -58,6 +58,8 @@ pub enum FigureFault {
     Unreadable { path: String, reason: String },
     #[error("{code}: recorded by no test")]
     Missing { code: String },
+    #[error("{code}: recorded by a test, not on the page")]
+    New { code: String },
     #[error("{code}: {fresh} instead of {known}")]
     Differs {
         code: String,
@@ -125,6 +127,13 @@ impl Figures {
                     known: format!("{known:?}"),
                     fresh: format!("{fresh:?}"),
                 }),
+            }
+        }
+        let known = self.deviations.keys().chain(self.coverage.keys());
+        let known: BTreeSet<&String> = known.collect();
+        for code in fresh.deviations.keys().chain(fresh.coverage.keys()) {
+            if !known.contains(code) {
+                faults.push(FigureFault::New { code: code.clone() });
             }
         }
         faults
@@ -221,6 +230,16 @@ mod tests {
         ] {
             assert_eq!(known.differences(&fresh).len(), differences, "{fresh:?}");
         }
+    }
+
+    #[test]
+    fn a_figure_that_the_page_lacks_is_a_difference() {
+        let differences = Figures::default().differences(&figures(3e-13, 905));
+        assert!(
+            matches!(&differences[..], [FigureFault::New { code: a }, FigureFault::New { code: b }]
+                if a == "a" && b == "b"),
+            "{differences:?}"
+        );
     }
 
     #[test]

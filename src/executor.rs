@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use gdcm_model::executor::{Executor, Task};
 
-/// Threads of the global pool, one for each core.
+/// Threads in the global pool, one for each core.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pool;
 
@@ -19,7 +19,7 @@ impl Executor for Pool {
     }
 }
 
-/// Starts the threads of the pool, once per process.
+/// Starts the pool's threads, once per process.
 ///
 /// # Errors
 /// Returns the reason if no thread can be started.

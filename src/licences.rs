@@ -1,4 +1,4 @@
-//! Licences of the libraries in this program, collected by `packaging/licences/collect`.
+//! Licences under which the program uses its libraries, collected by `packaging/licences/collect`.
 
-/// List of the libraries, and the texts of their licences.
+/// Lists the libraries, with their licences' texts.
 pub const TEXT: &str = include_str!("../assets/licences.txt");

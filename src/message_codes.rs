@@ -1,4 +1,4 @@
-//! Stable codes of problems and cautions about the columns of records.
+//! Stable codes for problems and cautions about record columns.
 
 use gdcm_io::file_error::FileError;
 use gdcm_study::decisions::edit_refusal::EditRefusal;
@@ -18,7 +18,7 @@ impl From<EditRefusal> for Message {
     }
 }
 
-/// Returns the stable code of a problem with the columns of a record.
+/// Returns the stable code for a problem with a record's columns.
 pub fn layout_problem_code(problem: &LayoutProblem) -> &'static str {
     match problem {
         LayoutProblem::NoTime(_) => "no-time",
@@ -41,7 +41,7 @@ pub fn layout_problem_code(problem: &LayoutProblem) -> &'static str {
     }
 }
 
-/// Returns the stable code of a caution about the columns of a record.
+/// Returns the stable code for a caution about a record's columns.
 pub fn layout_caution_code(caution: &LayoutCaution) -> &'static str {
     match caution {
         LayoutCaution::Constant { .. } => "constant-channel",

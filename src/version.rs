@@ -1,4 +1,4 @@
-//! Version and commit of this program.
+//! The program's version and commit.
 //!
 //! The build script finds the commit (`build.rs`); [`gdcm_io::software`] states it in every file.
 
@@ -6,8 +6,8 @@
 /// source file differed from it, or "commit unknown".
 pub const BUILT_FROM: &str = env!("GDCM_BUILT_FROM");
 
-/// Sets the commit that files state. Called once, at the start of the program; libraries that are
-/// used without it, as in tests, state that the commit is unknown.
+/// Sets the commit that files state. Called once, when the program starts; libraries that are used
+/// without it, as in tests, state that the commit is unknown.
 pub fn set_commit() {
     gdcm_io::software::set_commit(BUILT_FROM);
 }

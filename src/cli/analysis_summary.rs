@@ -29,11 +29,11 @@ use super::schedule_summary::schedule_section;
 use super::shared_cautions::{cautions_section, coded_cautions};
 use super::terminal::keep_caution;
 
-/// Printed summary of an analysis.
+/// Summary of an analysis, as printed.
 pub(super) struct Summary {
-    /// Verdict on the study and on each condition, one line each; assessment; codes of the cautions.
+    /// Verdict on the study and on each condition, one line each; assessment; caution codes.
     pub(super) verdict: String,
-    /// Settings, results of each condition, cautions, schedule, and evidence.
+    /// Settings, each condition's results, cautions, schedule, and evidence.
     pub(super) details: String,
     /// Output files.
     pub(super) written: String,
@@ -55,7 +55,7 @@ impl Summary {
     }
 }
 
-/// Returns the first half of the summary, which `--brief` prints alone.
+/// Returns the summary's first half, which `--brief` prints alone.
 fn verdict_section(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let dataset = &analysis.study.dataset;
     let name = format!("{}, {}", sanitized(dataset.name()), loaded.origin);
@@ -71,7 +71,7 @@ fn verdict_section(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     text + &caution_codes_line(analysis)
 }
 
-/// Returns the second half of the summary, which `--brief` omits.
+/// Returns the summary's second half, which `--brief` omits.
 fn details(analysis: &Analysis) -> String {
     let mut text = "\n".to_owned();
     text += &settings_lines(analysis);
@@ -98,7 +98,7 @@ fn written_line(analysis: &Analysis, out: &Path) -> String {
     line("Written", &files)
 }
 
-/// Lists the codes of the cautions, each with its conditions; empty without cautions.
+/// Lists the caution codes, each with its conditions; empty without cautions.
 fn caution_codes_line(analysis: &Analysis) -> String {
     let mut entries = Vec::new();
     for coded in coded_cautions(analysis) {
@@ -126,7 +126,7 @@ fn doubts_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Describes a doubt about the sign or unit of a channel, with the option that inverts the sign.
+/// Describes a doubt about a channel's sign or unit, with the option that inverts the sign.
 pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let mut words = doubt_text(doubt, dataset);
     if let Some(channel) = doubt.turns() {
@@ -194,7 +194,7 @@ fn held_words(analysis: &Analysis) -> String {
     }
 }
 
-/// Returns the meaning, benefit and cost of the couplings; empty without couplings.
+/// Explains the couplings, with their benefit and cost; empty without couplings.
 fn couplings_section(analysis: &Analysis) -> String {
     let remarks = analysis_coupling_remarks(analysis);
     if remarks.is_empty() {
@@ -242,7 +242,7 @@ fn left_out_lines(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the assessment of the schedule in the held-out conditions.
+/// Returns how the schedule was assessed in the held-out conditions.
 fn held_out_line(analysis: &Analysis) -> String {
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
     match held_out_verdict(analysis, choice) {

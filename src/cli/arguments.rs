@@ -1,4 +1,4 @@
-//! Arguments and commands of the command line.
+//! Arguments and commands on the command line.
 
 use std::path::PathBuf;
 

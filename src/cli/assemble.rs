@@ -120,7 +120,7 @@ pub(super) fn report_missing_references(dataset: &Dataset) {
     }
 }
 
-/// Returns the default name of the dataset: the name of the first folder; empty without a folder.
+/// Returns the default name for the dataset: that of the first folder; empty without a folder.
 fn dataset_name(folders: &[PathBuf]) -> String {
     match folders.first().and_then(|folder| folder.file_name()) {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -128,7 +128,7 @@ fn dataset_name(folders: &[PathBuf]) -> String {
     }
 }
 
-/// Returns a table with condition, role, flight state and file of each model.
+/// Returns a table with each model's condition, role, flight state and file.
 fn model_table(assembly: &Assembly) -> String {
     let headings = [
         "condition",

@@ -18,8 +18,8 @@ use gdcm_words::requirements::has_levels;
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::printed_lines::{decimals_or_dash, indented, line};
 
-/// Returns a table of bandwidth and phase delay of the responses for which either is defined, and
-/// the reasons why the other responses have none.
+/// Returns a table with bandwidth and phase delay for the responses for which either is defined,
+/// and the reasons why the other responses have none.
 pub(super) fn bandwidth_section(study: &Study, requirements: &Requirements) -> String {
     let responses: Vec<ResponseBandwidths> = requirements
         .bandwidth
@@ -53,7 +53,7 @@ pub(super) fn bandwidth_section(study: &Study, requirements: &Requirements) -> S
     text + &absent_lines("No delay", absent_delays(&responses))
 }
 
-/// Bandwidth results of a response, one per role.
+/// A response's bandwidth results, one per role.
 struct ResponseBandwidths<'a> {
     name: String,
     findings: &'a [BandwidthFinding],
@@ -101,7 +101,7 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
 struct AbsentReason<'a> {
     /// First result to which the reason applies.
     finding: &'a BandwidthFinding,
-    /// Code of the reason.
+    /// Code for the reason.
     code: &'static str,
     /// Response, roles and reason: "LON → Q (physics, corrected): …".
     words: String,
@@ -113,8 +113,8 @@ impl AbsentReason<'_> {
     }
 }
 
-/// Returns the distinct reasons why a quantity is missing in the results of a response. Each names
-/// its roles, unless it applies to all.
+/// Returns the distinct reasons why a quantity is missing in a response's results. Each names its
+/// roles, unless it applies to all.
 fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
     let findings = response.findings;
     let reason_of =
@@ -169,8 +169,8 @@ fn bandwidth_table(responses: &[ResponseBandwidths], levels: &LevelBoundaries) -
     table
 }
 
-/// Formats "2.13 / 112* / 2": bandwidth \[rad/s\] and phase delay \[ms\] of a response, and its level
-/// if boundaries give one; a star marks a value that depends on the response above the band.
+/// Formats "2.13 / 112* / 2": a response's bandwidth \[rad/s\] and phase delay \[ms\], and its
+/// level if boundaries give one; a star marks a value that depends on the response above the band.
 fn bandwidth_cell(finding: &BandwidthFinding, levels: &LevelBoundaries) -> String {
     let mut text = format!(
         "{}{} / {}{}",

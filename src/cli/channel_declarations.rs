@@ -1,4 +1,4 @@
-//! Units, factors and signs that options of `gdcm assemble` declare for channels, added to the
+//! Units, factors and signs that options for `gdcm assemble` declare for channels, added to the
 //! rules.
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::file_values::FileValue;
 use super::model_arguments::AssembleArguments;
 
-/// Rejects a second declaration of a channel's sign, unit or factor for the same models.
+/// Rejects a second declaration for a channel's sign, unit or factor in the same models.
 pub(super) fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for FileValue { channel, scope, .. } in &arguments.sign {
@@ -71,8 +71,8 @@ pub(super) fn declare(
     Ok(())
 }
 
-/// Adds a declaration to the rules of a single model if `scope` is its key, otherwise to the rules
-/// of the scope.
+/// Adds a declaration to a single model's rules if `scope` is its key, otherwise to the rules for
+/// the scope.
 fn declare_for_scope(
     scope: &FileScope,
     declared: &ChannelDeclarations,

@@ -54,10 +54,10 @@ impl<'a> RecordChannel<'a> {
     }
 }
 
-/// Role whose models get the channel's sign inverted; `None` restores the sign in the files.
+/// Role whose models have the channel's sign inverted; `None` restores the sign in the files.
 pub type ChannelSign = ChannelValue<Option<SignRole>>;
 
-/// Parses the sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
+/// Parses a channel's sign: "NZ=-1", "NZ=-1:physics", "NZ=1".
 pub(super) fn channel_sign(text: &str) -> Result<ChannelSign, String> {
     valid_sign(text).ok_or_else(|| {
         format!(
@@ -110,13 +110,13 @@ pub(super) fn text_value(text: &str) -> Option<String> {
     }
 }
 
-/// Parses a channel and the unit of its samples: "P=rad/s".
+/// Parses a channel and its samples' unit: "P=rad/s".
 pub(super) fn channel_unit(text: &str) -> Result<ChannelValue<String>, String> {
     ChannelValue::parse(text, text_value)
         .ok_or_else(|| format!("expected CHANNEL=UNIT, such as P=rad/s; found \"{text}\""))
 }
 
-/// Parses a channel and the factor of its samples: "LON=25".
+/// Parses a channel and its samples' factor: "LON=25".
 pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
     ChannelValue::parse(text, factor).ok_or_else(|| {
         format!(
@@ -126,7 +126,7 @@ pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
     })
 }
 
-/// Parses an input and the amplitude of its sweeps: "LON=5".
+/// Parses an input and its sweeps' amplitude: "LON=5".
 pub(super) fn channel_amplitude(text: &str) -> Result<ChannelValue<f64>, String> {
     ChannelValue::parse(text, |value| factor(value).filter(|value| *value > 0.0)).ok_or_else(|| {
         format!("expected INPUT=X with a positive number X, such as LON=5; found \"{text}\"")
@@ -145,7 +145,7 @@ pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> 
 
 /// Parses a channel and its delay \[s\], positive if the channel is logged late.
 pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
-    /// Maximum plausible delay \[s\] of a sensor or bus.
+    /// Maximum plausible delay \[s\] in a sensor or bus.
     const MOST_S: f64 = 2.0;
     let expected = || format!("expected CHANNEL=SECONDS, such as P=0.02; found \"{text}\"");
     let delay = ChannelValue::parse(text, |seconds| seconds.parse().ok()).ok_or_else(expected)?;

@@ -1,4 +1,4 @@
-//! `gdcm check`: prints the contents and faults of a dataset or a study.
+//! `gdcm check`: prints what a dataset or a study contains, or its faults.
 
 use std::path::Path;
 
@@ -28,14 +28,14 @@ use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
 use super::terminal::{error, keep_caution, print};
 
-/// Prints the contents of a dataset or study.
+/// Prints what a dataset or study contains.
 pub(super) fn check(
     file: &Path,
     arguments: &OpeningArguments,
     signs: &[ChannelSign],
 ) -> Result<(), Failure> {
     if file.is_file() && !holds_models(file) {
-        // Reports structural errors before the whole of a large file is read.
+        // Reports structural errors before a large file is read as a whole.
         check_beginning(file)?;
     }
     let opened = match open(file, arguments) {
@@ -54,8 +54,8 @@ pub(super) fn check(
     print(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
-/// Returns whether an error concerns the content of a dataset, which may have further faults; after
-/// a syntax error no others can be found.
+/// Returns whether an error concerns a dataset's content, which may have further faults; after a
+/// syntax error no others can be found.
 fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
@@ -78,9 +78,9 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
     }
 }
 
-/// Returns the cautions of an analysis that concern only the models, and adds them to the JSON
-/// object. Missing references come first,
-/// then signs and units, because other cautions may result from them.
+/// Returns those cautions from an analysis that concern only the models, and adds them to the JSON
+/// object. Missing references come first, then signs and units, because other cautions may result
+/// from them.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     let dataset = &study.dataset;
@@ -113,7 +113,7 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Describes the decisions of a study.
+/// Describes a study's decisions.
 fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {

@@ -1,4 +1,4 @@
-//! The words of the command line before clap parses them, and clap's errors as messages.
+//! The words on the command line before clap parses them, and clap's errors as messages.
 
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
@@ -17,7 +17,7 @@ pub(super) fn has_argument(arguments: &[OsString], option: &str) -> bool {
 
 /// Removes `--json` and `--quiet` before the command, and returns the output format that they
 /// request. The parser itself cannot accept them there: it rejects a command after any other
-/// argument, because it must reject one after the window's file. The first element of `arguments`
+/// argument, because it must reject one after the window's file. The first element in `arguments`
 /// is the program.
 pub(super) fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
     let mut output = OutputFormat::default();
@@ -90,7 +90,7 @@ pub(super) fn usage_words(error: &clap::Error) -> String {
     )
 }
 
-/// Joins the lines of a paragraph by blanks.
+/// Joins a paragraph's lines by blanks.
 fn on_one_line(paragraph: &str) -> String {
     let lines: Vec<&str> = paragraph.lines().map(str::trim).collect();
     lines.join(" ")

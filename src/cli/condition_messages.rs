@@ -38,7 +38,7 @@ impl SharedMessage {
     }
 }
 
-/// Merges equal messages, in the order of first occurrence.
+/// Merges equal messages, ordered by first occurrence.
 pub(super) fn shared_messages(
     messages: impl IntoIterator<Item = ConditionMessage>,
 ) -> Vec<SharedMessage> {

@@ -1,4 +1,4 @@
-//! Printed results of a condition: representatives, rejected models, responses and channels.
+//! A condition's results, as printed: representatives, rejected models, responses and channels.
 
 use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::correction::{ChannelCorrection, LeadPrice, Outcome};
@@ -73,7 +73,7 @@ fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     text
 }
 
-/// Returns a table with the correction and the cost J of each on-axis or constrained response.
+/// Returns a table with the correction and the cost J for each on-axis or constrained response.
 fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let columns = [
         "response",
@@ -122,7 +122,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     table
 }
 
-/// Returns the half-width of the error bar of a gain \[%\]; `None` without error bars.
+/// Returns the half-width of a gain's error bar \[%\]; `None` without error bars.
 fn half_width_percent(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -131,7 +131,7 @@ fn half_width_percent(
     bar_half_width(analysis, result, gain).map(|half_width| 100.0 * half_width)
 }
 
-/// Returns the half-width of the error bar of a delay \[ms\]; `None` without error bars.
+/// Returns the half-width of a delay's error bar \[ms\]; `None` without error bars.
 fn half_width_ms(analysis: &Analysis, result: &ConditionAnalysis, delay: Scalar) -> Option<f64> {
     bar_half_width(analysis, result, delay).map(|half_width_s| 1e3 * half_width_s)
 }
@@ -154,7 +154,7 @@ fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String
     headings
 }
 
-/// Returns the gains of all channels, and their delays or leads.
+/// Returns all channels' gains, and their delays or leads.
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
     let correction = &result.correction;
@@ -181,8 +181,8 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", &gains) + &detail_list("delays", &delays)
 }
 
-/// Returns a table of gain and delay or lead of each channel. A lead filter acts as if a servo were
-/// replaced by one with a higher bandwidth; the table lists both bandwidths (M15).
+/// Returns a table with each channel's gain and delay or lead. A lead filter acts as if a servo
+/// were replaced by one with a higher bandwidth; the table lists both bandwidths (M15).
 fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
     let columns = [
         "channel",

@@ -1,4 +1,4 @@
-//! Contents of a dataset, as printed by `gdcm check`.
+//! A dataset's contents, as printed by `gdcm check`.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ use gdcm_words::Table;
 use super::printed_lines::{caution_line, indented, line};
 use super::terminal::keep_caution;
 
-/// Returns the contents of a dataset: its header, conditions, timings, records and cautions, which
-/// are also added to the JSON object.
+/// Returns a dataset's contents: its header, conditions, timings, records and cautions, which are
+/// also added to the JSON object.
 pub(super) fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
     let band = format!(
@@ -105,7 +105,7 @@ fn with_unit(value: Option<f64>, unit: &str) -> String {
     }
 }
 
-/// Describes the orders of the models: "39", "11-14", "measured", "12, measured".
+/// Describes the model orders: "39", "11-14", "measured", "12, measured".
 fn order_words(models: &[Model]) -> String {
     let mut orders: Vec<usize> = Vec::new();
     for model in models {
@@ -157,7 +157,7 @@ fn timings(dataset: &Dataset) -> String {
     text
 }
 
-/// Returns the flight records of each condition: their number, manoeuvres and use.
+/// Returns each condition's flight records: their number, manoeuvres and use.
 fn records(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {

@@ -1,4 +1,4 @@
-//! Conditions and responses of a dataset that options name, with the failure if the dataset lacks
+//! Conditions and responses that options name in a dataset, with the failure if the dataset lacks
 //! them.
 
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
@@ -22,7 +22,7 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
     }
 }
 
-/// Lists the ids of all conditions, separated by commas.
+/// Lists all condition ids, separated by commas.
 pub(super) fn condition_ids(dataset: &Dataset) -> String {
     let ids: Vec<String> = dataset
         .conditions()

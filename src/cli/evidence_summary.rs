@@ -1,5 +1,5 @@
-//! Printed evidence about the scheduled net gains: sources of their scatter, differences at equal
-//! airspeed, and the need for a second variable.
+//! Evidence about the scheduled net gains, as printed: sources of their scatter, differences at
+//! equal airspeed, and the need for a second variable.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_study::results::uncertainty::Uncertainty;

@@ -70,7 +70,7 @@ fn export_file(
     print(&text)
 }
 
-/// Writes several files into a folder, under names of the program.
+/// Writes several files into a folder, under names that the program chooses.
 fn export_set(
     arguments: &ExportArguments,
     formats: Vec<ExportFormat>,
@@ -153,7 +153,7 @@ fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRe
     })
 }
 
-/// Rejects options that apply to none of the formats, and checksums of no file.
+/// Rejects options that apply to no requested format, and a request for checksums alone.
 fn check_options(arguments: &ExportArguments, formats: &[ExportFormat]) -> Result<(), Failure> {
     if formats.is_empty() {
         let reason = format!("{CHECKSUMS} needs another format");

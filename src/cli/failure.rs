@@ -19,10 +19,10 @@ pub(super) const WRONG_INPUT: u8 = 2;
 pub(super) enum Failure {
     #[error("{0}{remedy}", remedy = file_remedy(.0))]
     File(#[from] FileError),
-    /// A result that a call cannot hand over.
+    /// An export, such as a corrected model, is impossible.
     #[error(transparent)]
     Export(#[from] ExportFault),
-    /// The options of a call cannot be read.
+    /// A call's options cannot be read.
     #[error("{words}")]
     CommandLine { words: String },
     #[error("{option}: {reason}")]
@@ -40,7 +40,7 @@ pub(super) enum Failure {
     /// Several faults in a dataset, each of which has already been reported.
     #[error("{path}: {count} faults; correct them and check the file again")]
     Faulty { path: String, count: usize },
-    /// The file contains models instead of a dataset or a study.
+    /// The file contains models, but neither a dataset nor a study.
     #[error(
         "{path}: neither a dataset nor a study; make a dataset of model files with gdcm assemble \
          {path} --out dataset.json.gz, or with Import models in the window"
@@ -49,7 +49,7 @@ pub(super) enum Failure {
     /// The rules lack items, so no dataset can be made from the files.
     #[error("no dataset was written: complete {} in {rules} and pass it with --rules", counted(*count, "item"))]
     Incomplete { count: usize, rules: String },
-    /// The columns of some records are unclear or invalid, which has already been reported for each
+    /// Some records' columns are unclear or invalid, which has already been reported for each
     /// record.
     #[error(
         "{wrong} of {} cannot be used: give their columns (--inputs P=COLUMN, --time) and units \
@@ -60,7 +60,7 @@ pub(super) enum Failure {
     /// The files have no usable content.
     #[error("{paths}: no usable {noun}")]
     Nothing { paths: String, noun: &'static str },
-    /// Some of the requested records could not be read completely; the others were used.
+    /// Some requested records could not be read completely; the others were used.
     #[error("{paths}: not read, or read only in part; the results do not include the missing data")]
     Unread { paths: String },
     /// Identification was completed, but the records identify no input.
@@ -81,7 +81,7 @@ pub(super) enum Failure {
     StandardOutput { reason: String },
 }
 
-/// Returns a hint for the message of a file error: the option that solves the problem.
+/// Returns a hint for a file error's message: the option that solves the problem.
 fn file_remedy(error: &FileError) -> &'static str {
     match error {
         FileError::Exists { .. } => "; --force overwrites",
@@ -152,7 +152,7 @@ impl Failure {
         }
     }
 
-    /// Returns the exit status of the program.
+    /// Returns the program's exit status.
     pub(super) fn status(&self) -> u8 {
         match self {
             Failure::File(FileError::Unwritable { .. })

@@ -59,7 +59,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
 /// A requested figure, with its condition.
 pub(super) struct FigurePlace {
     request: FigureRequest,
-    /// `None` for a figure of all conditions.
+    /// `None` for a figure about all conditions.
     condition: Option<ConditionId>,
 }
 
@@ -73,7 +73,7 @@ impl FigurePlace {
     }
 }
 
-/// Draws a requested figure of an analysed study.
+/// Draws a requested figure from an analysed study.
 ///
 /// # Errors
 /// There is nothing to draw, or the work was stopped.
@@ -156,7 +156,7 @@ fn assessed_physics(
     }
 }
 
-/// Draws a figure of a condition from the same curves as the window.
+/// Draws a condition's figure from the same curves as the window.
 fn figure_of_condition(
     request: &FigureRequest,
     analysis: &Analysis,
@@ -287,7 +287,7 @@ fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
         })
 }
 
-/// Returns the condition of the figure; `None` for a figure of all conditions.
+/// Returns the figure's condition; `None` for a figure about all conditions.
 fn figure_condition(
     study: &Study,
     arguments: &FigureArguments,

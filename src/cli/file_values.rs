@@ -1,16 +1,15 @@
-//! Options of `gdcm assemble` that declare a sign, unit or factor for a channel in some of the
-//! files.
+//! Options for `gdcm assemble` that declare a sign, unit or factor for a channel in some files.
 
 use gdcm_model::assembly::FileScope;
 
 use super::channel_values::{factor, sign_factor, text_value};
 
-/// Value that an option declares for a channel in some of the assembled files.
+/// Value that an option declares for a channel in some assembled files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileValue<T> {
     pub channel: String,
     pub value: T,
-    /// Files to which the value applies; by default the files of the identified models.
+    /// Files to which the value applies; by default those with identified models.
     pub scope: FileScope,
 }
 
@@ -32,7 +31,7 @@ impl<T> FileValue<T> {
     }
 }
 
-/// Explanation of the scope syntax, appended to error messages.
+/// Explains the scope syntax; appended to error messages.
 const SCOPE_HINT: &str = "optionally followed by :identified, :physics, :all or :FILE (a model's file or folder pattern)";
 
 pub(super) fn file_sign(text: &str) -> Result<FileValue<f64>, String> {

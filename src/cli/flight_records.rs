@@ -39,7 +39,7 @@ pub(super) struct ReadRecords {
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// A record whose samples equal those of another record.
+/// A record whose samples equal those in another record.
 pub(super) struct Duplicate {
     /// Name of the record with the same samples.
     pub(super) original: String,
@@ -118,27 +118,27 @@ pub(super) fn laid_out_records(
     })
 }
 
-/// Assigns the columns of records to channels, and reports notes, cautions and problems.
+/// Assigns record columns to channels, and reports notes, cautions and problems.
 struct RecordLayouts<'a> {
     dataset: Option<&'a Dataset>,
     wish: TimeWish,
     reported: Reported,
 }
 
-/// Messages reported so far. If the messages of a record equal those of the previous record, they
-/// are not repeated.
+/// Messages reported so far. If a record has the same messages as the previous one, they are not
+/// repeated.
 #[derive(Default)]
 struct Reported {
-    /// Notes about assumptions made while reading, each prefixed with the name of its record.
+    /// Notes about assumptions made while reading, each prefixed with its record's name.
     reading: Vec<String>,
     last_notes: Vec<String>,
     last_problems: Vec<String>,
 }
 
 impl RecordLayouts<'_> {
-    /// Assigns the columns of a record, as stated in the dataset if it lists the record; returns
-    /// the notes about assumptions too. The record is marked as used even if the dataset excludes
-    /// it, because it was requested.
+    /// Assigns a record's columns, as stated in the dataset if it lists the record; returns the
+    /// notes about assumptions too. The record is marked as used even if the dataset excludes it,
+    /// because it was requested.
     fn lay_out(
         &self,
         table: RecordTable,
@@ -153,8 +153,8 @@ impl RecordLayouts<'_> {
         (record, notes)
     }
 
-    /// Assigns the columns of all records, and reports notes, cautions and problems. Channels
-    /// without a unit take the unit stated by a record.
+    /// Assigns all records' columns, and reports notes, cautions and problems. Channels without a
+    /// unit take the unit stated by a record.
     fn lay_out_all(
         &mut self,
         tables: Vec<RecordTable>,
@@ -183,8 +183,8 @@ impl RecordLayouts<'_> {
         records
     }
 
-    /// Repeats the assignment for the usable records with the final units, which records before the
-    /// first one with units lack.
+    /// Repeats the assignment for the usable records with the final units: the records before the
+    /// first that states units were assigned without them.
     fn lay_out_again(
         &self,
         records: Vec<LaidOutRecord>,
@@ -208,7 +208,7 @@ impl RecordLayouts<'_> {
 }
 
 impl Reported {
-    /// Reports the notes of a record, unless they equal those of the previous record.
+    /// Reports a record's notes, unless they equal the previous record's.
     fn add_notes(&mut self, name: &str, notes: Vec<String>) {
         if notes == self.last_notes {
             return;
@@ -221,7 +221,7 @@ impl Reported {
         self.last_notes = notes;
     }
 
-    /// Reports the problems of a record, unless they equal those of the previous record.
+    /// Reports a record's problems, unless they equal the previous record's.
     fn add_problems(&mut self, record: &LaidOutRecord) {
         let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
         if problems == self.last_problems {

@@ -25,8 +25,8 @@ pub(super) fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<Fou
     Ok(found)
 }
 
-/// Returns the column headings given on the command line; they apply to every table with the same
-/// number of columns.
+/// Returns the column headings given on the command line; they apply to every table with equally
+/// many columns.
 pub(super) fn given_headings(headings: &[String]) -> Headings {
     if headings.is_empty() {
         return Headings::new();

@@ -1,4 +1,4 @@
-//! Identification of models from the flight records of a condition.
+//! Identifying models from a condition's flight records.
 
 use std::path::{Path, PathBuf};
 
@@ -24,10 +24,10 @@ use super::progress::ProgressReceiver;
 use super::record_table::record_table;
 use crate::executor::Pool;
 
-/// Name of the file with the identified models.
+/// File name for the identified models.
 pub(super) const IDENTIFIED_FILE: &str = "identified.json";
 
-/// Identification of models from a group of records.
+/// Records from which models are identified jointly.
 pub(super) struct IdentificationTask {
     /// Condition in the dataset; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
@@ -96,8 +96,8 @@ impl IdentificationTask {
         cautions
     }
 
-    /// Returns a caution if a channel of the measured responses lags behind the nominal physics
-    /// model of the condition; it names the option that removes the delay.
+    /// Returns a caution if a channel in the measured responses lags behind the condition's nominal
+    /// physics model; it names the option that removes the delay.
     fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;
@@ -117,7 +117,7 @@ impl IdentificationTask {
         })
     }
 
-    /// Adds the options that solve the problem to the note of a caution.
+    /// Appends the options that solve the problem to a caution's note.
     fn with_remedy(&self, mut note: CautionNote, caution: &IdentificationCaution) -> CautionNote {
         let IdentificationCaution::Contradiction { records, .. } = caution else {
             return note;
@@ -176,7 +176,7 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns a line with the result and the path of its file.
+    /// Returns a line with the result and the path to its file.
     pub(super) fn outcome(&self, file: &Path, found: &Identification) -> String {
         let held_out = match found.held_out_cost {
             Some(cost) => format!(", {cost:.2} for the held-out records"),
@@ -193,7 +193,7 @@ impl IdentificationTask {
     }
 }
 
-/// Returns names and units of the channels in the order of the records.
+/// Returns the channels' names and units, in the same order as in the records.
 pub(super) fn planned_channels(channels: &RecordChannels) -> PlannedChannels {
     let mut planned = PlannedChannels::default();
     for input in &channels.inputs {
@@ -208,7 +208,7 @@ pub(super) fn planned_channels(channels: &RecordChannels) -> PlannedChannels {
     planned
 }
 
-/// Returns the prefix of messages about a condition.
+/// Returns the prefix for messages about a condition.
 pub(super) fn prefix(condition: Option<ConditionId>) -> String {
     match condition {
         Some(id) => format!("condition {id}: "),

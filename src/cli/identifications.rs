@@ -1,4 +1,4 @@
-//! Runs the identifications of `gdcm identify` and writes their results: a file for each, and the
+//! Runs the identifications for `gdcm identify` and writes their results: a file for each, and the
 //! dataset that receives the models.
 
 use std::mem::take;
@@ -36,14 +36,14 @@ pub(super) struct IdentificationBasis<'a> {
     pub(super) duplicates: &'a [Duplicate],
 }
 
-/// Results of the identifications so far, and the output files.
+/// Results from the identifications so far, and the output files.
 pub(super) struct Identifications<'a> {
     basis: IdentificationBasis<'a>,
     destination: Option<ReceivingDataset>,
     outputs: OutputSet,
     /// Lines to be printed about the results.
     lines: String,
-    /// Number of successful identifications.
+    /// Successful identifications.
     count: usize,
     /// Whether any records identify at least one input.
     identifies_input: bool,
@@ -99,7 +99,7 @@ impl<'a> Identifications<'a> {
         Ok(())
     }
 
-    /// Adds the result of a task to the output files, and prints its notes and cautions.
+    /// Adds a task's result to the output files, and prints its notes and cautions.
     fn take(
         &mut self,
         task: &IdentificationTask,
@@ -126,7 +126,7 @@ impl<'a> Identifications<'a> {
         Ok(())
     }
 
-    /// Returns what is written beside the models of a task, and prints its notes.
+    /// Returns the description written beside a task's models, and prints its notes.
     pub(super) fn describe(
         &mut self,
         task: &IdentificationTask,
@@ -154,7 +154,7 @@ impl<'a> Identifications<'a> {
         }
     }
 
-    /// Returns the failure of records that identify no input; `None` if they identify one.
+    /// Returns the failure for records that identify no input; `None` if they identify one.
     pub(super) fn without_input(&self) -> Option<Failure> {
         if self.identifies_input {
             return None;
@@ -166,8 +166,8 @@ impl<'a> Identifications<'a> {
         })
     }
 
-    /// Returns the cautions of a task, and stores them to be printed at the end. Those about
-    /// duplicates are not stored: they have already been printed.
+    /// Returns a task's cautions, and stores them to be printed at the end. Those about duplicates
+    /// are not stored: they have already been printed.
     fn cautions_of(
         &mut self,
         task: &IdentificationTask,
@@ -187,7 +187,7 @@ impl<'a> Identifications<'a> {
         cautions
     }
 
-    /// Returns the channels of the model, that is, without the reference channels that follow the
+    /// Returns the model's channels, that is, without the reference channels that follow the
     /// inputs.
     fn model_channels(&self) -> RecordChannels {
         let mut channels = self.basis.channels.clone();
@@ -228,9 +228,9 @@ impl<'a> Identifications<'a> {
     }
 }
 
-/// What is written beside the models of an identification.
+/// Description written beside the models from an identification.
 pub(super) struct DescribedIdentification {
-    /// Channels of the models, without references.
+    /// The models' channels, without references.
     pub(super) channels: RecordChannels,
     pub(super) records: Vec<ConditionRecord>,
     pub(super) cautions: Vec<CautionNote>,

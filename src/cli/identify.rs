@@ -128,8 +128,8 @@ fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     }
 }
 
-/// Sets the hold of each input, judged from a record that was not resampled, because resampling
-/// already shifts the time stamps.
+/// Sets each input's hold, judged from a record that was not resampled, because resampling already
+/// shifts the time stamps.
 fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
     let as_logged = records
         .iter()

@@ -161,7 +161,7 @@ pub enum OfferedChoice {
 }
 
 impl OfferedChoice {
-    /// Returns the selection of identified models for the dataset.
+    /// Returns the corresponding choice of identified models.
     pub fn offered(self) -> OfferedModels {
         match self {
             Self::Refined => OfferedModels::REFINED,

@@ -51,7 +51,7 @@ impl Interruptible {
     }
 }
 
-/// State of interruptions, for the whole process.
+/// Interruption state, for the whole process.
 #[cfg(unix)]
 struct Interruption {
     /// Whether an interruption occurred.

@@ -1,4 +1,4 @@
-//! Printed assessment of the schedule by leaving each condition in turn out of its fit.
+//! Assessment of the schedule, as printed, with each condition in turn left out of the fit.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
@@ -8,7 +8,7 @@ use gdcm_words::assessment::not_assessed_text;
 
 use super::printed_lines::{detail, fixed_digits, indented, line};
 
-/// Returns the change in J of each condition's nominal model when the schedule is fitted to the
+/// Returns the change in J for each condition's nominal model when the schedule is fitted to the
 /// other conditions only.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let seen = assessment(analysis, AssessedCorrection::Scheduled);
@@ -55,8 +55,8 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the default choice for assessing a correction: the nominal models, with the average of J
-/// that the study sets.
+/// Returns the default choice for assessing a correction: the nominal models, with J averaged as
+/// the study sets.
 pub(super) fn nominal_choice(
     analysis: &Analysis,
     correction: AssessedCorrection,
@@ -72,7 +72,7 @@ fn assessment(analysis: &Analysis, correction: AssessedCorrection) -> Assessment
     AssessmentTable::assess(analysis, nominal_choice(analysis, correction))
 }
 
-/// Returns the mean of some values; `None` if there are none.
+/// Averages some values; `None` if there are none.
 fn mean(values: &[f64]) -> Option<f64> {
     if values.is_empty() {
         None

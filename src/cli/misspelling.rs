@@ -10,8 +10,8 @@ use gdcm_model::message_text::{sanitized, shortened};
 use super::arguments::Arguments;
 use super::failure::Failure;
 
-/// Returns the failure if the first word of the command line is neither a command nor a file but
-/// differs from a command by one or two letters; otherwise `None`. The first element of `arguments`
+/// Returns the failure if the first word on the command line is neither a command nor a file but
+/// differs from a command by one or two letters; otherwise `None`. The first element in `arguments`
 /// is the program.
 pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
     let word = arguments
@@ -29,7 +29,7 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
         .get_subcommands()
         .flat_map(|command| command.get_name_and_visible_aliases())
         .min_by_key(|name| edit_distance(word, name))?;
-    // A word of fewer than five letters may differ by one letter only; with two, it would be a
+    // A word with fewer than five letters may differ by one letter only; with two, it would be a
     // different word.
     let most = if word.chars().count() < 5 { 1 } else { 2 };
     if edit_distance(word, nearest) > most {
@@ -49,7 +49,7 @@ fn edit_distance(from: &str, to: &str) -> usize {
     // Distances from the processed part of `from` to each prefix of `to`, by the prefix's length.
     let mut distances: Vec<usize> = (0..=to.len()).collect();
     for (row, letter) in from.chars().enumerate() {
-        // Distance before `letter` of `from` and before the letter `column` of `to`.
+        // Distance before `letter` in `from` and before the letter `column` in `to`.
         let mut before_both = distances[0];
         distances[0] = row + 1;
         for column in 0..to.len() {

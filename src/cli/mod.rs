@@ -79,8 +79,8 @@ use study_arguments::OpeningArguments;
 use terminal::{OutputFormat, caution, print};
 
 /// Runs the command on the command line. Without a command, opens the window with a file or with
-/// the embedded example. Help, version and errors of the command line are printed here. Returns the
-/// exit status.
+/// the embedded example. Help, version and command-line errors are printed here. Returns the exit
+/// status.
 pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
     open_window: impl FnOnce(Option<PathBuf>) -> u8,
@@ -152,8 +152,8 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
     }
 }
 
-/// Opens a dataset or a study; if the dataset of a study has changed, the differences are reported
-/// on standard error, one per line.
+/// Opens a dataset or a study; if a study's dataset has changed, the differences are reported on
+/// standard error, one per line.
 fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     if file.is_file() && file.extension().is_some() && holds_models(file) {
         return Err(Failure::Models {

@@ -55,7 +55,7 @@ pub(super) fn positive_number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Airspeeds \[kt\] of a lookup table, increasing.
+/// Airspeeds \[kt\] for a lookup table, increasing.
 pub type Breakpoints = Vec<f64>;
 
 pub(super) fn breakpoints(text: &str) -> Result<Breakpoints, String> {
@@ -74,15 +74,15 @@ pub(super) fn breakpoints(text: &str) -> Result<Breakpoints, String> {
     }
 }
 
-/// A response by the names of its channels.
+/// A response, given by its channels' names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PairName {
     pub output: String,
     pub input: String,
 }
 
-/// A list of responses. The alias is necessary because clap would take a `Vec` for an option that
-/// can be repeated.
+/// Several responses. The alias is necessary because clap would take a `Vec` for an option that can
+/// be repeated.
 pub type PairList = Vec<PairName>;
 
 /// Parses "P/LAT,Q/LON", or "none".
@@ -106,7 +106,7 @@ pub(super) fn pair_name(text: &str) -> Result<PairName, String> {
     }
 }
 
-/// Choice of responses in a figure.
+/// Responses chosen for a figure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PairChoice {
     OnAxis,
@@ -148,7 +148,7 @@ pub struct RecordPart {
     pub record: Option<String>,
     /// First and last time \[s\].
     pub part_s: [f64; 2],
-    /// Whether the times count from the record's first sample instead of its time axis.
+    /// Whether the times count from the record's first sample; otherwise on its time axis.
     pub is_from_start: bool,
 }
 

@@ -10,7 +10,7 @@ use super::failure::Failure;
 /// Option that sets a parameter.
 const OPTION: &str = "--parameter";
 
-/// Change of a parameter: "Ixx=+4%".
+/// Change to a parameter: "Ixx=+4%".
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterValue {
     pub name: String,
@@ -52,8 +52,8 @@ pub fn parameter_value(text: &str) -> Result<ParameterValue, String> {
     Err(expected())
 }
 
-/// Applies the given values to the study; without a choice of the parameters applied, they are the
-/// values set by hand.
+/// Applies the given values to the study; if it applies no physics parameters and `--physics` is
+/// not given, the values set by hand are applied alone.
 pub(super) fn apply_parameters(
     study: &mut Study,
     values: &[ParameterValue],
@@ -104,7 +104,7 @@ pub(super) fn apply_parameters(
     Ok(())
 }
 
-/// Applies a decision of the option.
+/// Applies a decision that the option asks for.
 fn decide(study: &mut Study, edit: &Edit) -> Result<(), Failure> {
     study
         .apply(edit)

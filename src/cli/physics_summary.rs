@@ -1,4 +1,4 @@
-//! The part of the summary of `gdcm analyze` about physics parameters (M18).
+//! Part about physics parameters in the summary printed by `gdcm analyze` (M18).
 
 use gdcm_method::physics::OfferedParameter;
 use gdcm_model::message_text::sanitized;
@@ -14,7 +14,7 @@ use gdcm_words::physics::{
 use super::printed_lines::{detail, indented, line};
 use super::terminal::keep_caution;
 
-/// Returns diagnosis, values, benefit and cautions of the physics parameters; a hint where the
+/// Returns diagnosis, values, benefit and cautions about the physics parameters; a hint where the
 /// dataset has runs that are not used; empty without runs.
 pub(super) fn physics_section(analysis: &Analysis) -> String {
     let applied = match &analysis.physics {
@@ -66,7 +66,7 @@ pub(super) fn physics_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns verdict, table, cautions, and what takes no part in the fit.
+/// Returns verdict, table, cautions, and a note on data that take no part in the fit.
 fn findings_section(analysis: &Analysis, findings: &PhysicsFindings) -> String {
     let level = analysis.study.settings.uncertainty.level;
     let mut text = line("Physics", &sanitized(&verdict_text(findings)));

@@ -100,7 +100,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
 struct WantedFlights<'a> {
     arguments: &'a PlanArguments,
     channels: PlannedChannels,
-    /// Amplitude of the sweeps of each input, if it is given.
+    /// Amplitude for the sweeps on each input, if it is given.
     amplitudes: Vec<Option<f64>>,
     targets: Vec<IntervalTarget>,
 }
@@ -156,7 +156,7 @@ impl<'a> WantedFlights<'a> {
         })
     }
 
-    /// Plans the flights of a condition.
+    /// Plans a condition's flights.
     fn plan(
         &self,
         task: &IdentificationTask,
@@ -203,7 +203,7 @@ impl<'a> WantedFlights<'a> {
         }
     }
 
-    /// Returns a sweep of an input: as flown, apart from what the options give.
+    /// Returns a sweep on an input: as flown, except where the options give a value.
     fn sweep(&self, information: &FlightInformation, input: usize) -> Option<StandardSweep> {
         let mut standard = information.standard_sweep(input)?;
         if let Some(length_s) = self.arguments.length {
@@ -233,7 +233,7 @@ fn no_information(task: &IdentificationTask) -> Failure {
     }
 }
 
-/// Returns the tables and the ways to the targets of a condition.
+/// Returns tables of the planned sweeps, and the ways to reach each target, for a condition.
 fn plan_text(plan: &ConditionPlan, channels: &PlannedChannels) -> String {
     let mut text = String::new();
     for sweep in &plan.sweeps {
@@ -267,7 +267,7 @@ fn unknown_input(name: &str, channels: &PlannedChannels) -> Failure {
     Failure::coded_option("--amplitude", "unknown-channel", reason)
 }
 
-/// Returns the response of a target.
+/// Returns the response that a target concerns.
 fn pair_of(channels: &PlannedChannels, name: &PairName) -> Result<Pair, Failure> {
     let output = channels
         .outputs

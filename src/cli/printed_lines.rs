@@ -6,20 +6,20 @@ use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_m
 use gdcm_model::number_format::NO_VALUE;
 use gdcm_words::Table;
 
-/// Maximum width of a line, in columns.
+/// Maximum line width, in columns.
 const PAGE_WIDTH: usize = 110;
 
-/// Width of a label, in columns.
+/// Label width, in columns.
 const LABEL_WIDTH: usize = 14;
 
-/// Indentation of lines within a section, in columns.
+/// Indentation within a section, in columns.
 const DETAIL_INDENT: usize = 2;
 
 /// A label at the left of wrapped text.
 #[derive(Clone, Copy)]
 struct Label<'a> {
     text: &'a str,
-    /// Number of columns to the left of the label.
+    /// Columns to the left of the label.
     indent: usize,
 }
 
@@ -71,12 +71,12 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Returns a line with the label of a section.
+/// Returns a line with a section's label.
 pub(super) fn line(label: &str, words: &str) -> String {
     Label::of_section(label).before(words)
 }
 
-/// Returns the line of a caution, without control characters.
+/// Returns the line for a caution, without control characters.
 pub(super) fn caution_line(words: &str) -> String {
     line("Caution", &sanitized(words))
 }

@@ -1,4 +1,4 @@
-//! Progress of a command: on a terminal, or passed on to a program that embeds the commands.
+//! A command's progress: on a terminal, or passed on to a program that embeds the commands.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use gdcm_model::progress::Progress;
 use super::interruption::Interruptible;
 use super::terminal::shows_progress;
 
-/// Where a command reports the progress of its parts.
+/// Destination to which a command reports the progress of its parts.
 #[derive(Clone, Copy)]
 pub(super) enum ProgressReceiver<'a> {
     /// A bar on the terminal.
@@ -33,7 +33,7 @@ impl<'a> ProgressReceiver<'a> {
     }
 }
 
-/// Progress of a part of the work, passed on with the label of the part.
+/// Progress in one part of the work, passed on with the part's label.
 struct NamedProgress<'a> {
     receiver: &'a dyn Progress,
     work: String,
@@ -50,7 +50,7 @@ impl Progress for NamedProgress<'_> {
     }
 }
 
-/// Progress of reading files, shown only on a terminal.
+/// Progress while files are read, shown only on a terminal.
 pub(super) struct ReadingProgress {
     bar: ProgressBar,
 }
@@ -84,7 +84,7 @@ impl Drop for ReadingProgress {
 const QUICK: Duration = Duration::from_millis(500);
 
 /// Progress bar on standard error, if that is a terminal, once the work has taken [`QUICK`]. While
-/// the bar exists, Ctrl+C stops the work at its next step, with a message and the exit status of
+/// the bar exists, Ctrl+C stops the work at its next step, with a message and the exit status for
 /// incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,

@@ -20,7 +20,7 @@ use super::terminal::{caution, note};
 
 /// Records from which models are identified jointly.
 pub(super) struct RecordGroup {
-    /// Condition of the records; `None` without a dataset.
+    /// The records' condition; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
     pub(super) records: Vec<LaidOutRecord>,
 }
@@ -28,7 +28,7 @@ pub(super) struct RecordGroup {
 /// A dataset that receives identified models.
 pub(super) struct ReceivingDataset {
     pub(super) dataset: Arc<Dataset>,
-    /// Path of the extended dataset.
+    /// Path for the extended dataset.
     pub(super) path: PathBuf,
     /// Condition that receives all records; `None` if each record goes to the condition in its
     /// name.
@@ -64,8 +64,8 @@ impl ReceivingDataset {
         }))
     }
 
-    /// Groups the records by condition, in the order of the dataset. Omitted records are reported
-    /// on standard error.
+    /// Groups the records by condition, ordered as in the dataset. Omitted records are reported on
+    /// standard error.
     pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
         match self.condition {
             Some(condition) => Ok(vec![group_for_condition(condition, records)?]),
@@ -141,8 +141,8 @@ impl ReceivingDataset {
     }
 }
 
-/// Returns the group of a condition. Records whose names give another condition are omitted and
-/// reported on standard error.
+/// Returns a condition's group. Records whose names give another condition are omitted and reported
+/// on standard error.
 fn group_for_condition(
     condition: ConditionId,
     records: Vec<LaidOutRecord>,
@@ -186,7 +186,7 @@ pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
     named.join(", ")
 }
 
-/// Adapts a dataset to a file in another folder: prefixes the paths of records with `folder`, and
+/// Adapts a dataset to a file in another folder: prefixes the record paths with `folder`, and
 /// replaces the description if a new one is given.
 fn moved_dataset(
     dataset: &Dataset,

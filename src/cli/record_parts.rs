@@ -1,7 +1,7 @@
 //! Parts of flight records, selected by time (`--part`).
 //!
-//! A record and the parts cut from it have the same source (file and variable within the file), which
-//! differs between records. Cutting keeps the time span of each record ([`WholeRecord`]), because
+//! A record and the parts cut from it have the same source (file and variable within the file),
+//! which differs between records. Cutting keeps each record's time span ([`WholeRecord`]), because
 //! times may count from its first sample.
 
 use std::path::Path;
@@ -19,7 +19,7 @@ pub(super) struct CutRecords {
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// Cuts the requested parts from the records. `span_s` returns the first and last time of a record
+/// Cuts the requested parts from the records. `span_s` returns a record's first and last time
 /// \[s\], `None` if its columns are unclear; such a record is kept whole, so that its problems are
 /// reported.
 ///
@@ -89,12 +89,12 @@ pub(super) struct WholeRecord {
 }
 
 impl WholeRecord {
-    /// Returns whether a table is this record or a part of it.
+    /// Returns whether a table is this record or a part cut from it.
     fn is_source_of(&self, table: &RecordTable) -> bool {
         self.source == table.source
     }
 
-    /// Returns the first and last time \[s\] of a part on this record's time axis.
+    /// Returns a part's first and last time \[s\] on this record's time axis.
     fn times_s(&self, part: &RecordPart) -> [f64; 2] {
         part.on_clock_s(self.span_s[0])
     }
@@ -107,7 +107,7 @@ impl WholeRecord {
 }
 
 /// Returns whether a table is the requested part; a record with unclear columns, which was not cut,
-/// counts as every part requested of it.
+/// counts as every part requested from it.
 pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
     if let Some(record) = &part.record
         && !is_called(table, record)
@@ -138,14 +138,14 @@ fn identifies(wanted: &str, name: &str, source: &RecordSource) -> bool {
         || source.variable.as_deref() == Some(wanted)
 }
 
-/// Returns whether a table is a part of the record named `wanted`: the name of a part is the name of
-/// the whole record, a comma and the times.
+/// Returns whether a table was cut from the record named `wanted`: a part's name is the whole
+/// record's name, a comma and the times.
 fn is_cut_from(table: &RecordTable, wanted: &str) -> bool {
     let rest = table.name.strip_prefix(wanted);
     table.part_s.is_some() && rest.is_some_and(|rest| rest.starts_with(", "))
 }
 
-/// Returns the failure for a part without samples; it lists the time spans of the records.
+/// Returns the failure for a part without samples; it lists the records' time spans.
 pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) -> Failure {
     let times = part.words();
     let spans = listed_spans(part, wholes);
@@ -183,7 +183,7 @@ fn listed_spans(part: &RecordPart, wholes: &[WholeRecord]) -> String {
     listed
 }
 
-/// Returns the hint that the same times may be given from the start of a record; empty for negative
+/// Returns the hint that the same times may be given from a record's start; empty for negative
 /// times, which lie before the start.
 fn from_start_hint(part: &RecordPart) -> String {
     let [from, to] = part.part_s;

@@ -21,7 +21,7 @@ pub(super) fn apply_record_remedies(
     records: &mut [LaidOutRecord],
     channels: &RecordChannels,
 ) -> Result<(), Failure> {
-    // Option, full record name and channel of the values so far: a record can be identified in
+    // Option, full record name and channel for each value so far: a record can be identified in
     // several ways, but may have each value only once.
     let mut applied: Vec<(&str, String, &str)> = Vec::new();
     for RecordRemedy {

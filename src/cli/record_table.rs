@@ -1,4 +1,4 @@
-//! Printed table of the records from which models are identified.
+//! Table, as printed, of the records from which models are identified.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::telling;
@@ -30,7 +30,7 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     indented(&table, indent)
 }
 
-/// Time axis of a record as used, after resampling of topics and cutting of parts.
+/// A record's time axis as used, after resampling topics and cutting parts.
 struct RecordClock {
     samples: usize,
     /// Median step \[s\]; NaN if unknown.

@@ -11,7 +11,7 @@ use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
 use super::identify_arguments::RecordArguments;
 
-/// Returns the identification band; by default the band of the dataset.
+/// Returns the identification band; by default the dataset's band.
 pub(super) fn requested_band(
     arguments: &RecordArguments,
     dataset: Option<&Dataset>,
@@ -73,8 +73,8 @@ fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
     }
 }
 
-/// Returns the channels listed on the command line; channels without a unit take the unit of the
-/// first record.
+/// Returns the channels listed on the command line; channels without a unit take the first record's
+/// unit.
 fn named_channels(arguments: &RecordArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
@@ -85,7 +85,7 @@ fn named_channels(arguments: &RecordArguments) -> RecordChannels {
     }
 }
 
-/// Returns the channels of the dataset, in its units; columns may be given on the command line.
+/// Returns the dataset's channels, in its units; columns may be given on the command line.
 fn channels_of_dataset(
     arguments: &RecordArguments,
     dataset: &Dataset,
@@ -100,7 +100,7 @@ fn channels_of_dataset(
     Ok(channels)
 }
 
-/// Sets the column of a channel of the dataset; rejects a unit that differs from the dataset's.
+/// Sets the column for a channel in the dataset; rejects a unit that differs from the dataset's.
 fn set_column(
     option: &'static str,
     channel: &SaidChannel,
@@ -132,7 +132,7 @@ fn set_column(
     Ok(())
 }
 
-/// Adds the reference channels to the inputs, after those of the model, because both are read in
+/// Adds the reference channels to the inputs, after the model's channels, because both are read in
 /// the same way.
 fn add_references(
     arguments: &RecordArguments,
@@ -183,7 +183,7 @@ fn check_held(arguments: &RecordArguments, channels: &RecordChannels) -> Result<
     Ok(())
 }
 
-/// Returns the preparation of the channels, which removes the given delays.
+/// Returns the channels' preparation, which removes the given delays.
 pub(super) fn requested_preparation(
     arguments: &RecordArguments,
     channels: &RecordChannels,
@@ -205,7 +205,7 @@ pub(super) fn requested_preparation(
     })
 }
 
-/// Returns the preparation of each channel, which removes its delay if one is given.
+/// Returns each channel's preparation, which removes its delay if one is given.
 fn without_delays(rules: &[ChannelRule], delays: &[&ChannelValue<f64>]) -> Vec<ChannelPreparation> {
     let mut prepared = Vec::new();
     for rule in rules {
@@ -231,7 +231,7 @@ pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
     Failure::coded_option(option, "unknown-channel", reason)
 }
 
-/// Applies the declarations of an option to the channels; rejects unknown channels and duplicates.
+/// Applies an option's declarations to the channels; rejects unknown channels and duplicates.
 pub(super) fn declare_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,

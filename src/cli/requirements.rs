@@ -1,5 +1,5 @@
-//! `gdcm requirements`: computes the metrics required for a qualification for the models of every
-//! condition, writes them to files and prints a short table.
+//! `gdcm requirements`: computes the metrics required for a qualification from every condition's
+//! models, writes them to files and prints a short table.
 
 use gdcm_io::files::levels_and_tolerances::{add_levels, add_tolerances};
 use gdcm_io::files::requirements_file::{
@@ -104,7 +104,7 @@ fn tolerance_line(
     Ok(line("Tolerances", &words))
 }
 
-/// Adds the file of level boundaries to the outputs if requested, and returns a line about it.
+/// Adds the level-boundary file to the outputs if requested, and returns a line about it.
 fn level_line(
     arguments: &RequirementsArguments,
     study: &Study,
@@ -156,7 +156,7 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
 }
 
-/// Returns the counts of met requirements, and the grid of the own corrections.
+/// Counts the met requirements, and returns the grid for the conditions' own corrections.
 fn grid_section(results: RequirementResults<'_>) -> String {
     let mut text = String::new();
     let own = results.grid(RequirementRole::Corrected);
@@ -218,8 +218,8 @@ fn summary_section(requirements: &Requirements) -> String {
     line("Summary", words) + &indented(&table, 2)
 }
 
-/// Counts the modes within their tolerances: of the physics models and, if couplings change the
-/// modes, of the corrected models.
+/// Counts the modes within their tolerances: in the physics models and, if couplings change the
+/// modes, in the corrected models.
 fn mode_section(requirements: &Requirements) -> String {
     let modes = &requirements.modes;
     let physics: Vec<ModeVerdict> = modes.iter().map(|mode| mode.verdict).collect();
@@ -250,8 +250,8 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
     format!("{model} compared with identified: {}", counts.join(", "))
 }
 
-/// Returns a table of the shares of time within the tolerances, limited to quantities for which a
-/// model leaves them, and a table of the rms errors.
+/// Returns a table with the shares of time within the tolerances, limited to quantities for which a
+/// model leaves them, and a table with the rms errors.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {

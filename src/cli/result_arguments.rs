@@ -1,4 +1,4 @@
-//! Options for the commands that write results of an analysis.
+//! Options for commands that write the results of an analysis.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Printed summary of the schedule: scheduled net gains and delays over airspeed.
+//! Schedule summary, as printed: scheduled net gains and delays over airspeed.
 
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
 use gdcm_model::dataset::Pair;
@@ -19,7 +19,7 @@ pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     shown.marked().collect()
 }
 
-/// Returns tables of the scheduled net gains and delays over airspeed, for the responses in
+/// Returns tables with the scheduled net gains and delays over airspeed, for the responses in
 /// [`shown_pairs`].
 pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let schedule = match &analysis.schedule {
@@ -51,7 +51,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Describes the kind, airspeed range and second variable of a schedule.
+/// Describes a schedule's kind, airspeed range and second variable.
 fn schedule_words(schedule: &Schedule) -> String {
     let quantity = match schedule.settings.quantity {
         ScheduledQuantity::LnGain => "ln k",
@@ -82,7 +82,7 @@ enum NetQuantity {
     Delay,
 }
 
-/// Returns a table of a scheduled quantity over airspeed.
+/// Returns a table with a scheduled quantity over airspeed.
 fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantity) -> String {
     /// Fractions of the airspeed range at which the table has rows.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];

@@ -1,7 +1,7 @@
-//! Cautions of all conditions: a table of the cautions of kinds that usually recur in many
-//! conditions, and a line for each other caution, merged over the conditions with equal text.
+//! Cautions about all conditions: a table for kinds that usually recur in many conditions, and a
+//! line for each other caution, merged over the conditions with equal text.
 //!
-//! A caution is a [`Remark`] of the kind [`RemarkKind::Caution`].
+//! A caution is a [`Remark`] with the kind [`RemarkKind::Caution`].
 
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
@@ -20,14 +20,14 @@ use super::condition_messages::{ConditionMessage, shared_messages};
 use super::printed_lines::{indented, line};
 use super::terminal::{keep_caution, keep_summary};
 
-/// Cautions about a condition of the recurring kinds, which a table lists.
+/// A condition's recurring cautions, which a table lists.
 struct RecurringRow {
     condition: ConditionId,
     cautions: Vec<Remark>,
 }
 
-/// Returns the cautions of recurring kinds as a table, and each other caution once with its
-/// conditions; also adds them to the JSON object.
+/// Returns the recurring cautions as a table, and each other caution once with its conditions; also
+/// adds them to the JSON object.
 pub(super) fn cautions_section(analysis: &Analysis) -> String {
     let mut rows: Vec<RecurringRow> = Vec::new();
     let mut others: Vec<ConditionMessage> = Vec::new();
@@ -77,15 +77,15 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Code of a caution, with the conditions that it is about; without conditions, it is about the
+/// A caution's code, with the conditions that it is about; without conditions, it is about the
 /// whole study.
 pub(super) struct CodedCaution {
     pub(super) code: &'static str,
     pub(super) conditions: Vec<ConditionId>,
 }
 
-/// Collects the codes of all cautions: doubts about signs and units, cautions about conditions,
-/// couplings, and the schedule.
+/// Collects all caution codes: doubts about signs and units, cautions about conditions, couplings,
+/// and the schedule.
 pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
     let mut coded = Vec::new();
     for doubt in &analysis.doubts {
@@ -120,7 +120,7 @@ pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
     coded
 }
 
-/// Adds a condition to the entry of a code; the first occurrence of a code adds the entry.
+/// Adds a condition to the entry for a code; the first occurrence of a code adds the entry.
 fn add_code(coded: &mut Vec<CodedCaution>, code: &'static str, id: Option<ConditionId>) {
     let place = match coded.iter().position(|known| known.code == code) {
         Some(place) => place,
@@ -188,7 +188,7 @@ fn recurring_table(dataset: &Dataset, rows: &[RecurringRow]) -> String {
     line("Cautions", &format!("{sentence}:")) + &indented(&table, 2)
 }
 
-/// Explains the cell entries of the response columns.
+/// Explains the entries in the response columns.
 fn pair_sentences(cautions: &[&Remark]) -> Vec<&'static str> {
     let mut sentences = Vec::new();
     if cautions
@@ -249,19 +249,19 @@ fn pair_cell(cautions: &[&Remark], pair: Pair) -> String {
     }
 }
 
-/// Text of an empty cell.
+/// Text in an empty cell.
 const NO_ENTRY: &str = NO_VALUE;
 
-/// A column of the table for a recurring caution that does not concern single responses.
+/// A column for a recurring caution that does not concern single responses.
 struct RecurringColumn {
     heading: &'static str,
     sentence: &'static str,
-    /// Returns the cell of a caution; `None` if the caution does not belong in the column.
+    /// Returns a caution's cell; `None` if the caution does not belong in the column.
     format: fn(&Remark, &Dataset) -> Option<String>,
 }
 
 impl RecurringColumn {
-    /// Returns the cell of the first caution that belongs in the column.
+    /// Returns the cell for the first caution that belongs in the column.
     fn cell(&self, cautions: &[&Remark], dataset: &Dataset) -> Option<String> {
         cautions
             .iter()

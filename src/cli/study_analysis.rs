@@ -1,4 +1,4 @@
-//! The analysis of a study by a command.
+//! Analysing a study in a command.
 
 use std::sync::Arc;
 

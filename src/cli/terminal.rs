@@ -1,4 +1,4 @@
-//! Output of a command: results on standard output; notes, cautions and errors on standard error.
+//! A command's output: results on standard output; notes, cautions and errors on standard error.
 //! Alternatively, a single JSON object with all of these.
 
 use std::cell::RefCell;
@@ -16,7 +16,7 @@ use gdcm_verify::CheckResult;
 use super::condition_messages::with_conditions;
 use super::failure::Failure;
 
-/// Output format of a command.
+/// Format for a command's output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct OutputFormat {
     /// Whether notes are omitted.
@@ -34,13 +34,13 @@ struct Messages {
     /// Text that would otherwise be printed on standard output.
     text: String,
     notes: Vec<String>,
-    /// Stable code of each note.
+    /// Stable code for each note.
     note_codes: Vec<&'static str>,
     cautions: Vec<Caution>,
     errors: Vec<String>,
-    /// Stable code of each error.
+    /// Stable code for each error.
     error_codes: Vec<&'static str>,
-    /// Comparisons of `gdcm verify`.
+    /// Comparisons made by `gdcm verify`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     checks: Vec<ComparedCheck>,
 }
@@ -48,9 +48,9 @@ struct Messages {
 /// A comparison with independent figures.
 #[derive(Debug, Serialize)]
 struct ComparedCheck {
-    /// Stable code of the comparison.
+    /// Stable code for the comparison.
     code: &'static str,
-    /// Sections of the method: "M8".
+    /// Sections in the description of the method: "M8".
     sections: &'static str,
     passed: bool,
     instances: Option<usize>,
@@ -59,7 +59,7 @@ struct ComparedCheck {
     worst: Option<f64>,
     tolerance: f64,
     measure: &'static str,
-    /// Code of the reason why nothing could be compared.
+    /// Code for the reason why nothing could be compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     fault: Option<&'static str>,
 }
@@ -94,7 +94,7 @@ impl ComparedCheck {
     }
 }
 
-/// The JSON object, with the name and the version of its format.
+/// The JSON object, with its format's name and version.
 #[derive(Serialize)]
 struct MessagesText<'m> {
     format: &'static str,
@@ -116,9 +116,9 @@ impl<'m> MessagesText<'m> {
 /// A caution with its conditions; without conditions, it concerns the whole result.
 #[derive(Debug, Serialize)]
 struct Caution {
-    /// Stable code of the kind of caution.
+    /// Stable code for the kind of caution.
     code: &'static str,
-    /// Codes of the cautions that a table summarises.
+    /// Codes for the cautions that a table summarises.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     summarised_codes: Vec<&'static str>,
     text: String,
@@ -126,13 +126,13 @@ struct Caution {
 }
 
 thread_local! {
-    /// Output of the command that this thread carries out. Only the thread that begins a command
+    /// Output from the command that this thread carries out. Only the thread that begins a command
     /// writes output; a program that embeds the commands may carry out several at once.
     static MESSAGES: RefCell<Messages> = RefCell::default();
 }
 
-/// Carries out `work`, and returns its result together with its output as the JSON object, of which
-/// nothing is printed.
+/// Carries out `work`, and returns its result together with its output as the JSON object; prints
+/// nothing.
 pub(super) fn collected<T>(work: impl FnOnce() -> T) -> (T, serde_json::Value) {
     let before = MESSAGES.take();
     set_output(OutputFormat {
@@ -145,7 +145,7 @@ pub(super) fn collected<T>(work: impl FnOnce() -> T) -> (T, serde_json::Value) {
     (result, object)
 }
 
-/// Sets the output format of the command.
+/// Sets the command's output format.
 pub(super) fn set_output(output: OutputFormat) {
     MESSAGES.with_borrow_mut(|messages| messages.output = output);
 }
@@ -248,7 +248,7 @@ pub(super) fn keep_summary(
     MESSAGES.with_borrow_mut(|messages| messages.cautions.push(caution));
 }
 
-/// Adds the comparisons of `gdcm verify` to the JSON object.
+/// Adds the comparisons from `gdcm verify` to the JSON object.
 pub(super) fn keep_checks(results: &[CheckResult]) {
     let checks = results.iter().map(ComparedCheck::new).collect();
     MESSAGES.with_borrow_mut(|messages| messages.checks = checks);

@@ -22,7 +22,7 @@ use super::terminal::{caution, note};
 use crate::executor::Pool;
 use crate::message_codes::{layout_caution_code, layout_problem_code};
 
-/// Flight records of each condition, and those that could not be read.
+/// Each condition's flight records, and those that could not be read.
 #[derive(Default)]
 pub(super) struct ReadHistories {
     pub(super) conditions: Vec<HistoryRecords>,
@@ -31,8 +31,8 @@ pub(super) struct ReadHistories {
 }
 
 impl ReadHistories {
-    /// Returns the outcome of a command that used these records: a failure if some of them were not
-    /// read completely.
+    /// Returns the outcome for a command that used these records: a failure if some were not read
+    /// completely.
     pub(super) fn into_outcome(self) -> Result<(), Failure> {
         if self.unread.is_empty() {
             return Ok(());
@@ -43,7 +43,7 @@ impl ReadHistories {
     }
 }
 
-/// Reads the records of each condition. Topics are resampled to a sample rate suitable for `band`;
+/// Reads each condition's records. Topics are resampled to a sample rate suitable for `band`;
 /// omitted records are reported on standard error.
 pub(super) fn read_histories(
     arguments: &HistoryArguments,
@@ -63,7 +63,7 @@ pub(super) fn read_histories(
         SaidConversion::Unit,
         &mut channels,
     )?;
-    // The records, and at the same index the condition of each.
+    // The records, and at the same index each record's condition.
     let mut records: Vec<LaidOutRecord> = Vec::new();
     let mut ids: Vec<ConditionId> = Vec::new();
     for table in with_topics_joined(tables, &channels, &TimeWish::default()) {
@@ -99,7 +99,7 @@ pub(super) fn read_histories(
     Ok(ReadHistories { conditions, unread })
 }
 
-/// Computes the responses of the models to the records; shows the progress on a terminal.
+/// Computes the models' responses to the records; shows the progress on a terminal.
 pub(super) fn simulated_histories(
     analysis: &Analysis,
     records: &ReadHistories,
@@ -131,8 +131,8 @@ impl ConditionRecord {
     }
 }
 
-/// Assigns the columns of a record, as stated in the dataset if it lists the record, and determines
-/// the condition.
+/// Assigns a record's columns, as stated in the dataset if it lists the record, and determines the
+/// condition.
 fn laid_out_record(
     table: RecordTable,
     dataset: &Dataset,
@@ -154,7 +154,7 @@ fn laid_out_record(
     ConditionRecord { condition, record }
 }
 
-/// Reports the cautions and problems of a record, and why it is omitted.
+/// Reports a record's cautions and problems, and why it is omitted.
 fn report_record(laid_out: &ConditionRecord) {
     let record = &laid_out.record;
     let name = &record.table.name;

@@ -49,7 +49,7 @@ fn machine_words() -> String {
     format!("{ARCH} {OS}, {cores}, {}", instruction_words())
 }
 
-/// Names the widest vector instructions of the processor, on which the rounding of results depends.
+/// Names the processor's widest vector instructions, on which the rounding of results depends.
 #[cfg(target_arch = "x86_64")]
 fn instruction_words() -> &'static str {
     if std::arch::is_x86_feature_detected!("avx512f") {

@@ -1,4 +1,4 @@
-//! Figures of results, written as SVG, PDF and PNG.
+//! Figures that show results, written as SVG, PDF and PNG.
 //!
 //! **Question answered:** how is a result drawn, on paper and on the screen?
 //!

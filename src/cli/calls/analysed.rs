@@ -1,4 +1,4 @@
-//! The analysis of a study in memory, and what follows from it.
+//! An analysed study in memory, and its results.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -34,25 +34,25 @@ pub struct AnalysedStudy {
     data: OpenedData,
 }
 
-/// A figure of an analysed study.
+/// A figure drawn from an analysed study.
 pub struct DrawnFigure {
     figure: Figure,
     width: ColumnWidth,
 }
 
-/// Physics model of a condition, and its correction.
+/// A condition's physics model, and its correction.
 #[derive(Clone, Debug)]
 pub struct ModelChoice {
     pub condition: i64,
     /// "nominal", "representative", or the name of a physics model.
     pub model: String,
-    /// Whether the schedule's correction is applied instead of the condition's own.
+    /// Whether the schedule's correction is applied; otherwise the condition's own.
     pub is_scheduled: bool,
-    /// Order of the Padé approximants of delays, where delays become states.
+    /// Order of the Padé approximants by which delays become states.
     pub pade: usize,
 }
 
-/// Analyses a dataset or a study with the options of `gdcm analyze` that override its decisions.
+/// Analyses a dataset or a study with those options of `gdcm analyze` that override its decisions.
 ///
 /// # Errors
 /// An option is wrong, no condition has a result, or the work was stopped.
@@ -76,7 +76,7 @@ pub fn analyze(
 }
 
 impl AnalysedStudy {
-    /// Returns the study with the decisions of the analysis.
+    /// Returns the study with the decisions on which the analysis is based.
     pub fn data(&self) -> &OpenedData {
         &self.data
     }
@@ -88,7 +88,7 @@ impl AnalysedStudy {
         corrections(analysis, &self.data.loaded.sha256, &chosen).to_string()
     }
 
-    /// Returns the printed summary of `gdcm analyze`; its cautions are among the messages.
+    /// Returns the summary that `gdcm analyze` prints; its cautions are among the messages.
     ///
     /// # Errors
     /// The threads cannot be started.
@@ -117,7 +117,8 @@ impl AnalysedStudy {
     }
 
     /// Returns the schedule's correction at an airspeed \[kt\] and a second variable, as JSON:
-    /// `gains`, `delays_s` and `lead`. Without the second variable, it is the middle of its range.
+    /// `gains`, `delays_s` and `lead`. If the second variable is not given, it is the middle of its
+    /// range.
     ///
     /// # Errors
     /// There is no schedule.
@@ -130,7 +131,7 @@ impl AnalysedStudy {
         Ok(channel_correction(analysis, &correction.value).to_string())
     }
 
-    /// Returns the response of a corrected model at the frequencies `omega` \[rad/s\], by output and
+    /// Returns a corrected model's response at the frequencies `omega` \[rad/s\], by output and
     /// input. Delays are exact.
     ///
     /// # Errors
@@ -183,7 +184,7 @@ impl AnalysedStudy {
         })
     }
 
-    /// Writes the files of `gdcm analyze` into a folder.
+    /// Writes the same files as `gdcm analyze` into a folder.
     ///
     /// # Errors
     /// A file exists and is not to be replaced, or cannot be written.
@@ -226,12 +227,12 @@ impl ModelChoice {
 }
 
 impl DrawnFigure {
-    /// Returns the title of the figure.
+    /// Returns the figure's title.
     pub fn title(&self) -> &str {
         &self.figure.title
     }
 
-    /// Returns the contents of a file of the figure.
+    /// Returns the contents of a file that shows the figure.
     ///
     /// # Errors
     /// The figure cannot be drawn in this format.
@@ -259,7 +260,7 @@ impl DrawnFigure {
     }
 }
 
-/// Returns the format of figures with this extension; SVG for an unknown one.
+/// Returns the figure format with this extension; SVG for an unknown one.
 pub fn figure_format_named(extension: &str) -> FigureFormat {
     for format in FigureFormat::ALL {
         if format.extension() == extension {

@@ -1,4 +1,4 @@
-//! Error of a call, with the code of the command.
+//! Error in a call, with the same code as in the command.
 
 use std::fmt;
 
@@ -11,14 +11,14 @@ use crate::cli::failure::Failure;
 /// Reason why a call has no result.
 #[derive(Clone, Debug)]
 pub struct CallError {
-    /// Stable code, as that of the command.
+    /// Stable code, the same as in the command.
     pub code: &'static str,
     pub text: String,
-    /// Exit status of the command.
+    /// The command's exit status.
     pub status: u8,
-    /// What the text is about, by name: `option`, `path`, `line`.
+    /// Details that the text mentions, by name: `option`, `path`, `line`.
     pub fields: Box<Map<String, Value>>,
-    /// What the command would print before the error, as the object of `--json`.
+    /// Messages that the command would print before the error, as the object that `--json` prints.
     pub messages: Box<Value>,
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for CallError {
 
 impl std::error::Error for CallError {}
 
-/// Returns the values in the text of a failure, by name.
+/// Returns the values in a failure's text, by name.
 fn failure_fields(failure: &Failure) -> Map<String, Value> {
     let fields = match failure {
         Failure::File(error) => return file_fields(error),
@@ -73,7 +73,7 @@ fn failure_fields(failure: &Failure) -> Map<String, Value> {
     }
 }
 
-/// Returns the path of a file error, and where it has them the place in the content, the line and
+/// Returns the path in a file error, and where it has them the place in the content, the line and
 /// the column.
 fn file_fields(error: &FileError) -> Map<String, Value> {
     let mut fields = Map::new();

@@ -94,11 +94,11 @@ impl IdentifiedRecords {
         Ok(text?.value)
     }
 
-    /// Returns the response of a model at the frequencies `omega` \[rad/s\], by output and input;
-    /// without a name, that of the recommended model.
+    /// Returns a model's response at the frequencies `omega` \[rad/s\], by output and input;
+    /// without a name, the recommended model's.
     ///
     /// # Errors
-    /// There is no model of this name.
+    /// There is no model with this name.
     pub fn response(&self, model: Option<&str>, omega: &[f64]) -> Result<Responses, CallError> {
         let response = called(|| Ok(response_of(&self.model(model)?.dynamics, omega)));
         Ok(response?.value)
@@ -133,7 +133,7 @@ impl IdentifiedRecords {
         Ok(())
     }
 
-    /// Returns a dataset in which these models are the identified models of a condition: the
+    /// Returns a dataset in which these models are the identified models in a condition: the
     /// recommended model, those of neighbouring orders and those without one record each
     /// ("refined"), these and the unrefined one ("with-unrefined"), or the measured response
     /// ("measured").
@@ -163,7 +163,7 @@ impl IdentifiedRecords {
         })
     }
 
-    /// Checks that the models have the channels of a dataset, in its order and units.
+    /// Checks that the models have a dataset's channels, in its order and units.
     fn check_channels(&self, data: &OpenedData) -> Result<(), Failure> {
         let dataset = data.dataset();
         let channels = &self.described.channels;

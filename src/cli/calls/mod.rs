@@ -1,8 +1,8 @@
 //! The commands as functions, for programs that embed this crate, such as the Python module.
 //!
-//! A call takes the options of its command as on the command line, and returns the result in memory
-//! instead of writing it to files. What the command would print is returned beside the result, as
-//! the object of `--json`. Several threads may call at once.
+//! A call takes its command's options as on the command line, and returns the result in memory
+//! rather than in files. The text that the command would print is returned beside the result, as
+//! the object that `--json` prints. Several threads may call at once.
 
 mod analysed;
 mod error;
@@ -35,11 +35,11 @@ pub use opened::{Assembled, OpenedData, assemble};
 /// Frequency responses by output and input.
 pub type Responses = PairTable<Vec<Complex<f64>>>;
 
-/// Result of a call, with what the command would print.
+/// A call's result, with the messages that the command would print.
 #[derive(Clone, Debug)]
 pub struct Called<T> {
     pub value: T,
-    /// Notes, cautions and text, as the object of `--json`.
+    /// Notes, cautions and text, as the object that `--json` prints.
     pub messages: Value,
 }
 
@@ -53,7 +53,7 @@ impl<T> Called<T> {
     }
 }
 
-/// Returns the response of a model at the frequencies `omega` \[rad/s\], by output and input.
+/// Returns a model's response at the frequencies `omega` \[rad/s\], by output and input.
 fn response_of(dynamics: &Dynamics, omega: &[f64]) -> Responses {
     let grid = FrequencyGrid::at(omega.to_vec());
     FrequencyResponse::from_dynamics(dynamics, &grid)
@@ -61,7 +61,7 @@ fn response_of(dynamics: &Dynamics, omega: &[f64]) -> Responses {
         .clone()
 }
 
-/// Carries out the work of a call, and collects what it would print.
+/// Carries out a call, and collects the messages that it would print.
 fn called<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<Called<T>, CallError> {
     let (result, messages) = collected(|| {
         start_threads().map_err(|reason| Failure::NoThreads { reason })?;
@@ -73,13 +73,13 @@ fn called<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<Called<T>, Cal
     }
 }
 
-/// Returns the zip archive with the flight records of the example, or of the real aircraft.
+/// Returns the zip archive with the example's flight records, or with the real aircraft's.
 pub fn example_records(is_real: bool) -> &'static [u8] {
     chosen_example(is_real).records()
 }
 
-/// Returns the names of the options of a command, such as "--band"; none for a command that cannot
-/// be called.
+/// Returns the names of a command's options, such as "--band"; none for a command that cannot be
+/// called.
 pub fn option_names_of(command: &str) -> Vec<String> {
     match command {
         "analyze" => option_names::<StudyArguments>(),

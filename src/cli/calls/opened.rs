@@ -1,4 +1,4 @@
-//! Datasets and studies in memory: read from files, assembled, or made of text.
+//! Datasets and studies in memory: read from files, assembled, or made from text.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ use crate::cli::study_arguments::OpeningArguments;
 use crate::cli::terminal::{caution, error};
 use crate::cli::{chosen_example, existing, open};
 
-/// A dataset with the decisions of a study about it.
+/// A dataset with a study's decisions about it.
 #[derive(Clone)]
 pub struct OpenedData {
     pub(super) study: Study,
@@ -104,7 +104,7 @@ impl OpenedData {
         &self.loaded.dataset
     }
 
-    /// Returns the source of the dataset: the path of its file, or a description in parentheses.
+    /// Returns the dataset's source: the path to its file, or a description in parentheses.
     pub fn source(&self) -> String {
         self.loaded.origin.to_string()
     }
@@ -141,8 +141,8 @@ impl OpenedData {
         Ok(())
     }
 
-    /// Returns the response of a model of the dataset at the frequencies `omega` \[rad/s\], by
-    /// output and input. Delays are exact.
+    /// Returns a response of a model in the dataset at the frequencies `omega` \[rad/s\], by output
+    /// and input. Delays are exact.
     ///
     /// # Errors
     /// The dataset has no such model.
@@ -191,7 +191,7 @@ fn save(
     Ok(())
 }
 
-/// Returns the path of the dataset that is written beside a study: "aw.dataset.json.gz" for
+/// Returns the path for the dataset that is written beside a study: "aw.dataset.json.gz" for
 /// "aw.gdcm-study.json".
 fn path_of_dataset(study: &Path) -> PathBuf {
     let name = study
@@ -217,7 +217,7 @@ fn report_file_cautions(loaded: &LoadedDataset) {
 /// A dataset assembled from model files, with its rules.
 pub struct Assembled {
     pub data: OpenedData,
-    /// Rules that the files were read by, as the text of a file of rules.
+    /// Rules by which the files were read, as the text of a rules file.
     pub rules: Vec<u8>,
 }
 

@@ -1,4 +1,4 @@
-//! Options of a call, written as on the command line.
+//! A call's options, written as on the command line.
 
 use std::ffi::OsString;
 
@@ -7,7 +7,7 @@ use clap::{Args, Command};
 use crate::cli::command_line::{usage_words, with_values_joined};
 use crate::cli::failure::Failure;
 
-/// Reads the options of a command.
+/// Reads a command's options.
 ///
 /// # Errors
 /// An option is unknown or incomplete, or its value cannot be read.
@@ -22,7 +22,7 @@ pub(super) fn parsed<A: Args>(options: impl IntoIterator<Item = OsString>) -> Re
     }
 }
 
-/// Returns the names of a command's options, such as "--band", in the order of its help.
+/// Returns the names of a command's options, such as "--band", in the same order as its help.
 pub(super) fn option_names<A: Args>() -> Vec<String> {
     let command = A::augment_args(Command::new("gdcm"));
     let mut names = Vec::new();

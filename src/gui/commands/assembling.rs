@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use gdcm_model::assembly::Rules;
 
-/// Command of the import view.
+/// Command in the import view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblingCommand {
     /// Start the import, or return to it.

@@ -15,7 +15,7 @@ use crate::gui::widgets::list_row::row_ui;
 use crate::gui::widgets::painted_text::{Room, row_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Height of the list \[pt\].
+/// List height \[pt\].
 const HEIGHT: f32 = 340.0;
 /// Maximum number of drawn rows; typing further letters shortens a longer list.
 const MOST_ROWS: usize = 60;
@@ -129,7 +129,7 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
     response.on_hover_text(entry.meaning)
 }
 
-/// Score of the match between a name and a query; a better match compares greater.
+/// Quality of the match between a name and a query; a better match compares greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MatchScore {
     /// False for an undo or redo command, unless the query asks for it: its name contains the last
@@ -139,13 +139,13 @@ pub struct MatchScore {
     words: usize,
     /// Sum of the word scores in the name before the first `(` or `:`, that is, without arguments.
     words_of_command: usize,
-    /// Number of letters; the shorter name is better.
+    /// Letter count; the shorter name is better.
     length: Reverse<usize>,
 }
 
-/// Scores how well a name matches a query; `None` if a word of the query is missing from the name.
+/// Scores how well a name matches a query; `None` if a word in the query is missing from the name.
 ///
-/// Every word of the query must occur in the name, in any order: as a whole word (4), at the
+/// Every word in the query must occur in the name, in any order: as a whole word (4), at the
 /// beginning of a word (3), inside a word (2), or at least as letters in the same order (1).
 pub fn match_score(name: &str, query: &str) -> Option<MatchScore> {
     let name = name.to_lowercase();
@@ -165,7 +165,7 @@ pub fn match_score(name: &str, query: &str) -> Option<MatchScore> {
     })
 }
 
-/// Returns false for a name that begins with "undo" or "redo", unless a word of the query is a
+/// Returns false for a name that begins with "undo" or "redo", unless a word in the query is a
 /// prefix of that word.
 fn is_asked(name: &str, query: &str) -> bool {
     match words_of(name).next() {
@@ -176,7 +176,7 @@ fn is_asked(name: &str, query: &str) -> bool {
     }
 }
 
-/// Scores a word of the query; `None` if the name does not even contain its letters.
+/// Scores a query's word; `None` if the name does not even contain its letters.
 fn word_score(name: &str, word: &str) -> Option<usize> {
     if words_of(name).any(|whole| whole == word) {
         Some(4)

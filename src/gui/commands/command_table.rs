@@ -1,4 +1,5 @@
-//! Table of all commands, the source for menus, shortcuts, the palette and the page about keys.
+//! Table that lists all commands, the source for menus, shortcuts, the palette and the page about
+//! keys.
 
 use egui::{Key, Modifiers};
 
@@ -74,7 +75,7 @@ fn figure_entries(view: View) -> [Entry; 2] {
     ]
 }
 
-/// Returns the entries for the flight records of the displayed condition.
+/// Returns the entries for the displayed condition's flight records.
 fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
@@ -143,7 +144,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entry that focuses a numeric field of the settings.
+/// Returns the entry that focuses a numeric field in the settings.
 fn field_entry(name: &str, option: &str, label: &'static str) -> Entry {
     Entry::new(
         format!("Set the {name} ({option})…"),

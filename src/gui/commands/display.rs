@@ -14,7 +14,7 @@ use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::state::view_pages::ViewPage;
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Changes the content of a view; no result depends on it.
+/// Changes what a view shows; no result depends on it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DisplayCommand {
     /// Selects the correction whose costs the map shows.
@@ -33,25 +33,25 @@ pub enum DisplayCommand {
     Overlay(Option<String>),
     /// Shows or hides the evidence for the schedule beside the net gains.
     ShowEvidence(bool),
-    /// Shows or hides the models of a role in the plots across conditions.
+    /// Shows or hides a role's models in the plots across conditions.
     ShowAcross(AcrossRole, bool),
-    /// Shows only the models of this role in the plots across conditions.
+    /// Shows only this role's models in the plots across conditions.
     ShowAcrossAlone(AcrossRole),
     /// Selects the conditions in the plots across conditions.
     ShowAcrossConditions(AcrossConditions),
-    /// Selects the page of the plots across conditions.
+    /// Selects the page with plots across conditions.
     ShowAcrossPage(AcrossPage),
     /// Changes the assessed quantity or its representation.
     Assess(AssessmentDisplay),
     /// Selects a physics parameter by name.
     ShowParameter(String),
-    /// Shows a page of the Physics view.
+    /// Shows a page in the Physics view.
     ShowPhysics(PhysicsPage),
-    /// Changes the selected requirement, its details, or the order of the grid.
+    /// Changes the selected requirement, its details, or the grid's order.
     ShowRequirements(RequirementsDisplay),
-    /// Selects time responses to a test input (`true`) or to the inputs of the records.
+    /// Selects time responses to a test input (`true`) or to the recorded inputs.
     ShowTest(bool),
-    /// Shows a page of a view.
+    /// Shows a view's page.
     ShowPage(ViewPage),
     SetFrequencyUnit(FrequencyUnit),
     SetLooks(PlotStyle),

@@ -12,7 +12,7 @@ use super::step_name::step_name;
 use super::study::StudyCommand;
 use crate::gui::state::window_state::{State, UndoStep};
 
-/// Returns the entries of the Edit menu.
+/// Returns the entries in the Edit menu.
 pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition().id();
     let scheduled = state.study.choice(condition).scheduled;
@@ -74,8 +74,7 @@ fn step_command(verb: &str, step: Option<&UndoStep>) -> String {
     }
 }
 
-/// Returns the entries that reject the displayed condition's suggested models, and restore all
-/// of them.
+/// Returns the entries that reject the displayed condition's suggested models, and restore all.
 fn rejection_entries(state: &State) -> [Entry; 2] {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);

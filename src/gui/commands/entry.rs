@@ -17,7 +17,7 @@ pub enum Menu {
     Help,
 }
 
-/// Where a shortcut works.
+/// Contexts in which a shortcut works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// Everywhere, also while text is being typed.

@@ -33,7 +33,7 @@ pub enum FileCommand {
     AskSaveStudy,
     /// Saves the study to another file.
     SaveStudyAs(PathBuf),
-    /// Reads the changed file of the dataset again.
+    /// Reads the dataset's changed file again.
     Reload,
     /// Keeps the open dataset although its file has changed.
     KeepOpen,

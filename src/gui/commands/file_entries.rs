@@ -15,7 +15,7 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::window_state::State;
 
-/// Returns the entries of the File menu.
+/// Returns the entries in the File menu.
 pub(super) fn file_entries(state: &State) -> Vec<Entry> {
     let export = export_entries().map(|entry| entry.enabled(state.analysis().is_some()));
     let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];

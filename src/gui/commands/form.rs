@@ -28,8 +28,8 @@ pub enum FormCommand {
     Refuse(Message),
     /// Removes the toast with this number.
     DismissToast(u64),
-    /// Opens or closes the list of toasts.
+    /// Opens or closes the toast list.
     ListToasts(bool),
-    /// Lets no time pass for the toasts in this frame, because the pointer is on them.
+    /// Pauses the toasts' timers in this frame, because the pointer is on a toast.
     HoldToasts,
 }

@@ -1,4 +1,4 @@
-//! Commands about the arrangement of views, panels and sheets.
+//! Commands that arrange views, panels and sheets.
 
 use egui::ThemePreference;
 
@@ -11,19 +11,19 @@ use crate::gui::state::view::{View, ViewGroup};
 pub enum LayoutCommand {
     /// Brings a view to the front.
     ShowView(View),
-    /// Shows the next page of the view in front, or the previous one.
+    /// Shows the next page in the view in front, or the previous one.
     TurnPage { forward: bool },
-    /// Brings a group of views to the front and shows the view that was last open in it.
+    /// Brings a view group to the front and shows the view that was last open in it.
     ShowGroup(ViewGroup),
     /// Shows a second view beside the view in front; `None` shows the view in front alone.
     ShowBeside(Option<View>),
-    /// Shows a page of the dock, and unfolds the dock.
+    /// Shows a page in the dock, and unfolds the dock.
     ShowInDock(View),
     /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
-    /// Doubles the height of the dock (`true`), or restores its usual height.
+    /// Doubles the dock's height (`true`), or restores its usual height.
     EnlargeDock(bool),
-    /// Restores the default layout of panels and views.
+    /// Restores the default layout for panels and views.
     ResetLayout,
     /// Shows the left panel in full (`true`) or as a narrow rail.
     ShowLeft(bool),

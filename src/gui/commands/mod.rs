@@ -1,7 +1,7 @@
 //! Commands, and the table from which menus, keys and palette are made.
 //!
-//! `command.rs` joins the groups of commands, one file each; `gui/app/…_commands.rs` carries them
-//! out. `command_table.rs` lists them as entries (`entry.rs`) with names and keys, and
+//! `command.rs` joins the command groups, one file each; `gui/app/…_commands.rs` carries them out.
+//! `command_table.rs` lists them as entries (`entry.rs`) with names and keys, and
 //! `command_palette.rs` searches the list.
 
 pub mod assembling;

@@ -15,11 +15,11 @@ use crate::gui::state::view::View;
 pub enum OutputCommand {
     /// Opens the desktop's dialog for the export folder.
     AskExportFolder,
-    /// Writes the files of the export dialog, once its dry run has ended.
+    /// Writes the files listed in the export dialog, once its dry run has ended.
     Export,
     /// Carries out a remedy that the export dialog offers.
     ApplyExportRemedy(ExportRemedy),
-    /// Copies the command line that writes the files of the export dialog.
+    /// Copies the command line that writes the same files as the export dialog.
     CopyExportCommand,
     /// Opens a folder in the desktop.
     ShowFolder(PathBuf),
@@ -35,7 +35,7 @@ pub enum OutputCommand {
     SaveTable(Arc<Table>, PathBuf),
     /// Copies the values shown by a view to the clipboard as CSV.
     CopyFigure(View),
-    /// Asks where to save the figure of a view.
+    /// Asks where to save a view's figure.
     AskSaveFigure(View, FigureFormat),
     /// Saves a view's figure in the format given by the file extension, with the given printed
     /// width.

@@ -21,7 +21,7 @@ pub enum RecordsCommand {
     AskFiles,
     /// Choose a folder with the desktop's dialog.
     AskFolder,
-    /// Type the path of a file, a folder or an archive.
+    /// Type the path to a file, a folder or an archive.
     AskPath,
     /// Assign these added records without a condition to a condition.
     Assign(Vec<usize>, ConditionId),
@@ -48,7 +48,7 @@ pub enum RecordsCommand {
     SetRemedies(usize, Vec<(Signal, ChannelRemedy)>),
     /// Set how steps in a staircase signal are interpreted.
     SetHold(Signal, Hold),
-    /// Set the identification band \[rad/s\]; `None` selects the band of the study.
+    /// Set the identification band \[rad/s\]; `None` selects the study's band.
     SetBand(Option<[f64; 2]>),
     /// Identify with these columns as recorded references that excited the loop externally
     /// (M14.15); an empty list selects the direct method.
@@ -59,21 +59,21 @@ pub enum RecordsCommand {
     ShowAdvanced(&'static str),
     /// The field asked for by [`Self::ShowAdvanced`] has the focus.
     AdvancedFocused,
-    /// Draw the curves of a role over time, or hide them.
+    /// Draw a role's curves over time, or hide them.
     ShowTimeRole(TimeRole, bool),
     /// Draw these outputs over time below the output in focus.
     ShowOutputs(Vec<usize>),
-    /// Confirm the assumed units, in the records of all conditions.
+    /// Confirm the assumed units, in all conditions' records.
     ConfirmUnits,
     /// Show the first record with assumed units, from any condition, on the Columns page.
     CheckUnits,
-    /// Show the columns of a record.
+    /// Show a record's columns.
     ShowColumns(RecordPlace),
-    /// Add the part between two times \[s\] as a separate record, used instead of the whole.
+    /// Add the part between two times \[s\] as a separate record, used in place of the whole.
     AddPart(usize, [f64; 2]),
     /// Move the ends \[s\] of the part in this row.
     MovePart(usize, [f64; 2]),
-    /// Remove the part of a record in this row.
+    /// Remove this row, which is a part of a record.
     RemovePart(usize),
     /// Show an input's spectrogram beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
@@ -87,7 +87,7 @@ pub enum RecordsCommand {
     Stop,
     /// Put the identified models into the displayed condition.
     Take(OfferedModels),
-    /// Put the models of every finished fit that is not yet in the study into its condition.
+    /// Put the models from every finished fit that is not yet in the study into its condition.
     TakeAll(OfferedModels),
     /// Restore the models from the dataset's file in the displayed condition.
     Return,

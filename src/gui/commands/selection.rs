@@ -18,7 +18,7 @@ pub enum SelectionCommand {
     /// Shows only this model beside the representatives; a second command with the same model shows
     /// all models again.
     Isolate(ModelId),
-    /// Shows the derivation of a value, or closes it.
+    /// Shows a value's derivation, or closes it.
     Explain(Option<ExplainTarget>),
     /// Shows all models again and clears the selection.
     EndIsolation,

@@ -1,11 +1,11 @@
-//! Names of the steps of the undo history.
+//! Names for the steps in the undo history.
 
 use gdcm_study::decisions::history::Change;
 use gdcm_words::edit::edit_text;
 
 use crate::gui::state::window_state::UndoStep;
 
-/// Returns the name of a step: "reject nominal (condition 10)".
+/// Returns a step's name: "reject nominal (condition 10)".
 pub fn step_name(step: &UndoStep) -> String {
     match &step.change {
         Change::Decision(edit) => edit_text(edit, &step.study.dataset),

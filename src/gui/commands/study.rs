@@ -2,7 +2,7 @@
 
 use gdcm_study::Edit;
 
-/// A decision about the study, or a step through the history of decisions.
+/// A decision about the study, or a step through the decision history.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StudyCommand {
     /// Takes a decision about the study.

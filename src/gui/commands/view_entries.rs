@@ -1,4 +1,4 @@
-//! Command-table entries for the layout of the window: views, panels, steps, themes.
+//! Command-table entries for the window layout: views, panels, steps, themes.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 
-/// Returns the entries of the View menu.
+/// Returns the entries in the View menu.
 pub(super) fn view_entries(state: &State) -> Vec<Entry> {
     let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
@@ -44,8 +44,8 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-/// Returns the entry that shows a view, or a page of the dock. Without leads, their page is disabled
-/// and the entry says how to get them.
+/// Returns the entry that shows a view, or a page in the dock. Without leads, their page is
+/// disabled and the entry says how to get them.
 fn show_entry(view: View, state: &State) -> Entry {
     let name = format!("Show {}", view.name());
     let purpose = view.facts().purpose;
@@ -57,11 +57,11 @@ fn show_entry(view: View, state: &State) -> Entry {
     Entry::new(name, meaning, LayoutCommand::ShowInDock(view)).enabled(is_page)
 }
 
-/// Tooltip of the disabled entry that shows the leads.
+/// Tooltip on the entry that shows the leads, while it is disabled.
 const NO_LEADS: &str = "The study has no leads: choose \"Use leads\" in the verdict, or Settings, phase, \
     \"delay or lead\"";
 
-/// Tooltip of the entries that move the focus between regions of the window.
+/// Tooltip on the entries that move the focus between window regions.
 const PARTS: &str = "Moves between plots, dock, verdict, result, matrix, settings, conditions and models; each \
     remembers the focused control";
 

@@ -19,7 +19,7 @@ struct AxisStrip<'a> {
     icon: CursorIcon,
 }
 
-/// Makes the axes of a pane interactive.
+/// Makes both axes in a pane interactive.
 pub(super) fn axis_strips_ui(ui: &Ui, pane: PaneScene<'_>, view: &mut BodeView) {
     let Some(frame) = view.frame(pane.pane) else {
         return;

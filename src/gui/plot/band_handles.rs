@@ -12,7 +12,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Half-width of the strip in which an end can be grabbed \[pt\].
 const GRAB_RADIUS: f32 = 4.0;
-/// Minimum ratio of the upper to the lower end, so that the band is never empty.
+/// Minimum ratio of upper to lower end, so that the band is never empty.
 const LEAST_RATIO: f64 = 1.05;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

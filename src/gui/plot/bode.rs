@@ -1,4 +1,4 @@
-//! Bode plot: magnitude above phase of every model of a condition for one response, or the ratio
+//! Bode plot for one response: magnitude above phase of every model in a condition, or the ratio
 //! and phase difference between the identified and the other models.
 
 use std::borrow::Cow;
@@ -138,8 +138,7 @@ fn visible_curves(curves: &[BodeCurve]) -> Cow<'_, [BodeCurve]> {
     Cow::Owned(visible.cloned().collect())
 }
 
-/// Returns the chips of all roles, including hidden roles, and of the current restrictions of the
-/// plot.
+/// Returns chips for all roles, including hidden roles, and for the plot's current restrictions.
 fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> Chips<'a> {
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     let hovered = view.hovered.as_ref();

@@ -11,7 +11,7 @@ use crate::message::Message;
 /// Message about typed limits that do not increase.
 pub(super) const NOT_INCREASING: &str = "the lower limit must be below the upper limit";
 
-/// Axis of a Bode plot.
+/// An axis in a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BodeAxis {
     /// Frequency axis, shared by both panes.

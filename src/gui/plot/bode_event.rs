@@ -1,4 +1,4 @@
-//! Bode events: gestures and chosen menu entries, for the owner of the plot to handle.
+//! Bode events: gestures and chosen menu entries, for the plot's owner to handle.
 
 use super::curve_command::CurveCommand;
 use super::drawn_curves::CurveId;
@@ -24,7 +24,7 @@ pub enum BodeEvent {
     Display(CurveCommand),
     /// The model is to be rejected for the entered reason.
     RejectedBecause(CurveId, String),
-    /// An entry of a curve's menu was chosen.
+    /// An entry in a curve's menu was chosen.
     ActionChosen(CurveId, CurveAction),
     /// A box was drawn over these curves.
     Boxed(Vec<CurveId>),

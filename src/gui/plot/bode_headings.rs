@@ -38,8 +38,8 @@ pub(super) struct BodeHeadings<'a> {
 }
 
 impl BodeHeadings<'_> {
-    /// Draws the quantities, the effect of the correction, the values at the cursor, the names of
-    /// the heavy curves, and a note while the curves are being updated.
+    /// Draws the quantities, the effect of the correction, the values at the cursor, names for the
+    /// heavy curves, and a note while the curves are being updated.
     pub(super) fn ui(&self, ui: &Ui, layout: &BodeLayout) {
         let scene = self.scene;
         for pane in PANES {
@@ -76,9 +76,9 @@ impl BodeHeadings<'_> {
         }
     }
 
-    /// Paints quantity and unit; returns the right end of the text.
+    /// Paints quantity and unit; returns where the text ends at the right.
     fn paint_quantity(&self, ui: &Ui, line: Rect, pane: Pane) -> f32 {
-        // The heading begins at the frame, so that the label of the highest tick does not touch it.
+        // The heading begins at the frame, so that the highest tick label does not touch it.
         let line = match self.view.frame(pane) {
             Some(frame) => line.with_min_x(frame.left()),
             None => line,
@@ -92,8 +92,8 @@ impl BodeHeadings<'_> {
         row_text(ui, line, beside, unit, BODY_SIZE, self.palette.dim_text).right()
     }
 
-    /// Paints a note at the right of a heading: verdict, cost of the leads, and J as far as there
-    /// is room.
+    /// Paints a note at the right of a heading: verdict, leads' price, and J as far as there is
+    /// room.
     fn paint_note(&self, ui: &Ui, room: Rect, note: &PaneNote, price: Option<String>) {
         let palette = self.palette;
         let color = if note.warns {
@@ -111,8 +111,8 @@ impl BodeHeadings<'_> {
         row_text(ui, rest, AT_RIGHT, &cost, BODY_SIZE, palette.dim_text);
     }
 
-    /// Returns the names of the heavy curves and of the reference lines, and the magnitude added by
-    /// the leads.
+    /// Returns names for the heavy curves and the reference lines, and the magnitude added by the
+    /// leads.
     fn pane_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
         let Self {
             scene,
@@ -161,8 +161,8 @@ impl BodeHeadings<'_> {
 }
 
 impl BodeHeadings<'_> {
-    /// Returns the names of several curves, each at the mean height of their ends; as many as fit
-    /// into the height of the pane.
+    /// Returns the names that label several curves, each at the mean height of their ends; as many
+    /// as fit into the pane.
     fn end_name_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
         let frame = *transform.frame();
         let last_omega = self.view.omega_range().1;
@@ -211,7 +211,7 @@ fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &P
     );
 }
 
-/// Returns the last visible point of the first curve of a role.
+/// Returns the last visible point on the first curve in a role.
 fn curve_end(scene: &BodeScene<'_>, role: Role, pane: Pane, last_omega: f64) -> Option<PlotPoint> {
     let curve = scene.curves.iter().find(|curve| curve.role == role)?;
     let omega = curve.omega.last()?.min(last_omega);

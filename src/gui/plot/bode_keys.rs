@@ -1,4 +1,4 @@
-//! Keys of a focused Bode plot: they pan, zoom and fit a pane, and switch roles.
+//! Keys for a focused Bode plot: they pan, zoom and fit a pane, and switch roles.
 
 use egui::{EventFilter, Key, Modifiers, Response, Ui, vec2};
 
@@ -9,9 +9,9 @@ use super::curve_command::CurveCommand;
 use super::drawn_curves::Pane;
 use crate::gui::widgets::palette::Palette;
 
-/// Pan step of an arrow key, as a share of the visible range.
+/// Pan step for an arrow key, as a share of the visible range.
 const STEP: f32 = 0.1;
-/// Zoom factor of the + key.
+/// Zoom factor for the + key.
 const CLOSER: f64 = 1.25;
 
 /// Handles the keys if the pane has the focus: arrows pan, + and − zoom (with Shift only the
@@ -30,7 +30,7 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
         return;
     };
     let is_shifted = ui.input(|input| input.modifiers.shift);
-    // The view moves in the direction of the arrow, the drawing in the opposite direction.
+    // The view moves where the arrow points, the drawing in the opposite direction.
     let along = presses(ui, Key::ArrowRight) - presses(ui, Key::ArrowLeft);
     let up = presses(ui, Key::ArrowUp) - presses(ui, Key::ArrowDown);
     let closer = presses(ui, Key::Plus) + presses(ui, Key::Equals) - presses(ui, Key::Minus);
@@ -52,7 +52,7 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
     }
 }
 
-/// Removes the presses of a key from the input and returns their number.
+/// Removes a key's presses from the input and returns their number.
 fn presses(ui: &Ui, key: Key) -> f32 {
     ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32
 }

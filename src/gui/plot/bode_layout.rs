@@ -1,4 +1,4 @@
-//! Bode layout: places of the panes, and of the texts and strips around them.
+//! Bode layout: places for the panes, and for the texts and strips around them.
 
 use egui::{Rect, pos2, vec2};
 
@@ -8,9 +8,9 @@ use super::readout_strip::STRIP_HEIGHT;
 
 /// Vertical axis width \[pt\], equal in both panes so that the frequencies align.
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
-/// Magnitude pane's share of the total height of both panes.
+/// Magnitude pane's share of the panes' total height.
 const MAGNITUDE_PART: f32 = 0.52;
-/// Height of the line above a pane \[pt\].
+/// Line height above a pane \[pt\].
 const HEADING: f32 = 20.0;
 /// Space above and below the read-out \[pt\].
 const GAP: f32 = 6.0;
@@ -18,9 +18,9 @@ const GAP: f32 = 6.0;
 const UNIT_MARGIN: f32 = 36.0;
 /// Margin at the right for curve names \[pt\].
 const CURVE_NAME_MARGIN: f32 = 78.0;
-/// Margin at the right for names of several curves \[pt\].
+/// Margin at the right for names that label several curves \[pt\].
 const END_NAME_MARGIN: f32 = 76.0;
-/// Margin at the right for names of reference lines \[pt\].
+/// Margin at the right for names on reference lines \[pt\].
 const LINE_NAME_MARGIN: f32 = 118.0;
 /// Minimum plot height with room for the values between the panes \[pt\].
 const LEAST_WITH_STRIP: f32 = 300.0;
@@ -28,7 +28,7 @@ const COHERENCE_HEIGHT: f32 = 52.0;
 /// Minimum plot height with room for the coherence strip \[pt\].
 const LEAST_WITH_COHERENCE: f32 = 380.0;
 
-/// Places of headings, panes and strips.
+/// Places for headings, panes and strips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BodeLayout {
     /// Lines above the panes.

@@ -24,13 +24,13 @@ use super::ticks::Ticks;
 use super::zoom_gesture::ZoomGesture;
 use crate::gui::widgets::palette::Palette;
 
-/// Maximum deviation of a drawn line from its curve \[pt\].
+/// Maximum deviation between a drawn line and its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
 /// Minimum number of labels on a value axis, where they fit.
 const LEAST_LABELS: usize = 5;
-/// Height of the strip along the lower edge \[pt\].
+/// Strip height along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
-/// Opacity of the shade of the comparison band, in the dark and in the light theme.
+/// Opacity of the comparison band's shade, in the dark and in the light theme.
 const SHADE_DARK: f32 = 0.055;
 const SHADE_LIGHT: f32 = 0.075;
 /// Opacity of the veil outside the comparison band.
@@ -68,7 +68,7 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
         is_transparent: true,
         palette: pane.palette,
     };
-    // The content borrows the cached lines, so they are taken out of the view while it is drawn.
+    // The content borrows the cached lines, so they are taken from the view while it is drawn.
     let bounds = view.bounds(pane.pane);
     let mut drawn = std::mem::take(&mut view.drawn[pane.pane as usize]);
     let kept = &mut drawn;
@@ -197,7 +197,7 @@ impl<'a> PaneScene<'a> {
         add_shade(plot, max.log10()..=f64::INFINITY, veil);
     }
 
-    /// Draws the visible part of a band in segments; non-finite values and jumps of a wrapped phase
+    /// Draws a band's visible part in segments; non-finite values and jumps in a wrapped phase
     /// leave a gap.
     fn add_band(self, plot: &mut PlotUi<'_>, band: &BodeBand, view: &PlotBounds, color: Color32) {
         let values = match self.pane {

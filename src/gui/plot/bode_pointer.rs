@@ -74,10 +74,10 @@ pub(super) fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
     scene.reference != Some(&scene.curves[hit.curve].id)
 }
 
-/// Returns the event of a click on the nearest curve; a click on the reference has no effect.
+/// Returns the event for a click on the nearest curve; a click on the reference has no effect.
 ///
-/// egui reports both clicks of a double click, so the first has already taken effect. The second
-/// click undoes the first if the first was on a curve; on empty ground, it fits the plot.
+/// egui reports both clicks in a double click, so the first has already taken effect. The second
+/// click undoes the first if that was on a curve; on empty ground, it fits the plot.
 pub(super) fn handle_click(
     pane: Pane,
     scene: &BodeScene<'_>,

@@ -1,4 +1,4 @@
-//! Content of a Bode plot: magnitude and phase of every model of a condition for one response, or
+//! Content for a Bode plot of one response: magnitude and phase of every model in a condition, or
 //! the ratio and phase difference between the identified and the other models.
 
 use std::collections::BTreeSet;
@@ -14,7 +14,7 @@ use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::BodeQuantity;
 use super::readout_strip::Readout;
 
-/// Content of a Bode plot.
+/// Content for a Bode plot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodeScene<'a> {
     /// Responses, or ratio and phase difference.
@@ -25,7 +25,7 @@ pub struct BodeScene<'a> {
     pub curves: &'a [BodeCurve],
     /// Labelled reference lines across the panes.
     pub rules: &'a [ReferenceLine],
-    /// Reference curve of the comparison; clicking it does not reject or restore its model.
+    /// Curve with which the others are compared; clicking it does not reject or restore its model.
     pub reference: Option<&'a CurveId>,
     pub bands: &'a [BodeBand],
     /// Measured coherence, in a strip below the panes.
@@ -34,7 +34,7 @@ pub struct BodeScene<'a> {
     pub least_coherence: f64,
     /// Frequency ranges marked along the lower edge of each pane \[rad/s\].
     pub strips: &'a [(f64, f64)],
-    /// Frequency range after fitting \[rad/s\]; the range of the curves if `None`.
+    /// Frequency range after fitting \[rad/s\]; the curves' range if `None`.
     pub omega_range: Option<(f64, f64)>,
     /// Cursor set by another plot \[rad/s\].
     pub cursor: Option<f64>,
@@ -42,18 +42,18 @@ pub struct BodeScene<'a> {
     pub pinned: &'a [f64],
     /// Names and frequencies \[rad/s\] at which a bandwidth is read.
     pub crossings: &'a [(&'static str, f64)],
-    /// Values of every role at the cursor.
+    /// Every role's values at the cursor.
     pub readout: Option<&'a Readout>,
     /// Note at the right above each pane: J and the verdict on the correction.
     pub notes: [Option<&'a PaneNote>; 2],
     /// Remaining phase error: the area between the corrected and the identified curve, within the
     /// band.
     pub missing: Option<&'a BodeBand>,
-    /// Range of the errors at the optima of the conditions.
+    /// Range between the smallest and the largest error at the conditions' optima.
     pub optima: Option<&'a BodeBand>,
     /// Names in the right margin, each beside the ends of its curves.
     pub end_names: &'a [EndName],
-    /// Whether the room of the read-out stays free, because another part draws it.
+    /// Whether the read-out's room stays free, because another part draws it.
     pub reserves_readout: bool,
     /// Frequencies above the band, where the corrected curves are not valid and only show the
     /// magnitude added by the leads; `None` without leads.
@@ -66,7 +66,7 @@ pub struct BodeScene<'a> {
     pub names_curves: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
-    /// Chips of the current restrictions.
+    /// Chips for the current restrictions.
     pub chips: &'a [Chip],
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
@@ -77,14 +77,14 @@ pub struct BodeScene<'a> {
     pub message: Option<&'a str>,
 }
 
-/// Name of several curves in the right margin.
+/// Name shared by several curves, in the right margin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndName {
     /// "140 kt × 2".
     pub text: String,
     /// Role in whose colour the name is written.
     pub role: Role,
-    /// Curves beside whose mean end value the name stands.
+    /// Curves that the name labels, at their mean end value.
     pub curves: Vec<CurveId>,
 }
 
@@ -112,13 +112,13 @@ pub struct InvalidRegion {
 }
 
 impl<'a> BodeScene<'a> {
-    /// Returns "+19.4 dB": the magnitude added by the leads at the end of the curves.
+    /// Returns "+19.4 dB": the magnitude added by the leads where the curves end.
     pub(super) fn price_words(&self) -> Option<String> {
         let [with, without] = self.invalid?.ends_db?;
         Some(format!("{} dB", signed(with - without, 1)))
     }
 
-    /// Creates a scene of a pair's responses in decibels, degrees and rad/s, without optional
+    /// Creates a scene with a pair's responses in decibels, degrees and rad/s, without optional
     /// elements.
     pub fn new(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {

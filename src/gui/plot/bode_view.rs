@@ -15,12 +15,12 @@ use super::steady_range::{AxisUpdate, changed_range, labelled_range};
 use super::value_unit::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
-/// Permitted widths of the visible frequency range \[decades\].
+/// Permitted widths for the visible frequency range \[decades\].
 const DECADES: Range = Range {
     min: 1e-3,
     max: 12.0,
 };
-/// Permitted values of `log10 omega`, far inside the range of floating-point numbers.
+/// Permitted values for `log10 omega`, far from where floating-point numbers overflow.
 const LOG_OMEGA: Range = Range {
     min: -30.0,
     max: 30.0,
@@ -28,7 +28,7 @@ const LOG_OMEGA: Range = Range {
 /// Margin above and below the curves after fitting, relative to their height.
 const FIT_MARGIN: f64 = 0.04;
 
-/// State of a Bode plot between frames.
+/// Bode plot state kept between frames.
 ///
 /// Value axes that have not been zoomed follow recomputed curves and other conditions with
 /// hysteresis, so that they seldom move. For another response they are fitted once.
@@ -56,9 +56,9 @@ pub struct BodeView {
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    /// Range of `log10 omega` of the curves when the view last followed them.
+    /// Range of the curves' `log10 omega` when the view last followed them.
     followed: Option<Range>,
-    /// Fitted values of all curves, including hidden ones, when the axes last followed them.
+    /// Fitted values for all curves, including hidden ones, when the axes last followed them.
     followed_values: [Option<Range>; 2],
     /// Panes as last drawn.
     pub(super) drawn: [DrawnPane; 2],
@@ -143,14 +143,14 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Requests that the values of a pane be fitted in the next frame, because their unit changes.
+    /// Requests that a pane's values be fitted in the next frame, because their unit changes.
     pub fn release_values(&mut self, pane: Pane) {
         self.values[pane as usize].release();
         self.must_fit_values = true;
     }
 
-    /// Requests a fit if the frequency range of the curves has changed, unless the engineer chose
-    /// the visible range.
+    /// Requests a fit if the curves' frequency range has changed, unless the engineer chose the
+    /// visible range.
     pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
         if ends.is_some() && ends != self.followed {
@@ -234,23 +234,23 @@ impl BodeView {
         self.values[pane as usize].range()
     }
 
-    /// Returns the transform of a pane as last drawn: x is `log10 omega`, y is in dB or degrees.
+    /// Returns a pane's transform as last drawn: x is `log10 omega`, y is in dB or degrees.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }
 
-    /// Returns the frame of a pane as last drawn, without its axes.
+    /// Returns a pane's frame as last drawn, without its axes.
     pub(super) fn frame(&self, pane: Pane) -> Option<Rect> {
         Some(*self.transform(pane)?.frame())
     }
 
-    /// Returns the screen position of `value` at `omega` \[rad/s\].
+    /// Returns where `value` at `omega` \[rad/s\] lies on the screen.
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// Returns the visible range of a pane as egui_plot bounds.
+    /// Returns a pane's visible range as egui_plot bounds.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
         bounds_of([self.log_omega.range(), self.value_range(pane)])
     }

@@ -1,4 +1,4 @@
-//! Cached raster image of many static curves.
+//! Cached raster image that shows many static curves.
 
 use egui::{
     Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2,
@@ -12,7 +12,7 @@ use super::curve_style::CurveStyle;
 /// Minimum number of curves for which an image is worth its memory: filling their lines takes
 /// longer than all other work in a frame.
 pub(super) const MANY: usize = 200;
-/// Maximum deviation of a drawn circle from a true circle \[pt\].
+/// Maximum deviation between a drawn circle and a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
 /// Content of an image; the image is valid while its content is unchanged.
@@ -21,12 +21,12 @@ pub(super) struct RasterScene {
     /// Place on the screen \[pt\].
     pub(super) frame: Rect,
     pub(super) pixels_per_point: f32,
-    /// Serial number and style of each curve, from bottom to top.
+    /// Serial number and style for each curve, from bottom to top.
     pub(super) curves: Vec<(u64, CurveStyle)>,
 }
 
-/// Cached image of many static curves. Without a graphics processor, filling the lines of a
-/// thousand curves dominates the time of a frame, although none of them moves with the pointer.
+/// Cached image that shows many static curves. Without a graphics processor, filling a thousand
+/// curves' lines dominates the frame time, although none of them moves with the pointer.
 ///
 /// ```text
 /// scene changed since the last frame:  draw the lines; drop the image
@@ -75,7 +75,7 @@ impl CachedRaster {
         };
     }
 
-    /// Returns the image of `scene`, also if it has just changed: for small images, which are filled
+    /// Returns an image that shows `scene`, even if it has just changed: small images are filled
     /// faster than their lines are drawn.
     pub(super) fn image_at_once(
         &mut self,
@@ -104,7 +104,7 @@ impl CachedRaster {
     }
 }
 
-/// Screen area of whole pixels.
+/// Screen area made up of whole pixels.
 struct PixelArea {
     /// Place \[pt\].
     rect: Rect,
@@ -113,7 +113,7 @@ struct PixelArea {
     pixels: [u16; 2],
 }
 
-/// Returns the smallest area of whole pixels that contains `frame`; `None` if an image cannot be
+/// Returns the smallest area in whole pixels that contains `frame`; `None` if an image cannot be
 /// that large.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     let min = (frame.min * pixels_per_point).floor();
@@ -126,7 +126,7 @@ fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     })
 }
 
-/// Returns a length in pixels; `None` if it is outside the limits of an image.
+/// Returns a length in pixels; `None` if it is outside the limits for an image.
 fn pixel_count(length: f32) -> Option<u16> {
     if (1.0..=f32::from(u16::MAX)).contains(&length) {
         Some(length as u16)
@@ -135,7 +135,7 @@ fn pixel_count(length: f32) -> Option<u16> {
     }
 }
 
-/// Returns an image of the shapes on a transparent ground.
+/// Renders the shapes on a transparent ground.
 fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     let [width, height] = area.pixels;
     let mut context = RenderContext::new_with(
@@ -162,7 +162,7 @@ fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     )
 }
 
-/// Strokes lines, and fills the discs of dots.
+/// Strokes lines, and fills dots' discs.
 fn fill(context: &mut RenderContext, shape: &Shape) {
     match shape {
         Shape::Vec(shapes) => {

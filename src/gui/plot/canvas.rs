@@ -1,5 +1,4 @@
-//! Canvas that draws the shapes of printed figures on the screen, enlarged and in the colours of
-//! the theme.
+//! Canvas that draws printed figures' shapes on the screen, enlarged and in the theme's colours.
 
 use egui::epaint::TextShape;
 use egui::{Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
@@ -20,7 +19,7 @@ pub(super) struct Canvas<'a> {
     pub(super) palette: &'a Palette,
 }
 
-/// Returns the size of a screen rectangle on paper, as an area at the origin.
+/// Returns the size that a screen rectangle has on paper, as an area at the origin.
 pub(super) fn area(rect: Rect) -> Area {
     Area::new(
         0.0,
@@ -59,7 +58,7 @@ impl Canvas<'_> {
             } => {
                 let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
                 match (fill, stroke) {
-                    // A filled path of more than four points is the area between two lines, which
+                    // A filled path with more than four points is the area between two lines, which
                     // need not be convex; shorter paths are bars, marks, or one step of an area.
                     (Some(color), _) if points.len() > 4 => {
                         self.fill_between(&points, self.palette.color(*color));
@@ -140,7 +139,8 @@ impl Canvas<'_> {
     fn fill_between(&self, outline: &[Pos2], color: Color32) {
         let mut mesh = Mesh::default();
         for place in 0..outline.len() / 2 {
-            // The points of both lines at the same x, and two triangles to the points before.
+            // Two points at the same x, one on each line, and two triangles back to the previous
+            // points.
             mesh.colored_vertex(outline[place], color);
             mesh.colored_vertex(outline[outline.len() - 1 - place], color);
             if place > 0 {

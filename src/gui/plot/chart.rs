@@ -18,7 +18,7 @@ pub enum ChartAxis {
 }
 
 impl ChartAxis {
-    /// Returns the coordinate of a value along the axis: the value or its logarithm.
+    /// Returns a value's coordinate along the axis: the value or its logarithm.
     pub(super) fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -27,7 +27,7 @@ impl ChartAxis {
     }
 }
 
-/// Line of a chart.
+/// A line in a chart.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
     /// Points in ascending order along the horizontal axis; details finer than a pixel and points
@@ -47,7 +47,7 @@ pub struct ChartBand {
     pub color: Color32,
 }
 
-/// Marks of the same style.
+/// Marks in the same style.
 #[derive(Clone, Debug)]
 pub struct ChartMarks {
     /// `[x, value, half-length of the vertical error bar]`; a half-length of 0 means no bar.
@@ -56,7 +56,7 @@ pub struct ChartMarks {
     pub sideways: Vec<f64>,
     pub color: Color32,
     pub filled: bool,
-    /// Whether the marks are crosses instead of circles.
+    /// Whether the marks are crosses; otherwise they are circles.
     pub crosses: bool,
 }
 
@@ -67,25 +67,25 @@ pub struct ChartSpan {
     pub color: Color32,
 }
 
-/// Content of a chart.
+/// Everything that a chart shows.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
     /// Title, which is also its accessible name.
     pub title: &'a str,
-    /// Texts at the right of the title line, with their colours.
+    /// Texts at the right end of the title line, with their colours.
     pub notes: Vec<(String, Color32)>,
     pub across: ChartAxis,
-    /// Label of the horizontal axis; an empty label reduces the height of the axis.
+    /// Label on the horizontal axis; an empty label reduces the axis height.
     pub across_label: &'a str,
     pub value_label: &'a str,
     pub layout: ChartLayout,
     /// Whether the visible values always fill the height; only the horizontal axis can then be
     /// zoomed and panned.
     pub fits_values: bool,
-    /// Range of the values instead of the range that fits the data; requires `fits_values`.
+    /// Values shown, if not the range that fits the data; requires `fits_values`.
     pub values: Option<Range>,
-    /// Horizontal range that is visible until a gesture changes it, instead of the range that fits
-    /// the data.
+    /// Horizontal range that is visible until a gesture changes it, if not the range that fits the
+    /// data.
     pub whole_across: Option<Range>,
     /// Charts with the same group share the visible horizontal range.
     pub group: Option<Id>,
@@ -103,21 +103,20 @@ pub struct Chart<'a> {
     pub band: Option<[f64; 2]>,
     /// Dashed horizontal lines.
     pub levels: Vec<f64>,
-    /// Range of values that is shaded across the chart.
+    /// Values between which the chart is shaded.
     pub tolerance: Option<ChartSpan>,
     /// Image below everything else.
     pub image: Option<ChartImage>,
 }
 
-/// Room around the frame of a chart.
+/// Room around a chart's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartLayout {
-    /// Height of the title line; 0 for a chart without a title \[pt\].
+    /// Title line height; 0 for a chart without a title \[pt\].
     pub title_height: f32,
-    /// Width of the value axis, sufficient for the longest number, so that stacked frames align
-    /// \[pt\].
+    /// Value axis width, sufficient for the longest number, so that stacked frames align \[pt\].
     pub value_axis_width: f32,
-    /// Room at the right of the frame \[pt\].
+    /// Room to the right of the frame \[pt\].
     pub right_margin: f32,
     /// Whether the horizontal axis has tick labels.
     pub has_ticks_across: bool,
@@ -134,7 +133,7 @@ impl Default for ChartLayout {
     }
 }
 
-/// Image within ranges of both axes; its vertical axis shows frequencies \[rad/s\].
+/// Image within ranges on both axes; its vertical axis shows frequencies \[rad/s\].
 #[derive(Clone, Copy, Debug)]
 pub struct ChartImage {
     /// Texture with the highest frequency at the top.

@@ -12,14 +12,14 @@ use super::layers::{
 use super::thinning::{pixel_of, thinned_between};
 use crate::gui::widgets::palette::Palette;
 
-/// Maximum deviation of a drawn line from its data \[pt\].
+/// Maximum deviation between a drawn line and its data \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Maximum width of a screen \[pixels\].
+/// Maximum screen width \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;
 const MARK_RADIUS: f32 = 3.0;
 
-/// Adds the content of a chart to its panel. Lines and marks are egui_plot items, because the panel
-/// fits its ranges to them.
+/// Adds a chart's content to its panel. Lines and marks are egui_plot items, because the panel fits
+/// its ranges to them.
 pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Palette) {
     if let Some(image) = &chart.image {
         add_image(plot, image);

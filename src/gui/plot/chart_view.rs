@@ -21,13 +21,13 @@ const NOTE_GAP: f32 = 8.0;
 const EDGE: f64 = 0.01;
 /// Margin above and below, relative to the height.
 const VALUE_EDGE: f32 = 0.08;
-/// Minimum distance between tick labels of a linear horizontal axis \[pt\].
+/// Minimum distance between tick labels on a linear horizontal axis \[pt\].
 const TICK_GAP: f64 = 50.0;
 
 /// A chart as drawn.
 pub struct ChartResponse {
     pub response: Response,
-    /// Transform from axis coordinates to the screen; those of a frequency axis are logarithms.
+    /// Transform from axis coordinates, which are logarithms on a frequency axis, to the screen.
     pub transform: PlotTransform,
 }
 
@@ -62,7 +62,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let drawn = shown.inner;
     let is_whole = drawn[0] == f64::NEG_INFINITY;
     if !is_whole && drawn != [across.min, across.max] {
-        // Repaint: the lines were thinned for the visible range of the previous frame.
+        // Repaint: the lines were thinned for the previous frame's visible range.
         ui.request_repaint();
     }
     if layout.title_height > 0.0 {
@@ -77,7 +77,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     }
 }
 
-/// Returns a range of values along the horizontal axis in its coordinates.
+/// Converts a range along the horizontal axis to axis coordinates.
 fn place_of(chart: &Chart<'_>, range: Range) -> Range {
     Range::new(chart.across.place(range.min), chart.across.place(range.max))
 }
@@ -163,7 +163,7 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
         .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
 }
 
-/// Returns the limits of zooming out: the data range with a small margin along a time axis, a
+/// Returns the limits for zooming out: the data range with a small margin along a time axis, a
 /// decade beyond the data range along a frequency axis, ten times the data range otherwise, and no
 /// limit without data.
 fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {

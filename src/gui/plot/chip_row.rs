@@ -1,4 +1,4 @@
-//! Line of chips: places, appearance and accessible names of the single chips.
+//! Chips in lines: places, appearance and accessible names of the single chips.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub const SAMPLE_GAP: f32 = 6.0;
 /// Padding at both ends of a chip \[pt\].
 const PAD: f32 = 6.0;
 
-/// Text, name and state of a chip.
+/// A chip's text, name and state.
 pub struct ChipFace<'a> {
     pub text: &'a str,
     /// Accessible name.
@@ -30,7 +30,7 @@ pub struct ChipFace<'a> {
     pub is_lit: bool,
 }
 
-/// Curve sample of a chip.
+/// Curve sample on a chip.
 #[derive(Clone, Copy)]
 pub struct Sample {
     pub style: CurveStyle,
@@ -39,7 +39,7 @@ pub struct Sample {
 }
 
 impl ChipFace<'_> {
-    /// Returns whether the curves of the chip are hidden.
+    /// Returns whether the chip's curves are hidden.
     fn is_hidden(&self) -> bool {
         self.sample.is_some_and(|sample| !sample.is_shown)
     }
@@ -55,7 +55,7 @@ pub struct ChipRow {
 }
 
 impl ChipRow {
-    /// Starts at the upper left corner of `area`, with samples of this length \[pt\].
+    /// Starts at the upper left corner of `area`, with samples this long \[pt\].
     pub fn new(area: Rect, sample_length: f32) -> Self {
         Self {
             area,
@@ -64,18 +64,18 @@ impl ChipRow {
         }
     }
 
-    /// Returns the height of the lines up to the last chip \[pt\].
+    /// Returns the height of all lines up to the last chip \[pt\].
     pub fn height(&self) -> f32 {
         self.corner.y - self.area.top() + LINE_HEIGHT
     }
 
-    /// Returns the right end of the last chip.
+    /// Returns the last chip's right end.
     pub(in crate::gui) fn line_end(&self) -> f32 {
         self.corner.x - GAP
     }
 
     /// Draws a chip. With a curve sample it is a switch, pale and with a dashed outline while its
-    /// curves are hidden; without a sample it is a button on the ground of selected rows.
+    /// curves are hidden; without a sample it is a button on the same ground as selected rows.
     pub fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
         let text_color = if face.is_hidden() {
             palette.dim_text
@@ -110,7 +110,7 @@ impl ChipRow {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Returns the place of the next chip, on a new line if the current line has no room.
+    /// Returns the place for the next chip, on a new line if the current line has no room.
     fn next_place(&mut self, width: f32) -> Rect {
         let size = vec2(width, CHIP_HEIGHT);
         if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
@@ -134,13 +134,13 @@ impl ChipRow {
     }
 }
 
-/// Lays out the text of a chip.
+/// Lays out a chip's text.
 fn chip_text(ui: &Ui, text: &str, color: Color32) -> Arc<Galley> {
     let font = FontId::proportional(SMALL_SIZE);
     ui.painter().layout_no_wrap(text.to_owned(), font, color)
 }
 
-/// Paints the ground and the outline of a chip; the outline of a lit chip has the accent colour.
+/// Paints a chip's ground and outline; the outline has the accent colour if `is_lit`.
 fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palette: &Palette) {
     let color = if is_lit { palette.accent } else { palette.line };
     let outline = Stroke::new(1.0, color);
@@ -157,7 +157,7 @@ fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palett
         .rect(place, radius, ground, outline, StrokeKind::Inside);
 }
 
-/// Paints the outline of a chip whose curves are hidden.
+/// Paints the outline for a chip whose curves are hidden.
 fn paint_dashed_outline(ui: &Ui, place: Rect, line: Stroke) {
     let path = rounded(place.shrink(0.5), 0.5 * place.height());
     ui.painter()
@@ -181,7 +181,7 @@ fn rounded(place: Rect, radius: f32) -> Vec<Pos2> {
     path
 }
 
-/// Returns the width of a chip without its sample, including the gap to the next chip \[pt\].
+/// Returns a chip's width without its sample, including the gap to the next chip \[pt\].
 pub fn chip_width(ui: &Ui, text: &str) -> f32 {
     chip_text(ui, text, Color32::PLACEHOLDER).size().x + 2.0 * PAD + GAP
 }

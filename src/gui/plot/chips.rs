@@ -1,5 +1,5 @@
-//! Chips above a plot instead of a legend: a switch for each role present, and the current
-//! restrictions of the plot.
+//! Chips above a plot, which serve as its legend: a switch for each role present, and the plot's
+//! current restrictions.
 
 use std::collections::BTreeSet;
 
@@ -15,16 +15,16 @@ use super::drawn_curves::BodeCurve;
 use crate::gui::widgets::controls::{hint_above, named_switch};
 use crate::gui::widgets::palette::Palette;
 
-/// Length of a curve sample \[pt\].
+/// Curve sample length \[pt\].
 const SAMPLE: f32 = 18.0;
-/// Length of a curve sample in a shortened chip \[pt\].
+/// Curve sample length in a shortened chip \[pt\].
 const TIGHT_SAMPLE: f32 = 12.0;
 /// Maximum length of a model name beside its role \[characters\].
 const NAME_LENGTH: usize = 22;
-/// Line width of the sample of an uncertainty band \[pt\].
+/// Line width in the sample for an uncertainty band \[pt\].
 const BAND_SAMPLE_WIDTH: f32 = 7.0;
 
-/// Chip that shows or hides the curves of a role.
+/// Chip that shows or hides a role's curves.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RoleChip {
     pub(super) role: Role,
@@ -32,7 +32,7 @@ pub(super) struct RoleChip {
     pub(super) look: CurveStyle,
     /// Whether the role's curves are drawn.
     pub(super) shown: bool,
-    /// Whether a curve of the role is emphasized, here or in another view.
+    /// Whether one of the role's curves is emphasized, here or in another view.
     pub(super) lit: bool,
 }
 
@@ -48,7 +48,7 @@ impl RoleChip {
     }
 }
 
-/// Returns a chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
+/// Returns a chip for each role among `curves`, drawn or `hidden`, ordered as [`Role::ALL`].
 pub(super) fn role_chips(
     curves: &[BodeCurve],
     hidden: Option<&BTreeSet<Role>>,
@@ -77,8 +77,8 @@ pub(super) fn role_chips(
     chips
 }
 
-/// Returns the role name, followed by the name of a single representative, or replaced by the name
-/// of a single variant or by "others" for identified models.
+/// Returns the role name, followed by a single representative's name, or replaced by a single
+/// variant's name or, for identified models, by "others".
 fn chip_text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
     match (role, members) {
@@ -99,18 +99,18 @@ fn shortened(label: &str) -> String {
     start
 }
 
-/// Current restriction of a plot, and the effect of a click on it.
+/// A restriction that currently applies to a plot, and what a click on it does.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chip {
     /// Text: "Only V+10kt ×".
     pub text: String,
-    /// Tooltip: the effect of a click.
+    /// Tooltip that says what a click does.
     pub hint: String,
 }
 
-/// Chips of a plot, in a line from the upper left corner.
+/// A plot's chips, in a line from the upper left corner.
 pub(super) struct Chips<'a> {
-    /// Suffix that distinguishes these chips from the chips of other plots.
+    /// Suffix that distinguishes these chips from those in other plots.
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
     /// Whether uncertainty bands are drawn; `None` if there are none.
@@ -122,9 +122,9 @@ pub(super) struct Chips<'a> {
 
 /// Height and event of the drawn chips.
 pub(super) struct ChipsResponse {
-    /// Height of the line, 0 without chips \[pt\].
+    /// Line height, 0 without chips \[pt\].
     pub(super) height: f32,
-    /// Event of the clicked chip.
+    /// Event for the clicked chip.
     pub(super) event: Option<BodeEvent>,
 }
 
@@ -137,7 +137,7 @@ impl Chips<'_> {
         }
     }
 
-    /// Returns the total width of the chips in a single line \[pt\].
+    /// Returns the chips' total width in a single line \[pt\].
     pub(super) fn width(&self, ui: &Ui) -> f32 {
         let sample = self.sample();
         let bands = self.bands.map(|_| self.bands_text());
@@ -150,7 +150,7 @@ impl Chips<'_> {
     }
 
     /// Draws the chips in a single line, starting at the upper left corner of `area`. Switches that
-    /// do not fit are in the menu of a last chip, "+2"; restrictions are always visible.
+    /// do not fit are in the last chip's menu, "+2"; restrictions are always visible.
     pub(super) fn ui(&self, ui: &mut Ui, area: Rect, palette: &Palette) -> ChipsResponse {
         if self.roles.is_empty() && self.states.is_empty() {
             return ChipsResponse {
@@ -199,7 +199,7 @@ impl Chips<'_> {
         }
     }
 
-    /// Returns the switches of all roles, and of the uncertainty bands.
+    /// Returns the switches for all roles, and for the uncertainty bands.
     fn switches(&self) -> Vec<Switch<'_>> {
         let mut switches = Vec::new();
         for chip in &self.roles {
@@ -223,8 +223,8 @@ impl Chips<'_> {
         switches
     }
 
-    /// Returns the number of switches that fit beside the restrictions; if not all do, also beside
-    /// the chip with the number of the others.
+    /// Returns how many switches fit beside the restrictions; if not all do, also beside the chip
+    /// that counts the others.
     fn fitting(&self, ui: &Ui, switches: &[Switch<'_>], width: f32) -> usize {
         let states: f32 = self
             .states
@@ -250,7 +250,7 @@ impl Chips<'_> {
         switches.len()
     }
 
-    /// Draws the chip with the number of the switches that do not fit, and its menu.
+    /// Draws the chip that counts the switches which do not fit, and its menu.
     fn rest_ui(
         &self,
         ui: &mut Ui,
@@ -296,7 +296,7 @@ impl Chips<'_> {
     }
 }
 
-/// Switch of the curves of a role, or of the uncertainty bands.
+/// Switch for a role's curves, or for the uncertainty bands.
 struct Switch<'a> {
     subject: SwitchSubject<'a>,
     text: &'a str,
@@ -334,7 +334,7 @@ impl Switch<'_> {
         }
     }
 
-    /// Returns the event of a click, which depends on the keys held.
+    /// Returns the event for a click, which depends on the keys held.
     fn event(&self, ui: &Ui) -> BodeEvent {
         let modifiers = ui.input(|input| input.modifiers);
         BodeEvent::Display(match self.subject {

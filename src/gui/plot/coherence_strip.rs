@@ -10,12 +10,12 @@ use super::panel_text::caption_font;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
 
-/// Coherence at the upper edge of the strip.
+/// Coherence at the strip's upper edge.
 const HIGHEST: f64 = 1.05;
 /// Distance between the tick labels and the strip \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Coherence over the frequencies of a pane.
+/// Coherence over a pane's frequencies.
 pub(super) struct CoherenceStrip<'a> {
     pub(super) place: Rect,
     pub(super) scene: &'a BodeScene<'a>,
@@ -63,7 +63,7 @@ impl CoherenceStrip<'_> {
     }
 }
 
-/// Paints the symbol and the limits of the axis at the left.
+/// Paints the axis at the left: its symbol and limits.
 fn paint_axis(painter: &Painter, strip: Rect, palette: &Palette) {
     for value in [0.0, 1.0] {
         let y = height_of(strip, value).clamp(strip.top() + 5.0, strip.bottom() - 5.0);
@@ -84,7 +84,7 @@ fn paint_axis(painter: &Painter, strip: Rect, palette: &Palette) {
     );
 }
 
-/// Returns the vertical screen position of a coherence \[pt\].
+/// Returns the vertical screen position for a coherence \[pt\].
 fn height_of(strip: Rect, coherence: f64) -> f32 {
     strip.bottom() - strip.height() * (coherence / HIGHEST) as f32
 }

@@ -1,4 +1,4 @@
-//! Requests to change the display of curves over frequency.
+//! Requests that change how curves over frequency are displayed.
 
 use std::collections::BTreeSet;
 
@@ -7,48 +7,48 @@ use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use super::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::{CurveId, Role};
 
-/// Request to change the display of curves.
+/// Request that changes how curves are displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveCommand {
-    /// Changes the unit of magnitudes.
+    /// Changes the magnitude unit.
     ReadMagnitudes(MagnitudeUnit),
-    /// Changes the representation of phases.
+    /// Changes how phases are represented.
     DrawPhases(PhaseUnit),
-    /// Changes the unit of phase errors.
+    /// Changes the phase-error unit.
     DrawPhaseErrors(PhaseErrorUnit),
-    /// Hides or shows the curves of a role.
+    /// Hides or shows a role's curves.
     ToggleRole(Role),
-    /// Shows the curves of this role alone; repeated, shows the curves of all roles.
+    /// Shows this role's curves alone; repeated, shows the curves in all roles.
     ShowRoleAlone(Role),
-    /// Draws the curves of this role above all others; repeated, restores the usual order.
+    /// Draws this role's curves above all others; repeated, restores the usual order.
     RaiseRole(Role),
-    /// Shows or hides the uncertainty bands of the identified models.
+    /// Shows or hides the identified models' uncertainty bands.
     ShowBands(bool),
     HideModel(ModelId),
     /// Shows every model, and the roles visible by default.
     ShowHidden,
-    /// Shifts the phase of a curve.
+    /// Shifts a curve's phase.
     Turn {
         condition: ConditionId,
         pair: Pair,
         curve: CurveId,
-        /// Number of whole turns upwards.
+        /// Whole turns upwards.
         turns: i32,
     },
     /// Shows the cursor at a frequency \[rad/s\] in every plot; sent again in each frame.
     PointAt(f64),
     /// Marks a frequency \[rad/s\]; a third mark replaces the first.
     PinCursor(f64),
-    /// Sets the names and frequencies \[rad/s\] from which the bandwidth of the displayed response
-    /// is computed.
+    /// Sets the names and frequencies \[rad/s\] from which the displayed response's bandwidth is
+    /// computed.
     MarkCrossings(Vec<(&'static str, f64)>),
     /// Removes the marked frequencies.
     UnpinCursors,
     /// Shows or hides the list of values at the cursor.
     ListValues(bool),
-    /// Shows or hides the envelopes of maximum unnoticeable added dynamics in the Bode and error
+    /// Shows or hides the envelopes for maximum unnoticeable added dynamics in the Bode and error
     /// plots.
     ShowMuad(bool),
-    /// Selects these models instead of the current selection.
+    /// Selects these models alone.
     Select(BTreeSet<ModelId>),
 }

@@ -1,4 +1,4 @@
-//! Curve layer: drawing order, styles and lines of the curves of a pane.
+//! Curve layer: drawing order, styles and lines for a pane's curves.
 
 use egui::{Pos2, Shape};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -10,7 +10,7 @@ use crate::gui::widgets::palette::Palette;
 /// Opacity while curves are being recomputed.
 pub(super) const STALE: f32 = 0.5;
 
-/// Emphasis and line size of the curves of a pane.
+/// Emphasis of a pane's curves, and whether their lines are narrow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CurveLooks<'a> {
     /// Curve under the pointer.
@@ -29,7 +29,7 @@ impl CurveLooks<'_> {
         curve.highlighted || self.pointed == Some(&curve.id)
     }
 
-    /// Returns the style of the curve while it is neither emphasized nor being recomputed.
+    /// Returns the curve's style while it is neither emphasized nor being recomputed.
     pub(super) fn resting_style(&self, curve: &BodeCurve, palette: &Palette) -> CurveStyle {
         let style = palette.role_style(curve.role, curve.rejected);
         if self.is_miniature {
@@ -65,7 +65,7 @@ impl CurveLooks<'_> {
     }
 }
 
-/// Adds the lines through sequences of points to the shapes on the screen.
+/// Adds the lines through point sequences to the shapes on the screen.
 pub(super) fn add_curve_lines(
     runs: &[Vec<PlotPoint>],
     style: CurveStyle,
@@ -81,7 +81,7 @@ pub(super) fn add_curve_lines(
     }
 }
 
-/// Returns whether a curve only shows the scatter of its bundle and may be part of an image.
+/// Returns whether a curve only shows its bundle's scatter and may be part of an image.
 pub(super) fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
     curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
 }

@@ -1,4 +1,4 @@
-//! Colour, width and pattern of a line.
+//! Colour, width and pattern with which curves are drawn.
 
 use egui::{Color32, Pos2, Shape, Stroke};
 
@@ -14,26 +14,26 @@ const GAP_OF_DASH: f32 = 0.618;
 const GAP_AT_DOT: f32 = 0.6;
 /// Length of the dots between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
-/// Additional width of an emphasized line \[pt\].
+/// Width added to an emphasized line \[pt\].
 const EMPHASIZED_WIDER: f32 = 1.6;
-/// Additional width of emphasized dots \[pt\], and the factor of their spacing.
+/// Width added to emphasized dots \[pt\], and factor by which their spacing grows.
 const EMPHASIZED_DOTS_WIDER: f32 = 0.7;
 const EMPHASIZED_DOTS_APART: f32 = 1.5;
 
-/// Colour, width and pattern of a curve.
+/// Colour, width and pattern with which a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveStyle {
     pub color: Color32,
     /// Width \[pt\].
     pub width: f32,
-    /// Pattern, which distinguishes roles of the same colour.
+    /// Pattern, which distinguishes roles drawn in the same colour.
     pub dash: Dash,
     /// Dash length, or distance between dots \[pt\].
     pub length: f32,
 }
 
 impl CurveStyle {
-    /// Returns the style of this line when emphasized: opaque and wider.
+    /// Returns this line's style when emphasized: opaque and wider.
     pub fn emphasized(self) -> Self {
         let mut style = Self {
             color: self.color.to_opaque(),
@@ -49,7 +49,7 @@ impl CurveStyle {
         style
     }
 
-    /// Returns the style of this line in a small plot: narrower, with a shorter pattern.
+    /// Returns this line's style in a small plot: narrower, with a shorter pattern.
     pub fn in_miniature(self) -> Self {
         /// Width relative to a full plot.
         const WIDTH_PART: f32 = 0.72;
@@ -124,7 +124,7 @@ impl Palette {
         }
     }
 
-    /// Returns the style of a line in this theme, with the line width chosen by the engineer.
+    /// Returns a line's style in this theme, with the line width chosen by the engineer.
     pub fn curve_style(&self, line: gdcm_plot::figure::drawing::Stroke) -> CurveStyle {
         let length = match line.dash {
             Dash::Solid => 0.0,
@@ -143,7 +143,7 @@ impl Palette {
         }
     }
 
-    /// Returns the curve style of kept or rejected models in a role.
+    /// Returns the curve style for kept or rejected models in a role.
     pub fn role_style(&self, role: Role, rejected: bool) -> CurveStyle {
         self.curve_style(role.line(rejected))
     }

@@ -1,10 +1,10 @@
-//! Menu of the values under the pointer whose derivations can be displayed.
+//! Menu that lists the values under the pointer whose derivations can be displayed.
 
 use egui::{Id, Response};
 
 use gdcm_words::derivation::ExplainTarget;
 
-/// Heading of the menus that open derivations, and of the sheet that shows one.
+/// Heading above the menus that open derivations, and above the sheet that shows one.
 pub const QUESTION: &str = "How was this computed?";
 
 /// Value whose derivation can be displayed.
@@ -24,7 +24,7 @@ impl Question {
     }
 }
 
-/// Plot and listed values of the open menu, if any.
+/// Plot and listed values for the open menu, if any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct QuestionMenu {
     open: Option<OpenMenu>,
@@ -37,7 +37,7 @@ struct OpenMenu {
 }
 
 impl QuestionMenu {
-    /// Opens the menu of a plot on a secondary click, with the questions about the mark under the
+    /// Opens a plot's menu on a secondary click, with the questions about the mark under the
     /// pointer; returns the target chosen in the menu.
     pub(super) fn ui(
         &mut self,

@@ -22,8 +22,8 @@ pub(super) fn drawn_box_ui(
     }
     let pointer = ui.input(|input| input.pointer.latest_pos());
     let pressed_at = ui.input(|input| input.pointer.press_origin());
-    // When the button is released, the input no longer contains the drag origin, so the origin of
-    // the previous frame is used.
+    // When the button is released, the input no longer contains the drag origin, so the previous
+    // frame's origin is used.
     let memory = plot.id.with("box origin");
     let origin = pressed_at.or_else(|| ui.data(|data| data.get_temp(memory)))?;
     ui.data_mut(|data| data.insert_temp(memory, origin));

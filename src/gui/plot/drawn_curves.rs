@@ -1,4 +1,4 @@
-//! Cache of the visible points of a pane.
+//! Cache for a pane's visible points.
 
 use std::sync::Arc;
 
@@ -38,18 +38,18 @@ impl VisiblePart {
     }
 }
 
-/// Visible points of a pane, cached because with a thousand models finding them takes longer than
+/// A pane's visible points, cached because with a thousand models finding them takes longer than
 /// drawing them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnCurves {
     visible: Option<VisiblePart>,
-    /// In the order of the scene's curves.
+    /// In the same order as the scene's curves.
     curves: Vec<DrawnCurve>,
-    /// Number of curves thinned so far.
+    /// Counts the curves thinned so far.
     made: u64,
 }
 
-/// Thinned points of a curve, and the values from which they were computed.
+/// A curve's thinned points, and the values from which they were computed.
 #[derive(Clone, Debug)]
 struct DrawnCurve {
     omega: Arc<[f64]>,
@@ -61,7 +61,7 @@ struct DrawnCurve {
 }
 
 impl DrawnCurves {
-    /// Recomputes the points of curves that have changed since the last frame.
+    /// Recomputes the points for curves that have changed since the last frame.
     pub(super) fn update(
         &mut self,
         curves: &[BodeCurve],
@@ -113,7 +113,7 @@ impl DrawnCurves {
                 .all(|(drawn, curve)| drawn.is_drawn_from(curve, pane, margin(curve, palette)))
     }
 
-    /// Returns the lines of the curve at an index.
+    /// Returns the lines for the curve at an index.
     pub(super) fn runs(&self, index: usize) -> &[Vec<PlotPoint>] {
         match self.curves.get(index) {
             Some(curve) => &curve.runs,
@@ -121,8 +121,7 @@ impl DrawnCurves {
         }
     }
 
-    /// Returns the serial number of a curve's lines, which changes whenever they
-    /// are recomputed.
+    /// Returns a serial number for a curve's lines, which changes whenever they are recomputed.
     pub(super) fn serial(&self, index: usize) -> u64 {
         self.curves.get(index).map_or(0, |curve| curve.serial)
     }

@@ -13,7 +13,7 @@ use crate::gui::widgets::palette::Palette;
 /// Minimum number of curves in a small plot that are replaced by an image.
 const MANY_IN_MINIATURE: usize = 8;
 
-/// Pane as last drawn: transform, lines, and the image of its static lines.
+/// Pane as last drawn: transform, lines, and the image that shows its static lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnPane {
     /// Transform as last drawn, where x is `log10 omega`; `None` if there was nothing to draw.
@@ -23,8 +23,8 @@ pub(super) struct DrawnPane {
 }
 
 impl DrawnPane {
-    /// Returns the image of the curves at the bottom if these are static and at least [`MANY`] in
-    /// number.
+    /// Returns an image that shows the curves at the bottom, if these are static and at least
+    /// [`MANY`] in number.
     pub(super) fn image_of_many(
         &mut self,
         ctx: &Context,
@@ -43,9 +43,9 @@ impl DrawnPane {
             .image_of(ctx, scene, || lowest.shapes(transform, drawn))
     }
 
-    /// Returns the image of the curves at the bottom of a small plot if these are at least
-    /// [`MANY_IN_MINIATURE`] in number. The lines of all cells of the overview would take tens of
-    /// megabytes as triangles.
+    /// Returns an image that shows the curves at the bottom of a small plot, if these are at least
+    /// [`MANY_IN_MINIATURE`] in number. As triangles, the lines in all overview cells would take
+    /// tens of megabytes.
     pub(super) fn image_in_miniature(
         &mut self,
         ctx: &Context,
@@ -65,7 +65,7 @@ impl DrawnPane {
     }
 }
 
-/// Curves that only show the scatter of their bundle, from bottom to top.
+/// Curves that only show their bundle's scatter, from bottom to top.
 struct LowestCurves {
     /// Index in the scene, and style.
     curves: Vec<(usize, CurveStyle)>,

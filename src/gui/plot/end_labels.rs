@@ -1,4 +1,4 @@
-//! Labels in the right margin, at the heights of the line ends.
+//! Labels in the right margin, at the heights where lines end.
 
 use egui::{Align2, Color32, Rect, Ui, pos2};
 
@@ -6,12 +6,12 @@ use super::panel_text::caption_font;
 
 /// Minimum distance between two labels \[pt\].
 const LABEL_GAP: f32 = 14.0;
-/// Minimum distance from the corners of the frame \[pt\].
+/// Minimum distance from the frame's corners \[pt\].
 const MARGIN: f32 = 5.0;
 /// Distance from the frame \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Label of a line in the margin.
+/// A line's label in the margin.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EndLabel {
     /// Vertical screen position \[pt\].

@@ -1,4 +1,4 @@
-//! Legend above the plots of a figure.
+//! Legend above a figure's plots.
 
 use egui::{Rect, Role, Sense, Ui, Vec2, pos2, vec2};
 
@@ -15,13 +15,13 @@ use crate::gui::widgets::palette::{Palette, small};
 /// Size of a sample in the legend \[pt\].
 const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
 
-/// Height of a line of the legend \[pt\].
+/// Line height in the legend \[pt\].
 const LINE: f32 = 18.0;
 /// Gap between a sample and its name, and between two entries \[pt\].
 const NAME_GAP: f32 = 5.0;
 const ENTRY_GAP: f32 = 14.0;
 
-/// Draws a sample and a name for each key of the figure's marks, as in the printed legend. Lines
+/// Draws a sample and a name for each key among the figure's marks, as in the printed legend. Lines
 /// break between entries.
 pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {

@@ -1,4 +1,4 @@
-//! Marks of a figure on the screen: as on paper, and emphasized under the pointer.
+//! A figure's marks on the screen: as on paper, and emphasized under the pointer.
 
 use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -18,11 +18,11 @@ use crate::gui::widgets::palette::Palette;
 /// Radius of the ring around a focused or highlighted dot \[pt\].
 pub(super) const RING: f32 = RING_PT as f32 * SCALE;
 const RING_WIDTH: f32 = 1.4;
-/// Magnification of a highlighted dot.
+/// Factor by which a highlighted dot is enlarged.
 const EMPHASIZED: f64 = 1.3;
-/// Minimum size of a dot before it is magnified, relative to the usual size.
+/// Minimum dot size before it is enlarged, relative to the usual size.
 const LEAST_EMPHASIZED: f64 = 0.8;
-/// Opacity of the shade of a column in focus, and of the column under the pointer.
+/// Opacity of the shade over the column in focus, and over the column under the pointer.
 const SELECTED_COLUMN: f32 = 0.6;
 const POINTED_COLUMN: f32 = 0.35;
 
@@ -32,7 +32,7 @@ pub(super) struct DrawnMarks {
     drawn: Option<DrawnPanel>,
 }
 
-/// Shapes of a panel, and the arguments from which they were computed.
+/// A panel's shapes, and the arguments from which they were computed.
 #[derive(Clone, Debug)]
 struct DrawnPanel {
     panel: Panel,
@@ -47,7 +47,7 @@ impl DrawnMarks {
         Some(&self.drawn.as_ref()?.panel)
     }
 
-    /// Returns the shapes of the panel for these ranges, recomputed only after a change.
+    /// Returns the panel's shapes for these ranges, recomputed only after a change.
     fn shapes(&mut self, panel: &Panel, area: Area, ranges: [Range; 2]) -> &[Shape] {
         let is_same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
@@ -72,7 +72,7 @@ impl DrawnMarks {
 pub(super) struct MarkScene<'a> {
     pub(super) panel: &'a Panel,
     pub(super) transform: PlotTransform,
-    /// Marks represented by the columns, if columns are interactive instead of dots.
+    /// Marks that the columns represent, if columns are interactive rather than dots.
     pub(super) columns: &'a [MarkId],
     /// Mark in focus.
     pub(super) selected: Option<&'a MarkId>,
@@ -86,7 +86,7 @@ pub(super) struct MarkScene<'a> {
 }
 
 impl MarkScene<'_> {
-    /// Draws the marks; those near the edge of the frame may extend beyond it.
+    /// Draws the marks; those near the frame's edge may extend beyond it.
     pub(super) fn paint(&self, ui: &Ui, drawn: &mut DrawnMarks) {
         let frame = *self.transform.frame();
         let clip = frame.expand(RING).intersect(ui.clip_rect());
@@ -193,8 +193,8 @@ fn without_bars(panel: &Panel) -> Panel {
     bare
 }
 
-/// Converts a range of axis coordinates to values: on the screen, the coordinates of a logarithmic
-/// horizontal axis are logarithms.
+/// Converts axis coordinates to values: on the screen, a logarithmic horizontal axis has logarithms
+/// as coordinates.
 fn values_at(panel: &Panel, places: Range) -> Range {
     match panel.x.scale {
         Scale::Logarithmic => Range::new(10f64.powf(places.min), 10f64.powf(places.max)),

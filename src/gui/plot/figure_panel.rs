@@ -1,4 +1,4 @@
-//! Panel of a figure: title, axes, marks, and the mark under the pointer.
+//! A figure's panel: title, axes, marks, and the mark under the pointer.
 
 use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -19,12 +19,12 @@ use super::ticks::Ticks;
 use super::viewed_range::bounds_of;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 
-/// Height of the title above the first panel \[pt\].
+/// Title height above the first panel \[pt\].
 const TITLE_HEIGHT: f32 = 18.0;
-/// Width of the vertical axis \[pt\].
+/// Vertical axis width \[pt\].
 pub(super) const VALUE_AXIS_WIDTH: f32 = 38.0;
-/// Width of the vertical axes of stacked panels, wide enough for any label, so that the panels have
-/// the same edges \[pt\].
+/// Vertical axis width for stacked panels, wide enough for any label, so that the panels have the
+/// same edges \[pt\].
 const STACKED_AXIS_WIDTH: f32 = 52.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between panels \[pt\].
@@ -34,7 +34,7 @@ const TICK_GAP: f64 = 26.0;
 /// Minimum distance between ticks in a compact figure, which has as many tick labels as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
 
-/// Returns the height above the first panel of a plot: little without a title.
+/// Returns the height above a plot's first panel: little without a title.
 pub(super) fn title_height(title: &str) -> f32 {
     if title.is_empty() {
         PANEL_GAP
@@ -43,19 +43,19 @@ pub(super) fn title_height(title: &str) -> f32 {
     }
 }
 
-/// State of a panel between frames.
+/// A panel's state between frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PanelView {
     /// Visible ranges, if zoomed or panned.
     pub(super) ranges: Option<[Range; 2]>,
-    /// Transform as last drawn; on the screen, the coordinates of a logarithmic horizontal axis are
-    /// logarithms.
+    /// Transform as last drawn; on the screen, a logarithmic horizontal axis has logarithms as
+    /// coordinates.
     pub(super) transform: Option<PlotTransform>,
     pub(super) marks: DrawnMarks,
 }
 
 impl PanelView {
-    /// Adopts the horizontal range of another panel.
+    /// Adopts another panel's horizontal range.
     pub(super) fn share_places(&mut self, panel: &Panel, other: &Self) {
         let Some([x, _]) = other.ranges else {
             self.ranges = None;
@@ -69,8 +69,8 @@ impl PanelView {
     }
 }
 
-/// Panel of a figure at its position on the screen, given by the indices of its plot and of the
-/// panel in the plot.
+/// A figure's panel at its position on the screen, identified by the index of its plot and by its
+/// index in the plot.
 pub(super) struct PlacedPanel<'a> {
     pub(super) scene: &'a FigureScene<'a>,
     /// Index of the plot in the figure.
@@ -146,9 +146,9 @@ impl PlacedPanel<'_> {
         PlacedResponse { response, pointed }
     }
 
-    /// Returns the opacity of the error bars, which grows after they have been computed.
+    /// Returns the error bars' opacity, which grows after they have been computed.
     fn bars_opacity(&self, ui: &Ui) -> f32 {
-        /// Duration of the fade \[s\].
+        /// Time in which the bars fade in \[s\].
         const FADE_S: f32 = 0.25;
         if !has_bars(self.panel()) {
             ui.ctx()
@@ -183,7 +183,7 @@ impl PlacedPanel<'_> {
         !self.scene.is_compact || is_first_column
     }
 
-    /// Returns the area of the frame with its axes.
+    /// Returns the area that the frame and its axes fill.
     fn frame_with_axes(&self, has_values: bool) -> Rect {
         let above = if self.number == 0 {
             title_height(&self.scene.figure.plots[self.plot].title)
@@ -312,7 +312,7 @@ impl PlacedPanel<'_> {
     }
 }
 
-/// Returns the spacing of the tick labels or names along a horizontal axis.
+/// Returns how tick labels or names are spaced along a horizontal axis.
 fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     let named = panel.x.names.as_deref().unwrap_or_default();
     if named.is_empty() {

@@ -1,4 +1,4 @@
-//! Content of a figure with its interaction on the screen, and its events.
+//! A figure with its interaction on the screen, and its events.
 
 use egui::{Modifiers, Vec2};
 
@@ -8,13 +8,13 @@ use gdcm_words::derivation::ExplainTarget;
 
 use super::derivation_menu::Question;
 
-/// Descriptions of a figure's plots and marks. A plot is given by its index, a mark by its id and
-/// its axis coordinates.
+/// Describes a figure's plots and marks in words. A plot is given by its index, a mark by its id
+/// and its axis coordinates.
 pub trait FigureWords {
     /// Returns the accessible name of a plot, read by screen readers.
     fn plot_name(&self, plot: usize) -> String;
 
-    /// Returns the accessible name of a dot; `None` if dots have no names of their own.
+    /// Returns a dot's accessible name; `None` if dots have no names of their own.
     fn dot_name(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
@@ -39,14 +39,14 @@ impl FigureWords for Figure {
 /// Figure with its interaction on the screen. Panels are stacked; only the first panel has
 /// interactive marks.
 pub struct FigureScene<'a> {
-    /// Name that distinguishes the widgets from those of other figures.
+    /// Distinguishes the widgets from those in other figures.
     pub name: &'static str,
     pub figure: &'a Figure,
     /// Mark in focus.
     pub selected: Option<MarkId>,
     /// Mark highlighted by another view.
     pub highlighted: Option<MarkId>,
-    /// Marks represented by the named columns, if columns are interactive instead of dots.
+    /// Marks that the named columns represent, if columns are interactive rather than dots.
     pub columns: &'a [MarkId],
     /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
@@ -55,19 +55,19 @@ pub struct FigureScene<'a> {
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
     /// Whether the axis texts are reduced: the vertical label only at the left of each row, and
-    /// only the unit of the horizontal axis, at its end.
+    /// only the unit on the horizontal axis, at its end.
     pub is_compact: bool,
-    /// Whether, of stacked panels, only the lowest has numbers along the common horizontal axis.
+    /// Whether, in a stack of panels, only the lowest has numbers along the common horizontal axis.
     pub is_stacked: bool,
     /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
     pub words: &'a dyn FigureWords,
-    /// Index of this figure's first plot in descriptions and events.
+    /// Index that this figure's first plot has in descriptions and events.
     pub first_plot: usize,
 }
 
 impl<'a> FigureScene<'a> {
-    /// Creates the scene of a figure without zoom and without a mark in focus.
+    /// Creates a figure's scene without zoom and without a mark in focus.
     pub fn new(
         name: &'static str,
         figure: &'a Figure,
@@ -102,6 +102,6 @@ pub enum FigureEvent {
     StatusText(String),
     /// A mark in the plot with this index was clicked, with these modifier keys.
     Clicked(usize, MarkId, Modifiers),
-    /// The derivation of a value was requested.
+    /// A value's derivation was requested.
     ExplanationRequested(ExplainTarget),
 }

@@ -23,27 +23,27 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Width of the strip at the left for the common vertical label \[pt\].
 const LABEL_STRIP: f32 = 16.0;
-/// Margin for the unit beside the last plot of a compact figure \[pt\].
+/// Margin for the unit beside the last plot in a compact figure \[pt\].
 const UNIT_MARGIN: f32 = 14.0;
 
-/// State of a figure between frames.
+/// A figure's state between frames.
 #[derive(Clone, Debug, Default)]
 pub struct FigureView {
     hovered: Option<MarkId>,
     /// Axis coordinates of the dot under the pointer.
     pointed_at: Option<[f64; 2]>,
-    /// Subject of the figure; a change of subject fits all plots.
+    /// Subject of the figure; if this changes, all plots are fitted.
     subject: String,
     plots: Vec<PlotView>,
-    /// Ranges of the axes that are fitted to the marks.
+    /// Ranges kept for the axes that are fitted to the marks.
     held: BTreeMap<HeldAxis, Range>,
     question_menu: QuestionMenu,
 }
 
-/// Axis whose range is held between frames.
+/// Axis whose range is kept between frames.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct HeldAxis {
-    /// Title of the plot; empty for an axis that all plots share.
+    /// Plot title; empty for an axis that all plots share.
     plot: String,
     /// Index of the panel in the plot, 0 for a shared axis.
     panel: usize,
@@ -66,8 +66,8 @@ impl FigureView {
         }
     }
 
-    /// Replaces the fitted ranges of a figure by those shown before, as long as the marks fit into
-    /// them. Logarithmic axes and axes with names keep their own ranges.
+    /// Replaces a figure's fitted ranges by those shown before, as long as the marks fit into them.
+    /// Logarithmic axes and axes with names keep their own ranges.
     pub fn hold_axes(&mut self, figure: &mut Figure, update: AxisUpdate) {
         let shared = figure.shared;
         let mut held = BTreeMap::new();
@@ -117,35 +117,35 @@ impl FigureView {
         }
     }
 
-    /// Returns the axis coordinates of the dot under the pointer.
+    /// Returns where the dot under the pointer lies, in axis coordinates.
     pub fn pointed_at(&self) -> Option<[f64; 2]> {
         self.pointed_at
     }
 
-    /// Returns the visible ranges of a plot, if zoomed or panned.
+    /// Returns a plot's visible ranges, if zoomed or panned.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
         self.plots.get(plot)?.first.ranges
     }
 
-    /// Returns the transform of a plot as last drawn.
+    /// Returns a plot's transform as last drawn.
     pub fn transform(&self, plot: usize) -> Option<&PlotTransform> {
         self.plots.get(plot)?.first.transform.as_ref()
     }
 
-    /// Returns the screen position of axis coordinates in a plot.
+    /// Converts axis coordinates in a plot to a screen position.
     pub fn position(&self, plot: usize, [x, y]: [f64; 2]) -> Option<Pos2> {
         let transform = self.transform(plot)?;
         Some(transform.position_from_point(&PlotPoint::new(x, y)))
     }
 
-    /// Returns the last screen position of a dot.
+    /// Returns where a dot was last drawn on the screen.
     pub fn screen_position(&self, plot: usize, id: &MarkId) -> Option<Pos2> {
         let panel = self.plots.get(plot)?.first.marks.panel()?;
         let dot = panel.dots().find(|dot| dot.id.as_ref() == Some(id))?;
         self.position(plot, [dot.x, dot.y])
     }
 
-    /// Adds the events of the mark under the pointer in a plot to `events`.
+    /// Adds the events for the mark under the pointer in a plot to `events`.
     fn report(
         &mut self,
         scene: &FigureScene<'_>,
@@ -193,8 +193,7 @@ pub fn figure_ui(
     events
 }
 
-/// Returns the number of rows in which the plots of a figure are arranged, with no plot smaller
-/// than `least`.
+/// Returns how many rows a figure's plots form, with no plot smaller than `least`.
 pub fn rows(figure: &Figure, size: Vec2, least: Vec2) -> usize {
     match figure.plots.len() {
         0 => 0,
@@ -280,8 +279,8 @@ struct FigurePainter<'a> {
 }
 
 impl FigurePainter<'_> {
-    /// Divides the room of a plot among its panels, in proportion to their weights. If only the
-    /// lowest panel has numbers, their height is not divided.
+    /// Divides a plot's room among its panels, in proportion to their weights. If only the lowest
+    /// panel has numbers, their height is not divided.
     fn heights(&self, plot: usize, room: f32) -> Vec<f32> {
         let panels = &self.scene.figure.plots[plot].panels;
         let total: f64 = panels.iter().map(|panel| panel.weight).sum();
@@ -300,8 +299,8 @@ impl FigurePainter<'_> {
         heights
     }
 
-    /// Draws the stacked panels of a plot into `rect` with the same horizontal range; returns the
-    /// response of the first panel.
+    /// Draws a plot's stacked panels into `rect` with the same horizontal range; returns the first
+    /// panel's response.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
         let title = title_height(&self.scene.figure.plots[plot].title);

@@ -1,4 +1,4 @@
-//! Zooming and panning of a figure's panel, and their limits.
+//! Zooming and panning in a figure's panel, within limits.
 
 use egui::Response;
 use egui_plot::PlotTransform;
@@ -10,12 +10,12 @@ use gdcm_plot::figure::{Panel, Range};
 use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
 use super::zoom_gesture::ZoomGesture;
 
-/// Maximum visible range, relative to the full range of the panel.
+/// Maximum visible range, relative to the panel's full range.
 const FARTHEST: f64 = 10.0;
 /// Minimum visible range, in axis coordinates.
 const LEAST_WIDTH: f64 = 1e-4;
 
-/// Returns the visible ranges after the gestures of this frame: the wheel zooms about the pointer.
+/// Returns the visible ranges after this frame's gestures: the wheel zooms about the pointer.
 /// Dragging has panned the bounds of `transform` already, which egui_plot does itself. `None` if a
 /// range is not finite.
 pub(super) fn navigated_ranges(
@@ -44,7 +44,7 @@ pub(super) fn navigated_ranges(
     Some([x, y])
 }
 
-/// Returns the limits of zooming out: the data range along a time axis, a decade beyond the data
+/// Returns the limits for zooming out: the data range along a time axis, a decade beyond the data
 /// range along a logarithmic axis, ten times the data range otherwise.
 fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
@@ -56,7 +56,7 @@ fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     [across, widths]
 }
 
-/// Returns the full ranges of a panel in axis coordinates, which are logarithms on a logarithmic
+/// Returns a panel's full ranges in axis coordinates, which are logarithms on a logarithmic
 /// horizontal axis.
 pub(super) fn whole_ranges(panel: &Panel) -> [Range; 2] {
     let x = panel.shown(Along::X);

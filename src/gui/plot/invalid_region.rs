@@ -13,16 +13,16 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 const HATCH_STEP: f32 = 7.0;
 /// Minimum width with room for the text \[pt\].
 const LEAST_STRIP: f32 = 40.0;
-/// Lower edge of the strip, below the upper edge of the frame \[pt\].
+/// Distance from the frame's upper edge to the strip's lower edge \[pt\].
 const STRIP_END: f32 = 17.0;
 /// Total padding at both ends of the text \[pt\].
 const TEXT_PADDING: f32 = 8.0;
-/// Distance of the bracket to the left of the ends of the curves \[pt\].
+/// Distance from the bracket to the curve ends at its right \[pt\].
 const BRACKET_GAP: f32 = 9.0;
-/// Half the length of the bracket's ends \[pt\].
+/// Half the length of the lines at the bracket's ends \[pt\].
 const HALF_BRACKET: f32 = 3.0;
-/// Distance to the left of the ends of the curves that must be visible \[pt\]. The ends may lie on
-/// the edge of the frame.
+/// Distance from the curve ends, to the left, at which the curves must be visible \[pt\]. The ends
+/// may lie on the frame's edge.
 const VISIBLE_BESIDE: f32 = 6.0;
 
 /// Hatches the frequencies above `omega` \[rad/s\].
@@ -39,9 +39,9 @@ pub(super) fn add_hatching(plot: &mut PlotUi<'_>, omega: f64, palette: &Palette)
 
 /// Adds lines that descend to the left at 45 degrees, clipped to the region.
 ///
-/// On a line, `x + y = along`, with x and y measured from the upper left corner of the region; the
-/// line enters at the top or right edge, at `x = top`, and leaves at the bottom or left edge, at
-/// `x = foot`.
+/// On a line, `x + y = along`, with x and y measured from the region's upper left corner; the line
+/// enters at the top or right edge, at `x = top`, and leaves at the bottom or left edge, at `x =
+/// foot`.
 fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
     let width = region.right() - region.left();
     let height = region.height();
@@ -99,8 +99,8 @@ impl InvalidStrip<'_> {
     }
 }
 
-/// Draws a bracket between the magnitudes with and without leads at the end of the curves, if both
-/// are visible.
+/// Draws a bracket between the magnitudes with and without leads where the curves end, if both are
+/// visible.
 fn paint_increase(ui: &Ui, invalid: &InvalidRegion, transform: &PlotTransform, palette: &Palette) {
     let Some(ends_db) = invalid.ends_db else {
         return;

@@ -16,7 +16,7 @@ pub(super) fn add_shade(plot: &mut PlotUi<'_>, range: RangeInclusive<f64>, fill:
     plot.span(Span::new("", range).fill(fill).border_width(0.0));
 }
 
-/// Shades a range of values.
+/// Shades a vertical range.
 pub(super) fn add_shade_of_values(
     plot: &mut PlotUi<'_>,
     range: RangeInclusive<f64>,
@@ -68,8 +68,8 @@ fn vertical(place: f64, stroke: Stroke) -> VLine {
 
 type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Layer of shapes in screen coordinates, which egui_plot ignores when it fits ranges and finds the
-/// item under the pointer.
+/// Layer that draws shapes in screen coordinates, which egui_plot ignores when it fits ranges and
+/// finds the item under the pointer.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,
     draw: Drawing<'a>,

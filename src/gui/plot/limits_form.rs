@@ -7,7 +7,7 @@ use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Form with a field for each limit of an axis, and buttons that apply them or fit the axis.
+/// Form with a field for each axis limit, and buttons that apply them or fit the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitsForm {
     axis: BodeAxis,
@@ -21,7 +21,7 @@ pub(super) struct LimitsForm {
     is_new: bool,
 }
 
-/// Effect of the form in a frame.
+/// Request from the form in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum FormAnswer {
     /// No button was clicked.

@@ -1,9 +1,9 @@
-//! Plots: each is drawn from a scene and its state of the last frame, and returns the engineer's
+//! Plots: each is drawn from a scene and its state from the last frame, and returns the engineer's
 //! actions.
 //!
-//! Every panel with axes is drawn by `panel_painter`, which also paints the frames of plots without
-//! axes in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`)
-//! describes the content of plots; the parts below serve all of them:
+//! Every panel with axes is drawn by `panel_painter`, which also paints the frames for plots
+//! without axes in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`)
+//! describes what a plot shows; the parts below serve all plots:
 //!
 //! ```text
 //! panel_painter               frame, axes, grid and gestures; each scene adds its layers

@@ -15,9 +15,9 @@ pub const PICK_RADIUS: f32 = 8.0;
 /// Curve under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit {
-    /// Index among the curves of the scene.
+    /// Index among the scene's curves.
     pub(super) curve: usize,
-    /// Frequency of the curve's point nearest to the pointer \[rad/s\].
+    /// Frequency at which the curve is nearest to the pointer \[rad/s\].
     pub(super) omega: f64,
     /// Distance from the pointer \[pt\].
     pub(super) distance: f32,
@@ -31,7 +31,7 @@ pub(super) fn nearest_curve(
     pointer: Pos2,
     transform: &PlotTransform,
 ) -> Option<Hit> {
-    // The best hit so far, and the layer of its curve.
+    // The best hit so far, and its curve's layer.
     let mut best: Option<(Hit, usize)> = None;
     let mut axis = LogFrequencies::default();
     let [min, max] = [-PICK_RADIUS, PICK_RADIUS]
@@ -101,7 +101,7 @@ fn runs_through(
     false
 }
 
-/// Returns the screen position of a point; `None` for a gap.
+/// Returns where a point lies on the screen; `None` for a gap.
 fn position_of(point: [f64; 2], transform: &PlotTransform) -> Option<Pos2> {
     if is_finite(&point) {
         Some(transform.position_from_point(&PlotPoint::from(point)))
@@ -144,8 +144,8 @@ pub(super) struct ClosestPoint {
     pub(super) distance: f32,
 }
 
-/// Returns the point of a line nearest to `pointer`; `None` if no part of the line lies within
-/// [`PICK_RADIUS`] horizontally.
+/// Returns the point on a line nearest to `pointer`; `None` if no part lies within [`PICK_RADIUS`]
+/// horizontally.
 pub(super) fn closest_point(
     points: impl Iterator<Item = [f64; 2]>,
     pointer: Pos2,

@@ -14,7 +14,7 @@ const DOT_RADIUS: f32 = 10.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PointedMark {
     pub(super) id: MarkId,
-    /// Axis coordinates of the dot; of a column, its place and zero.
+    /// Axis coordinates of the dot; for a column, its place and zero.
     pub(super) at: [f64; 2],
 }
 

@@ -10,7 +10,7 @@ use super::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, Overview
 use super::panel_text::{caption_font, message_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Width of the row names and height of the column names \[pt\].
+/// Width for the row names and height for the column names \[pt\].
 const HEADER: Vec2 = vec2(52.0, 22.0);
 /// Gap between two cells \[pt\].
 const GAP: f32 = 4.0;
@@ -53,8 +53,8 @@ pub fn overview_ui(
     events
 }
 
-/// Returns the range of `log10 omega` of all curves. Frequencies ascend, so the first and the last
-/// suffice.
+/// Returns the range of `log10 omega` over all curves. Frequencies ascend, so the first and the
+/// last suffice.
 fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
     let mut ends = Vec::new();
     for curve in cells.iter().flat_map(|cell| cell.curves) {
@@ -76,7 +76,7 @@ fn cell_name(scene: &OverviewScene<'_>, cell: &OverviewCell<'_>) -> String {
     }
 }
 
-/// Places of the cells.
+/// Places for the cells.
 struct Table {
     rect: Rect,
     columns: usize,

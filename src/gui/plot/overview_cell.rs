@@ -1,4 +1,4 @@
-//! Cell of the overview: the small Bode plot of a response, and its events.
+//! Overview cell: a response's small Bode plot, and its events.
 
 use egui::{
     CursorIcon, Painter, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2,
@@ -18,9 +18,9 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Share of a cell's height for the magnitude, if the phase is shown too.
 const MAGNITUDE_PART: f32 = 0.58;
-/// Minimum size of a cell with texts \[pt\].
+/// Minimum size for a cell with texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
-/// Height of the line above the curves of a cell \[pt\].
+/// Line height above a cell's curves \[pt\].
 const CELL_HEAD: f32 = 16.0;
 
 /// Response at its position in the table.
@@ -94,7 +94,7 @@ impl PlacedCell<'_> {
         }
     }
 
-    /// Paints the vertical ranges and the note of the cell, which has no axes, above the curves.
+    /// Paints the vertical ranges and the note above the curves, because the cell has no axes.
     fn paint_head(&self, ui: &Ui, head: Rect, ranges: &str) {
         let palette = self.palette;
         let head = head.shrink2(vec2(3.0, 0.0));
@@ -111,7 +111,7 @@ impl PlacedCell<'_> {
         row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
     }
 
-    /// Shades the comparison band, and draws the lower edge of a pane.
+    /// Shades the comparison band, and draws a pane's lower edge.
     fn paint_band(&self, painter: &Painter, rect: Rect) {
         let (min, max) = self.band;
         let ends = self.place_across(rect, min)..=self.place_across(rect, max);
@@ -121,7 +121,7 @@ impl PlacedCell<'_> {
         painter.hline(rect.x_range(), rect.bottom(), line);
     }
 
-    /// Returns the horizontal screen position of a frequency \[rad/s\], limited to the pane.
+    /// Returns the horizontal screen position for a frequency \[rad/s\], limited to the pane.
     fn place_across(&self, rect: Rect, omega: f64) -> f32 {
         let fraction = (omega.log10() - self.log_omega.min) / self.log_omega.width();
         rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
@@ -173,7 +173,7 @@ impl PlacedCell<'_> {
     }
 }
 
-/// Returns the panes of a cell and their places.
+/// Returns a cell's panes and their places.
 fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
     if !show_phase {
         return vec![(Pane::Magnitude, rect)];

@@ -1,4 +1,4 @@
-//! Content of the overview, its state between frames, and its events.
+//! Contents of the overview, its state between frames, and its events.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::drawn_pane::DrawnPane;
 use super::nearest_curve::{Hit, nearest_curve};
 
-/// Response shown in a cell of the overview.
+/// Response in an overview cell.
 #[derive(Clone, Debug)]
 pub struct OverviewCell<'a> {
     pub pair: Pair,
@@ -24,7 +24,7 @@ pub struct OverviewCell<'a> {
     pub note: String,
 }
 
-/// Content of the overview.
+/// Contents of the overview.
 #[derive(Clone, Copy, Debug)]
 pub struct OverviewScene<'a> {
     /// Input names: the columns.
@@ -49,7 +49,7 @@ pub enum OverviewEvent {
     StatusText(String),
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
-    /// An entry of a curve's menu was chosen.
+    /// An entry in a curve's menu was chosen.
     ActionChosen(CurveId, CurveAction),
 }
 
@@ -60,7 +60,7 @@ pub(super) struct MenuCurve {
     pub(super) curve: CurveId,
 }
 
-/// State of the overview between frames.
+/// The overview's state between frames.
 #[derive(Clone, Debug, Default)]
 pub struct OverviewView {
     /// Whether phases are shown below magnitudes.
@@ -71,7 +71,7 @@ pub struct OverviewView {
 }
 
 impl OverviewView {
-    /// Returns the transform of a cell as last drawn.
+    /// Returns a cell's transform as last drawn.
     fn transform(&self, pair: Pair, pane: Pane) -> Option<&PlotTransform> {
         self.sketches.get(&(pair, pane))?.transform.as_ref()
     }
@@ -99,13 +99,13 @@ impl OverviewView {
         cell.curves.get(best?.curve)
     }
 
-    /// Returns the screen position of a magnitude, given as `log10 omega` and decibels.
+    /// Returns where a magnitude, given as `log10 omega` and decibels, lies on the screen.
     pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
     }
 
-    /// Returns the screen position of the centre of a cell's magnitude plot.
+    /// Returns the centre of a cell's magnitude plot on the screen.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.frame().center())

@@ -10,7 +10,7 @@ use crate::gui::widgets::palette::Palette;
 #[derive(Clone, Copy)]
 pub(super) struct PaneScene<'a> {
     pub(super) pane: Pane,
-    /// Area of the pane, including its axes.
+    /// Area that the pane and its axes fill.
     pub(super) rect: Rect,
     pub(super) scene: &'a BodeScene<'a>,
     pub(super) looks: CurveLooks<'a>,

@@ -8,7 +8,7 @@ use egui_plot::{Axis, AxisHints, GridInput, GridMark};
 use super::ticks::{LABEL_SPACING, Ticks, named_marks};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Font size of tick labels \[pt\].
+/// Font size for tick labels \[pt\].
 const TICK_SIZE: f32 = 11.0;
 /// Height of an axis with tick labels only \[pt\].
 pub(super) const TICKS_HEIGHT: f32 = 15.0;
@@ -25,23 +25,23 @@ pub(super) struct PanelAxis {
     pub(super) spacing: TickSpacing,
     /// Quantity and unit beside the tick labels; may be empty.
     pub(super) label: String,
-    /// Height of a horizontal axis, width of a vertical axis \[pt\].
+    /// Height if the axis is horizontal, width if it is vertical \[pt\].
     pub(super) thickness: f32,
     /// Whether tick labels and axis label are drawn; otherwise the axis takes no room and only its
     /// grid lines are drawn.
     pub(super) is_drawn: bool,
-    /// Number of labels up to which those of a low plot move together.
+    /// In a low plot, labels move together until there are this many.
     pub(super) least_labels: usize,
 }
 
-/// Spacing of the tick labels of an axis.
+/// Spacing of the tick labels on an axis.
 #[derive(Clone, Debug)]
 pub(super) enum TickSpacing {
     /// Usual spacing for this kind of ticks.
     Usual,
-    /// Like `Usual`, with room for the widest number; `digit_pt` is the width of a digit \[pt\].
+    /// Like `Usual`, with room for the widest number; `digit_pt` is a digit's width \[pt\].
     WidestNumber { digit_pt: f64 },
-    /// Names at 0, 1, 2 … instead of numbers, without grid lines.
+    /// Names at 0, 1, 2 …, in place of numbers, without grid lines.
     Names { names: Vec<String>, widest_pt: f64 },
 }
 
@@ -86,7 +86,7 @@ impl PanelAxis {
         }
     }
 
-    /// Returns the appearance of the axis; empty if the axis is not drawn.
+    /// Returns the axis as egui_plot draws it; empty if it is not drawn.
     pub(super) fn hints<'a>(&self, side: Axis, palette: &Palette) -> Vec<AxisHints<'a>> {
         if !self.is_drawn {
             return Vec::new();

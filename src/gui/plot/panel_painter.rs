@@ -1,5 +1,5 @@
 //! Panel painter: frame, axes and grid, and the layers added by the scene. Draws every plot with
-//! axes, and the frames of plots without axes.
+//! axes, and the frames for plots without axes.
 
 use egui::{
     Color32, Id, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo,
@@ -15,7 +15,7 @@ use crate::gui::widgets::palette::Palette;
 /// Panel on the screen, without its content.
 pub(super) struct PanelPainter<'a> {
     pub(super) id: Id,
-    /// Place of the panel with its axes.
+    /// Place for the panel with its axes.
     pub(super) rect: Rect,
     /// Accessible name.
     pub(super) name: &'a str,
@@ -47,13 +47,13 @@ pub(super) enum Gestures {
 pub(super) struct Follow {
     /// Axes along which dragging pans.
     pub(super) pans: Vec2b,
-    /// Margin at either end, relative to the length of the axis.
+    /// Margin at either end, relative to the axis length.
     pub(super) margins: Vec2,
     /// Panels with the same group share their horizontal range.
     pub(super) group: Option<Id>,
-    /// Horizontal range, in axis coordinates, instead of the range of the data.
+    /// Horizontal range, in axis coordinates, if it is not the data range.
     pub(super) whole_across: Option<Range>,
-    /// Range of the values instead of the range of the data.
+    /// Vertical range, if it is not the data range.
     pub(super) values: Option<Range>,
 }
 
@@ -156,7 +156,7 @@ fn following<'p>(plot: Plot<'p>, follow: Follow) -> Plot<'p> {
 /// Corner radius of a frame \[pt\]; egui_plot uses the same for panels with axes.
 const FRAME_RADIUS: f32 = 2.0;
 
-/// Paints the frame of a plot without axes, like the frame that egui_plot paints for a panel with
+/// Paints the frame for a plot without axes, like the frame that egui_plot paints for a panel with
 /// axes.
 pub(super) fn paint_frame(ui: &Ui, rect: Rect, fill: Color32, outline: Stroke) {
     ui.painter()

@@ -5,12 +5,12 @@ use egui::{Align2, FontId, Rect, Sense, Ui, WidgetInfo};
 
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Returns the font of titles, axis labels, legends and dot labels.
+/// Returns the font for titles, axis labels, legends and dot labels.
 pub(super) fn caption_font() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }
 
-/// Horizontal position of a text that ends at the right end of its row; `row_text` and
+/// Horizontal position for a text that ends at the right end of its row; `row_text` and
 /// `painted_text` count negative positions from the right.
 pub(super) const AT_RIGHT: f32 = -0.01;
 

@@ -8,8 +8,8 @@ use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, Pane};
 use super::quantity::BodeQuantity;
 
-/// Formats frequency, name and values of the curve under the pointer in a single line; `None` if no
-/// curve is under the pointer.
+/// Formats frequency, name and values for the curve under the pointer in a single line; `None` if
+/// no curve is under the pointer.
 pub fn pointed_curve_text(
     view: &BodeView,
     curves: &[BodeCurve],

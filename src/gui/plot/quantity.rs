@@ -1,4 +1,4 @@
-//! Quantities and units of the two stacked panes.
+//! Quantities and units in the two stacked panes.
 
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
@@ -18,7 +18,7 @@ pub enum BodeQuantity<'a> {
     },
     /// Ratio and phase difference that enter J: `20 log10(|H_ref| / |H_sim|)` above, phase
     /// difference between `H_ref` and `H_sim` below (M6). `H_ref` is the identified response,
-    /// `H_sim` the response of a physics model.
+    /// `H_sim` a physics model's response.
     Error { phase: PhaseErrorUnit },
     /// Scheduled minus identified response in every condition.
     ScheduleError,
@@ -36,15 +36,15 @@ pub enum ResponseSubject {
     FoundModel,
 }
 
-/// Texts that distinguish the controls of a plot from those of others.
+/// Texts that distinguish a plot's controls from those in other plots.
 struct PlotNames {
-    /// Id salt of the plot's widgets.
+    /// Id salt for the plot's widgets.
     salt: &'static str,
-    /// Suffix of a control's label.
+    /// Suffix for the labels of controls.
     label_suffix: &'static str,
-    /// Suffix of a pane's name.
+    /// Suffix for pane names.
     pane_suffix: &'static str,
-    /// Suffix of a pane's name within a sentence.
+    /// Suffix for pane names within a sentence.
     sentence_suffix: &'static str,
 }
 
@@ -91,7 +91,7 @@ impl BodeQuantity<'_> {
     /// Responses in every condition, in decibels and degrees.
     pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
         Self::with_subject(ResponseSubject::EveryCondition);
-    /// Responses of a model found in a file, in decibels and degrees.
+    /// Responses from a model found in a file, in decibels and degrees.
     pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
         Self::with_subject(ResponseSubject::FoundModel);
 
@@ -118,13 +118,12 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the id salt that distinguishes the widgets of this plot from others.
+    /// Returns the id salt that distinguishes this plot's widgets from others.
     pub(super) fn salt(self) -> &'static str {
         self.names().salt
     }
 
-    /// Returns the suffix that distinguishes the labels of this plot from the labels of the Bode
-    /// plot.
+    /// Returns the suffix that distinguishes this plot's labels from those in the Bode plot.
     pub(super) fn label_suffix(self) -> &'static str {
         self.names().label_suffix
     }
@@ -147,7 +146,7 @@ impl BodeQuantity<'_> {
         format!("{pane:?}{}", self.names().pane_suffix)
     }
 
-    /// Returns the name of a pane within a sentence: "magnitude plot".
+    /// Returns a pane's name within a sentence: "magnitude plot".
     pub(super) fn name_in_sentence(self, pane: Pane) -> String {
         let pane = format!("{pane:?}").to_lowercase();
         format!("{pane}{}", self.names().sentence_suffix)
@@ -174,7 +173,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the label of a pane's values, with the unit in which they are drawn.
+    /// Returns the label for a pane's values, with the unit in which they are drawn.
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { .. } => Self::RESPONSE.axis_label(pane),
@@ -215,7 +214,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the minimum height of a pane's range after fitting.
+    /// Returns the minimum height that a pane shows after fitting.
     pub(super) fn least_height(self, pane: Pane) -> f64 {
         match (self, pane) {
             (Self::Response { .. }, Pane::Magnitude) => 4.0,

@@ -1,4 +1,4 @@
-//! Read-out: values of every role at the pointer, in a strip between the panes.
+//! Read-out: every role's values at the pointer, in a strip between the panes.
 
 use egui::{Color32, FontId, Pos2, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
@@ -8,23 +8,23 @@ use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::{painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// Height of the strip \[pt\].
+/// Strip height \[pt\].
 pub(in crate::gui) const STRIP_HEIGHT: f32 = 40.0;
-/// Minimum gap between the two values of a cell \[pt\].
+/// Minimum gap between the two values in a cell \[pt\].
 const VALUE_GAP: f32 = 10.0;
-/// Minimum width of a name beside its sample \[pt\].
+/// Minimum width for a name beside its sample \[pt\].
 const LEAST_NAME: f32 = 40.0;
-/// Width of the columns of frequency and difference, whose names are longer, relative to the column
-/// of a role.
+/// Width of the frequency column and the difference column, which have longer names, relative to a
+/// role's column.
 const WIDE_COLUMN: f32 = 1.25;
 /// Padding at the left and at the right of a column \[pt\].
 const PAD: f32 = 8.0;
-/// Length of a sample, which shows the pattern of the curve in the panes, and of the gap beside it
+/// Length of a sample, which shows the curve's pattern in the panes, and width of the gap beside it
 /// \[pt\].
 const SAMPLE: f32 = 22.0;
 const SAMPLE_GAP: f32 = 6.0;
 
-/// Values of a role, or differences between two roles.
+/// A role's values, or the differences between two roles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadoutCell {
     /// Role; `None` for a difference.
@@ -43,13 +43,13 @@ impl ReadoutCell {
         format!("{}: {}, {}", self.name, self.values[0], self.values[1])
     }
 
-    /// Returns the style of the sample; `None` for a difference. The sample has the width and the
-    /// dashes of its curves.
+    /// Returns the sample's style, with the same width and dashes as its curves; `None` for a
+    /// difference.
     fn sample(&self, palette: &Palette) -> Option<CurveStyle> {
         Some(palette.role_style(self.role?, false))
     }
 
-    /// Returns the font of the values.
+    /// Returns the font for the values.
     fn font(&self, size: f32) -> FontId {
         if self.role.is_none() {
             medium(size)
@@ -70,7 +70,7 @@ impl ReadoutCell {
         }
     }
 
-    /// Draws the values, in a font of this size, into a column.
+    /// Draws the values, in this font size, into a column.
     fn ui(&self, ui: &Ui, column: Rect, size: f32, palette: &Palette) {
         let [upper, lower] = halves(column);
         let mut from = 0.0;
@@ -105,14 +105,14 @@ impl ReadoutCell {
     }
 }
 
-/// Values of every role at a frequency.
+/// Every role's values at a frequency.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Readout {
     /// "ω at the pointer".
     pub heading: String,
     /// Formatted frequency: "6.00 rad/s".
     pub frequency: String,
-    /// Roles in the order of the chips, the difference last.
+    /// Roles in the same order as their chips, the difference last.
     pub cells: Vec<ReadoutCell>,
 }
 
@@ -146,12 +146,12 @@ pub(in crate::gui) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, 
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.sentence()));
 }
 
-/// How the cells of a read-out fit into a strip.
+/// Font size and omitted cells with which a read-out fits into a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StripFit {
-    /// Number of the first cells that are omitted.
+    /// Number of cells omitted from the start.
     left_out: usize,
-    /// Font size of the values \[pt\].
+    /// Font size for the values \[pt\].
     size: f32,
 }
 
@@ -197,7 +197,7 @@ fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     galley.size().x
 }
 
-/// Returns the place of a column in a strip with `cells` cells; column 0 shows the frequency.
+/// Returns a column's place in a strip with `cells` cells; column 0 shows the frequency.
 fn column(strip: Rect, place: usize, cells: usize) -> Rect {
     let left = strip.left() + width_before(place, cells) * strip.width();
     let right = strip.left() + width_before(place + 1, cells) * strip.width();
@@ -207,7 +207,7 @@ fn column(strip: Rect, place: usize, cells: usize) -> Rect {
         .shrink2(vec2(PAD, 3.0))
 }
 
-/// Returns the total width of all columns before a column, as a share of the strip.
+/// Returns the total width before a column, as a share of the strip.
 fn width_before(place: usize, cells: usize) -> f32 {
     let width = |column: usize| {
         if column == 0 || column == cells {

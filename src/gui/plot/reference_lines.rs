@@ -11,14 +11,14 @@ use super::end_labels::EndLabel;
 use super::nearest_curve::closest_point;
 use crate::gui::widgets::palette::Palette;
 
-/// Offset of a note from its label \[pt\]. End labels are sorted by height and spread, so that the
-/// note comes directly below its label.
+/// Offset between a note and its label \[pt\]. End labels are sorted by height and spread, so that
+/// the note comes directly below its label.
 const BELOW: f32 = 0.1;
 
-/// Reference lines of a pane.
+/// A pane's reference lines.
 #[derive(Clone, Copy)]
 pub(super) struct PaneLines<'a> {
-    /// Lines of both panes.
+    /// Lines in both panes.
     pub(super) lines: &'a [ReferenceLine],
     pub(super) pane: Pane,
     pub(super) transform: &'a PlotTransform,
@@ -72,7 +72,7 @@ impl<'a> PaneLines<'a> {
                 text: line.label.clone(),
                 color: palette.label_color(color),
             });
-            // The note continues the label on paper; here it is a label of its own.
+            // The note continues the label on paper; here it is a separate label.
             let note = line.note.trim_start_matches([',', ':', ' ']);
             if !note.is_empty() {
                 labels.push(EndLabel {
@@ -86,14 +86,14 @@ impl<'a> PaneLines<'a> {
     }
 }
 
-/// Returns the points `[log10 omega, value]` of a line over the visible frequencies.
+/// Returns a line's points `[log10 omega, value]` over the visible frequencies.
 fn visible_points(level: &Level, transform: &PlotTransform) -> Vec<[f64; 2]> {
     let bounds = transform.bounds();
     level.points(bounds.min()[0], bounds.max()[0])
 }
 
-/// Returns the path of a line on the screen. Parts far outside the frame are skipped, because
-/// drawing their many dashes would take time.
+/// Returns a line's path on the screen. Parts far outside the frame are skipped, because drawing
+/// their many dashes would take time.
 fn screen_path(level: &Level, transform: &PlotTransform) -> Vec<Pos2> {
     let frame = transform.frame();
     let mut path = Vec::new();

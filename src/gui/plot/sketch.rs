@@ -1,4 +1,4 @@
-//! Small plot of curves without axes: a cell of the overview.
+//! Small plot that shows curves without axes, in an overview cell.
 
 use egui::{Painter, Rect};
 use egui_plot::PlotTransform;
@@ -19,7 +19,7 @@ const MARGIN: f64 = 0.06;
 /// Minimum visible height \[dB\] or \[deg\].
 const LEAST_HEIGHT: f64 = 1.0;
 
-/// Small plot of curves.
+/// Curves in a small plot without axes.
 pub(super) struct Sketch<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) pane: Pane,
@@ -69,7 +69,7 @@ impl Sketch<'_> {
     }
 }
 
-/// Describes the range of the values as last drawn; empty if there was nothing to draw.
+/// Describes the range that the values had when last drawn; empty if there was nothing to draw.
 pub(super) fn range_text(drawn: &DrawnPane, pane: Pane) -> String {
     let Some(transform) = drawn.transform else {
         return String::new();

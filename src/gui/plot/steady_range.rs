@@ -1,13 +1,13 @@
-//! Hysteresis of axes: a range changes only if the data no longer fit, and then to round ends.
+//! Hysteresis for axes: a range changes only if the data no longer fit, and then to round ends.
 
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::{Scale, step_above};
 
-/// Part of an axis by which data may exceed it before it grows.
+/// Share of an axis by which data may exceed it before it grows.
 const OVERSHOOT: f64 = 0.02;
-/// Part of an axis in use below which it shrinks.
+/// Share of an axis below which data make it shrink.
 const LEAST_USE: f64 = 0.6;
-/// Number of steps on an axis at least; the ends are multiples of the step, which is 1, 2 or 5 times
+/// Minimum number of steps on an axis; the ends are multiples of the step, which is 1, 2 or 5 times
 /// a power of ten.
 const LEAST_STEPS: f64 = 20.0;
 
@@ -16,7 +16,7 @@ const LEAST_LABELS: f64 = 5.0;
 /// Maximum factor by which an axis is extended to reach that number.
 const MOST_EXTENSION: f64 = 1.25;
 
-/// How far an update of the displayed results has come.
+/// Stage of an update to the displayed results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AxisUpdate {
     /// The results are complete: axes may grow and shrink.
@@ -58,8 +58,8 @@ pub(super) fn changed_range(shown: Range, wanted: Range, update: AxisUpdate) -> 
     }
 }
 
-/// Returns a range with round ends that contains at least [`LEAST_LABELS`] multiples of a usual step
-/// between labels, for an axis that must be readable in a low plot.
+/// Returns a range with round ends that contains at least [`LEAST_LABELS`] multiples of a usual
+/// step between labels, for an axis that must be readable in a low plot.
 pub(super) fn labelled_range(range: Range, scale: Scale) -> Range {
     let rounded = rounded_out(range);
     if scale == Scale::Logarithmic {
@@ -111,7 +111,7 @@ fn degree_step_below(step: f64) -> f64 {
 /// Returns the range with its ends moved outwards to multiples of a round step.
 pub(super) fn rounded_out(range: Range) -> Range {
     let step = step_above(range.width() / LEAST_STEPS);
-    // The factor keeps an end that is a multiple of the step up to a rounding error.
+    // The slack keeps an end that is a multiple of the step up to a rounding error.
     let slack = 1e-9 * step;
     Range::new(
         ((range.min + slack) / step).floor() * step,

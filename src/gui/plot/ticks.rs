@@ -1,9 +1,9 @@
-//! Ticks and grid lines of egui_plot axes: adapts the ticks chosen by [`ticks_of`], which also
+//! Ticks and grid lines for egui_plot axes: adapts the ticks chosen by [`ticks_of`], which also
 //! serves printed figures, to egui_plot.
 //!
-//! A mark of egui_plot has a value and a step size, and egui_plot draws marks of a larger step size
-//! more strongly. A mark is therefore labelled by giving it the step size of [`LABELLED`] points,
-//! and left without a label by giving it that of [`MINOR`] points, whatever the true distance.
+//! An egui_plot mark has a value and a step size; the larger the step size, the more strongly it is
+//! drawn. A mark is therefore labelled by giving it a step size of [`LABELLED`] points, and left
+//! without a label by giving it [`MINOR`] points, whatever the true distance.
 
 use egui::Rangef;
 use egui_plot::{GridInput, GridMark};
@@ -13,7 +13,7 @@ use gdcm_model::units::{db_to_ratio, ratio_to_db};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::{FrequencyUnit, Scale, Tick, TickGaps, ticks_of};
 
-/// Minimum distance between ticks of a vertical axis \[pt\].
+/// Minimum distance between ticks on a vertical axis \[pt\].
 pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;
 
 /// Step size given to every mark with a label \[pt\].
@@ -21,14 +21,14 @@ const LABELLED: f64 = 100.0;
 /// Step size given to every mark without a label \[pt\].
 const MINOR: f64 = 25.0;
 
-/// Value of `grid_spacing` for which egui_plot draws marks of the step size [`LABELLED`] in full
-/// strength and marks of the step size [`MINOR`] in half strength.
+/// `grid_spacing` with which egui_plot draws marks with the step size [`LABELLED`] in full strength
+/// and marks with [`MINOR`] in half strength.
 pub(super) const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
-/// Value of `label_spacing` for which egui_plot labels marks of the step size [`LABELLED`] in full
-/// strength, and marks of the step size [`MINOR`] not at all.
+/// `label_spacing` with which egui_plot labels marks with the step size [`LABELLED`] in full
+/// strength, and marks with [`MINOR`] not at all.
 pub(super) const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,
@@ -42,14 +42,14 @@ const DECADE_LINE_GAP: f64 = 5.0;
 const LEAST_LABEL_GAP: f64 = 13.0;
 /// Minimum distance between labels that move together until there are more than two \[pt\].
 const LOW_LABEL_GAP: f64 = 15.0;
-/// Factor by which the labels of a low plot move together until it has enough.
+/// Factor by which labels in a low plot move together until it has enough.
 const CLOSER: f64 = 0.8;
 /// Space between two labels along a horizontal axis \[digit widths\].
 const LABEL_SPACE: f64 = 0.6;
 /// Minimum gap between two names along an axis \[pt\].
 const NAME_GAP: f64 = 6.0;
 
-/// Kind of ticks of an axis.
+/// Kind of ticks on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ticks {
     /// Plain values with labels at least this far apart \[pt\]: decibels, knots, gains.
@@ -81,14 +81,14 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks and grid lines between two axis coordinates; the step size of a mark
-    /// determines whether egui_plot labels it.
+    /// Returns the ticks and grid lines between two axis coordinates; a mark's step size determines
+    /// whether egui_plot labels it.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         self.marks_with_labels(bounds, units_per_point, 2)
     }
 
-    /// Like [`Self::marks`], with the labels of a low plot moved together until there are at least
-    /// `least` of them or no more fit.
+    /// Like [`Self::marks`], but moves the labels in a low plot together until there are at least
+    /// `least` or no more fit.
     pub(super) fn marks_with_labels(
         self,
         bounds: (f64, f64),
@@ -103,8 +103,7 @@ impl Ticks {
         }
         let mut gap = self.label_gap();
         let mut found = self.ticks_between(bounds, units_per_point, gap);
-        // A single label does not show the scale, so the labels of a low plot may be closer
-        // together.
+        // A single label does not show the scale, so labels in a low plot may be closer together.
         let floor = if least > 2 {
             LOW_LABEL_GAP
         } else {
@@ -155,7 +154,7 @@ impl Ticks {
         ticks_of(scale, range, length, gaps)
     }
 
-    /// Returns [`Self::marks`] of a horizontal axis, far enough apart for the widest label if a
+    /// Returns [`Self::marks`] for a horizontal axis, far enough apart for the widest label if a
     /// digit is `digit` points wide. Only decimal values can be set further apart; the other kinds
     /// have a fixed gap.
     pub(super) fn horizontal_marks(

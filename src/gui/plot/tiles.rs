@@ -1,4 +1,4 @@
-//! Small multiples: plots of equal size, in the number of rows and columns that makes them largest.
+//! Small multiples: equally large plots, in as many rows and columns as make them largest.
 
 use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
@@ -16,8 +16,7 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// Returns the arrangement of `count` plots in `available` with the largest plots, none smaller
-    /// than `least`.
+    /// Arranges `count` plots in `available` so that they are largest, none smaller than `least`.
     ///
     /// If they do not fit, they form a single row wider than `available`, which scrolls.
     pub(super) fn arrange(count: usize, available: Vec2, least: Vec2) -> Self {
@@ -46,7 +45,7 @@ impl Tiles {
         })
     }
 
-    /// Rates an arrangement by the height of the largest plot of preferred proportions in a tile,
+    /// Rates an arrangement by the height of the largest plot with preferred proportions in a tile,
     /// less a penalty for empty tiles \[pt\].
     fn usefulness(self, count: usize) -> f32 {
         let gaps = self.columns * self.rows - count;
@@ -70,7 +69,7 @@ impl Tiles {
         }
     }
 
-    /// Returns the area of a tile, with the first tile at `origin`.
+    /// Returns a tile's area, with the first tile at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
         let column = index % self.columns;
         let row = index / self.columns;
@@ -81,11 +80,11 @@ impl Tiles {
 
 /// Area into which tiles are drawn.
 pub(super) struct TiledArea {
-    /// Name that distinguishes the scroll bars from those of other areas.
+    /// Distinguishes the scroll bars from those in other areas.
     pub(super) name: &'static str,
     pub(super) rect: Rect,
     pub(super) count: usize,
-    /// Minimum size of a tile \[pt\].
+    /// Minimum tile size \[pt\].
     pub(super) least: Vec2,
 }
 

@@ -1,4 +1,4 @@
-//! Display units of the values in a Bode pane.
+//! Display units for the values in a Bode pane.
 
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::db_to_ratio;
@@ -7,7 +7,7 @@ use gdcm_plot::figure::axis::Scale;
 
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 
-/// Display unit of a pane. Decibels and ratios are both drawn from values in decibels.
+/// A pane's display unit. Decibels and ratios are both drawn from values in decibels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueUnit {
     Decibel,
@@ -37,7 +37,7 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the permitted widths of the visible range.
+    /// Returns the permitted widths for the visible range.
     pub(super) fn widths(self) -> Range {
         match self {
             Self::Decibel | Self::Ratio => Range {

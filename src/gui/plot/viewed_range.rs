@@ -1,10 +1,10 @@
-//! Visible range of an axis, and the limits of zooming and panning.
+//! Visible range on an axis, and how far zooming and panning may change it.
 
 use egui_plot::PlotBounds;
 
 use gdcm_plot::figure::Range;
 
-/// Margin at either end, relative to the width of the data range; the total is ten times the width.
+/// Margin at either end, relative to the data range; in total, ten times the data range is visible.
 const BEYOND: f64 = 4.5;
 
 /// Maximum range when zooming out.
@@ -14,9 +14,9 @@ pub(super) enum ZoomLimit {
     Data,
     /// Data range, extended by this share of its width on either side.
     DataWithMargin(f64),
-    /// Data range of a logarithmic axis, extended by a decade on either side.
+    /// Data range on a logarithmic axis, extended by a decade on either side.
     Decade,
-    /// Ten times the width of the data range, and at least this width.
+    /// Ten times the data range, and at least this wide.
     TenWidths { least: f64 },
 }
 
@@ -55,17 +55,17 @@ pub(super) fn ranges_of(bounds: &PlotBounds) -> [Range; 2] {
     [0, 1].map(|axis| Range::new(min[axis], max[axis]))
 }
 
-/// Returns the bounds of a plot with these ranges.
+/// Returns plot bounds with these ranges.
 pub(super) fn bounds_of([x, y]: [Range; 2]) -> PlotBounds {
     PlotBounds::from_min_max([x.min, y.min], [x.max, y.max])
 }
 
-/// Visible range of an axis. The engineer's choice persists until it is released.
+/// Visible range on an axis. The engineer's choice persists until it is released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ViewedRange {
     range: Range,
     is_chosen: bool,
-    /// Permitted widths of the range.
+    /// Permitted range widths.
     widths: Range,
     /// Permitted values in the range.
     ends: Range,
@@ -83,7 +83,7 @@ impl ViewedRange {
         }
     }
 
-    /// Limits the view to a decade on either side of `computed`, the range of `log10 omega` of the
+    /// Limits the view to a decade on either side of `computed`, the range of `log10 omega` in the
     /// computed curves.
     pub(super) fn reach(&mut self, computed: Range) {
         self.ends = ZoomLimit::Decade.range(computed);

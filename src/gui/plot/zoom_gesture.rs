@@ -2,7 +2,7 @@
 
 use egui::{Context, Pos2, Response, Vec2};
 
-/// Zoom factor of a wheel notch.
+/// Zoom factor for a wheel notch.
 const NOTCH: f32 = 1.1;
 /// Scroll distance of a wheel notch \[pt\].
 const NOTCH_PT: f32 = 40.0;
@@ -34,12 +34,12 @@ impl ZoomGesture {
         })
     }
 
-    /// Returns the zoom factor of the horizontal axis.
+    /// Returns the zoom factor for the horizontal axis.
     pub(super) fn across(self) -> f64 {
         f64::from(self.both.x * self.sideways)
     }
 
-    /// Returns the zoom factor of the vertical axis.
+    /// Returns the zoom factor for the vertical axis.
     pub(super) fn upward(self) -> f64 {
         f64::from(self.both.y)
     }

@@ -1,4 +1,4 @@
-//! Content of the plots across conditions.
+//! Contents of the plots across conditions.
 
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::{AcrossRole, Study};
@@ -6,7 +6,7 @@ use gdcm_study::{AcrossRole, Study};
 /// Models and conditions in the plots across conditions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AcrossDisplay {
-    /// Drawn models of each condition, in the order of [`AcrossRole::ALL`].
+    /// Models drawn for each condition, ordered as [`AcrossRole::ALL`].
     pub roles: Vec<AcrossRole>,
     pub conditions: AcrossConditions,
     /// Shown page, where the window has no room for both.
@@ -24,7 +24,7 @@ impl Default for AcrossDisplay {
 }
 
 impl AcrossDisplay {
-    /// Shows or hides the models of a role.
+    /// Shows or hides a role's models.
     pub fn show(&mut self, role: AcrossRole, is_shown: bool) {
         self.roles.retain(|known| *known != role);
         if is_shown {
@@ -54,7 +54,7 @@ impl AcrossConditions {
         }
     }
 
-    /// Returns the conditions of a study.
+    /// Returns these conditions in a study.
     pub fn of_study(self, study: &Study) -> Vec<ConditionId> {
         study
             .dataset
@@ -64,7 +64,7 @@ impl AcrossConditions {
     }
 }
 
-/// Page of the plots across conditions.
+/// Page with plots across conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AcrossPage {
     #[default]
@@ -72,7 +72,7 @@ pub enum AcrossPage {
     Error,
 }
 
-/// Content for which the axes of the plots across conditions were last fitted.
+/// Content to which the axes were last fitted in the plots across conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossFit {
     pub pair: Pair,

@@ -1,5 +1,5 @@
-//! State of the import of models: the models found, the rules that turn them into a dataset, and
-//! the display of both.
+//! State while models are imported: the models found, the rules that turn them into a dataset, and
+//! how both are displayed.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,12 +14,12 @@ use crate::gui::widgets::tables::Sorting;
 /// Maximum number of undo steps.
 const MOST_STEPS: usize = 200;
 
-/// Progress of reading files.
+/// Progress while files are read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReadingProgress {
     /// Current file, counted from 1.
     pub number: usize,
-    /// Total number of files.
+    /// Total file count.
     pub total: usize,
     /// Name of the current file.
     pub name: String,
@@ -44,7 +44,7 @@ pub struct AssemblyState {
     pub faults: Vec<String>,
     /// Messages about content that is not a model.
     pub ignored: Vec<String>,
-    /// Unused content of model files, a line each.
+    /// Unused content in model files, a line each.
     pub unused: Vec<String>,
     /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
@@ -59,11 +59,11 @@ pub struct AssemblyState {
     pub preview: Preview,
     /// Whether the path field has received the focus, as it does when the import opens.
     pub had_focus: bool,
-    /// Path of a folder or a file, as typed.
+    /// Path to a folder or a file, as typed.
     pub source_path: String,
-    /// Path of the rules, as typed.
+    /// Path to the rules, as typed.
     pub rules_path: String,
-    /// Path of the dataset, as typed.
+    /// Path to the dataset, as typed.
     pub dataset_path: String,
 }
 
@@ -114,7 +114,7 @@ impl AssemblyState {
         self.apply(rules);
     }
 
-    /// Undoes the last change of the rules.
+    /// Undoes the last change to the rules.
     pub fn undo(&mut self) {
         if let Some(rules) = self.earlier.pop() {
             self.later.push(self.assembly.rules().clone());
@@ -122,7 +122,7 @@ impl AssemblyState {
         }
     }
 
-    /// Redoes the last undone change of the rules.
+    /// Redoes the last undone change to the rules.
     pub fn redo(&mut self) {
         if let Some(rules) = self.later.pop() {
             self.earlier.push(self.assembly.rules().clone());
@@ -165,7 +165,7 @@ impl AssemblyState {
     }
 }
 
-/// Preview of a response of the selected model.
+/// Preview that shows one response of the selected model.
 #[derive(Debug, Default)]
 pub struct Preview {
     /// Response index `output * inputs + input`, in file order.
@@ -176,10 +176,10 @@ pub struct Preview {
     pub drawn: Option<DrawnPreview>,
 }
 
-/// Curves of a preview, and the response to which they belong.
+/// Curves in a preview, and the response to which they belong.
 #[derive(Debug)]
 pub struct DrawnPreview {
-    /// Key of the model.
+    /// The model's key.
     pub model: String,
     /// Response index, as in [`Preview`].
     pub response: usize,

@@ -1,12 +1,12 @@
-//! Table columns of imported models.
+//! Table columns for imported models.
 
 use gdcm_model::assembly::part::Part;
 use gdcm_model::units::number;
 
-/// Column of the table of imported models.
+/// Column in the table that lists imported models.
 pub struct Column {
     pub heading: &'static str,
-    /// Width of the column, as a share of the table's width.
+    /// Column width, as a share of the table's width.
     pub share: f32,
     /// Returns the cell text; `None` if the value is still to be entered.
     pub cell: fn(&Part) -> Option<String>,
@@ -19,7 +19,7 @@ impl Column {
     }
 }
 
-/// The columns: condition, properties and source file of each model.
+/// The columns: condition, properties and source file for each model.
 pub const COLUMNS: [Column; 9] = [
     Column {
         heading: "condition",

@@ -1,4 +1,4 @@
-//! Display options of the assessment: model, correction, responses, bars or table.
+//! Options for displaying the assessment: model, correction, responses, bars or table.
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
@@ -8,10 +8,10 @@ use gdcm_study::results::assessment_table::AssessedModel;
 /// Responses shown by an assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AssessedPairs {
-    /// On-axis responses (Figures 8 to 12 of the paper).
+    /// On-axis responses (Figures 8 to 12 in the paper).
     #[default]
     OnAxis,
-    /// Off-axis responses (Figures 13 to 19 of the paper).
+    /// Off-axis responses (Figures 13 to 19 in the paper).
     OffAxis,
     /// Response in focus.
     Focused,
@@ -50,16 +50,16 @@ impl CostPart {
     }
 }
 
-/// Display options of the assessment.
+/// Options for displaying the assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AssessmentDisplay {
     pub model: AssessedModel,
     /// Correction applied to the model.
     pub correction: AssessedCorrection,
-    /// Average of the squared errors over frequency; `None` follows the settings.
+    /// Averaging of the squared errors over frequency; `None` follows the settings.
     pub average: Option<CostAverage>,
     pub pairs: AssessedPairs,
-    /// Whether a table is shown instead of bars.
+    /// Whether a table is shown; otherwise bars.
     pub as_table: bool,
     /// Part of J in the table.
     pub part: CostPart,

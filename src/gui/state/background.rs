@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gdcm_method::correction::Problem;
 
-/// Progress of a job. The total is 0 until the job reports it.
+/// A job's progress. The total is 0 until the job reports it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Steps {
     pub done: usize,
@@ -18,31 +18,31 @@ impl Steps {
     }
 }
 
-/// Background work in progress, including the analysis of the current settings.
+/// Background work in progress, including the analysis with the current settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
-    /// Progress of the analysis of the current settings.
+    /// Analysis with the current settings.
     pub analysis: Option<Steps>,
     /// Problems whose optimality proof is running or waiting.
     pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of constraining and releasing responses are being computed.
     pub toggles: bool,
-    /// Progress of the response curves, by model.
+    /// Response curves, by model.
     pub curves: Option<Steps>,
-    /// Progress of the error bars. Each model contributes its response, and the
-    /// analysis with this model as the representative.
+    /// Error bars. Each model contributes its response, and the analysis with this model as the
+    /// representative.
     pub error_bars: Option<Steps>,
-    /// Progress of the responses to all records.
+    /// Responses to all records.
     pub time_histories: Option<Steps>,
-    /// Progress of the couplings.
+    /// Couplings.
     pub couplings: Option<Steps>,
-    /// Progress of the physics parameters.
+    /// Physics parameters.
     pub physics: Option<Steps>,
-    /// Number of jobs that the visible views wait for.
+    /// Jobs that the visible views wait for.
     pub views: usize,
-    /// Progress of the report, by condition.
+    /// Report, by condition.
     pub report: Option<Steps>,
-    /// Progress of the identification.
+    /// Identification.
     pub identification: Option<Steps>,
     /// Whether some work was stopped, by the engineer or by a fault.
     pub stopped: bool,
@@ -64,7 +64,7 @@ impl Background {
     }
 }
 
-/// Describes the progress of the error bars.
+/// Describes how far the error bars have come.
 pub fn error_bar_progress(steps: Steps) -> String {
     if steps.total == 0 {
         "error bars …".to_owned()

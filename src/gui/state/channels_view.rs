@@ -1,8 +1,8 @@
-//! State of the channel plots between frames.
+//! State that the channel plots keep between frames.
 
 use crate::gui::plot::FigureView;
 
-/// State of the channel plots between frames.
+/// State that the channel plots keep between frames.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelsView {
     pub inputs: FigureView,

@@ -12,37 +12,37 @@ use super::records::RecordsState;
 /// Records with the same columns, assigned to the channels in the same way.
 #[derive(Clone, Debug)]
 pub struct ColumnGroup {
-    /// Names of the columns in the files.
+    /// Column names in the files.
     pub columns: Vec<String>,
     layout: RecordLayout,
     /// Number of whole records.
     pub records: usize,
-    /// Conditions of these records; records without a condition have none.
+    /// Conditions to which these records belong; records without a condition add none.
     pub conditions: BTreeSet<ConditionId>,
     /// The first record to show: the first with a problem or an assumed unit, otherwise the first.
     pub first: Option<RecordPlace>,
     is_first_doubtful: bool,
-    /// Problems of the first record that cannot be used; empty if all can.
+    /// Problems in the first record that cannot be used; empty if all can.
     pub problems: Vec<LayoutProblem>,
     /// Names of the channels with assumed units.
     pub assumed: Vec<String>,
 }
 
-/// Place of a record: its condition, and its row there.
+/// Position in the record lists: the condition, and the row there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordPlace {
     pub condition: ConditionId,
     pub row: usize,
 }
 
-/// Channels with assumed units, over the records of all conditions.
+/// Channels with assumed units, over all conditions' records.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AssumedUnits {
-    /// Names of the channels.
+    /// Channel names.
     pub channels: Vec<String>,
-    /// Number of affected records.
+    /// Affected records.
     pub records: usize,
-    /// Number of affected conditions.
+    /// Affected conditions.
     pub conditions: usize,
     /// The first affected record.
     pub first: Option<RecordPlace>,
@@ -118,7 +118,7 @@ impl RecordsState {
         groups
     }
 
-    /// Returns the group of a record; `None` without such a record.
+    /// Returns a record's group; `None` without such a record.
     pub fn group_of(&self, place: RecordPlace) -> Option<ColumnGroup> {
         let record = self.conditions.get(&place.condition)?.rows.get(place.row)?;
         let groups = self.column_groups();

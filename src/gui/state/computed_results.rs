@@ -1,9 +1,9 @@
-//! Computed results with their jobs, and the state of the requests for them.
+//! Computed results with their jobs, and how far the requests for them have come.
 //!
-//! Each change of the study or of the displayed condition is a request with a new, greater number.
-//! Its analysis arrives later: until `received` equals `requested`, the displayed results are older
-//! than the settings. If the request was stopped meanwhile, `stopped` is set, and no analysis is on
-//! its way. A stop of other jobs is in `Background::stopped`.
+//! Whenever the study or the displayed condition changes, this is a request with a new, greater
+//! number. Its analysis arrives later: until `received` equals `requested`, the displayed results
+//! are older than the settings. If the request was stopped meanwhile, `stopped` is set, and no
+//! analysis is on its way. That other jobs were stopped is recorded in `Background::stopped`.
 //!
 //! Most results may be older than the displayed study: read them through the methods of `State` in
 //! `shown_results.rs`, which return a result only where it is still valid.
@@ -43,7 +43,7 @@ const SPINS_AFTER_S: f64 = 0.3;
 /// read.
 const BACKGROUND_AFTER_S: f64 = 0.5;
 
-/// Result of the displayed condition, available before the results of the other conditions.
+/// The displayed condition's result, available before those in the other conditions.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
     /// Number of the request that produced the result.
@@ -58,12 +58,11 @@ pub struct FirstResult {
 #[derive(Debug, Default)]
 pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
-    /// Newer result of the displayed condition, while `analysis` is older.
+    /// The displayed condition's newer result, while `analysis` is older.
     pub first: Option<FirstResult>,
-    /// Costs of constraining or releasing each response, with their job; see
-    /// `State::toggles`.
+    /// Costs of constraining or releasing each response, with their job; see `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Frequency responses of the displayed condition, with their job; see `State::curves`.
+    /// The displayed condition's frequency responses, with their job; see `State::curves`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
     /// Modes by model, with their job; see `State::modes`.
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
@@ -71,20 +70,20 @@ pub struct Results {
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
     /// Responses across conditions, with their job; see `State::across`.
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
-    /// Trade-off of α in the displayed condition, with its job; see `State::trade_off`.
+    /// Trade-off over α in the displayed condition, with its job; see `State::trade_off`.
     pub trade_off: Option<(TradeOffJob, Result<Arc<TradeOff>, ProblemError>)>,
     /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Assessed benefit of the couplings, whether or not they are in use, with the job; see
+    /// Benefit of the couplings, whether or not they are in use, with the job; see
     /// `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
-    /// Diagnosis and benefit of the physics parameters, with the job; see `State::physics`.
+    /// Diagnosis with the physics parameters and their benefit, with the job; see `State::physics`.
     pub physics: Option<(PhysicsJob, Option<AssessedPhysics>)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Responses to the test input, with their job; see `State::test_answers`.
     pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, NoResult>)>,
-    /// Comparison of a record with the tolerances, with its job; see `State::record_history`.
+    /// A record compared with the tolerances, with its job; see `State::record_history`.
     pub record_history: Option<(
         RecordHistoryJob,
         Result<Arc<RecordHistory>, NoRecordHistory>,
@@ -92,20 +91,20 @@ pub struct Results {
     /// Models' responses to the held-out records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
-    /// Comparisons of models with a record in the time domain, or the reasons for their absence.
+    /// Models compared with a record in the time domain, or the reasons why this failed.
     pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, SimulationFailure>)>,
     pub background: Background,
-    /// Start time of the background work \[s, window clock\].
+    /// When the background work started \[s, window clock\].
     pub background_since: Option<f64>,
     /// Number of the newest request.
     pub requested: u64,
     /// Number of the request that produced the analysis.
     pub received: u64,
-    /// Time of the oldest request without a result \[s, window clock\].
+    /// When the oldest request without a result was made \[s, window clock\].
     pub waiting_since: Option<f64>,
     /// Whether a frame with an analysis has been painted.
     pub is_painted: bool,
-    /// Computing time of the newest analysis \[ms\].
+    /// Computing time for the newest analysis \[ms\].
     pub elapsed_ms: f64,
     /// Whether the newest request was stopped, by the engineer or by a fault. The displayed results
     /// then remain older than the settings.
@@ -143,8 +142,8 @@ impl Results {
         self.requested > self.received
     }
 
-    /// Returns whether the result of the displayed condition has newer settings than the analysis
-    /// of all conditions.
+    /// Returns whether the displayed condition's result has newer settings than the analysis of all
+    /// conditions.
     pub fn first_is_ahead(&self) -> bool {
         match &self.first {
             Some(first) => self.analysis.is_some() && first.request > self.received,

@@ -1,5 +1,5 @@
-//! State of the identification of every condition, as the list of conditions, the page bar and the
-//! status bar show it.
+//! Progress of every condition's identification, as the condition list, the page bar and the status
+//! bar show it.
 
 use gdcm_model::dataset::{ConditionId, Dynamics};
 use gdcm_study::decisions::adopted_models::AdoptedModels;
@@ -9,10 +9,10 @@ use gdcm_sysid::identification::Identification;
 use super::condition_records::ConditionRecords;
 use super::window_state::State;
 
-/// Limit of χ²/dof above which a fit is bad (M14, section 6).
+/// χ²/dof above which a fit is bad (M14, section 6).
 pub const BAD_FIT: f64 = 1.5;
 
-/// Numbers of used records of a condition.
+/// Numbers of used records in a condition, fitted and held out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RecordCounts {
     pub fitted: usize,
@@ -20,7 +20,7 @@ pub struct RecordCounts {
     pub held_out: usize,
 }
 
-/// Stage of the identification of a condition.
+/// Stage that a condition's identification has reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitStatus {
     /// Nothing has been identified.
@@ -40,12 +40,12 @@ pub enum FitStatus {
     },
 }
 
-/// Costs per degree of freedom of the recommended model. Every place in the window shows these
+/// The recommended model's costs per degree of freedom. Every place in the window shows these
 /// numbers, so that they agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitCosts {
     pub fitted: f64,
-    /// Cost of the held-out records for the model as it is; `None` without such records.
+    /// The unchanged model's cost on the held-out records; `None` without such records.
     pub held_out: Option<f64>,
     /// Whether the model does not predict the held-out records (M14.17).
     pub is_held_out_bad: bool,
@@ -62,16 +62,16 @@ impl FitCosts {
     }
 }
 
-/// Records and fit of a condition.
+/// A condition's records and fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConditionFit {
     pub counts: RecordCounts,
-    /// Costs of the latest fit, which may be outdated.
+    /// Costs in the latest fit, which may be outdated.
     pub costs: Option<FitCosts>,
     pub status: FitStatus,
 }
 
-/// Progress of the identification of several conditions.
+/// Progress while several conditions are identified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BatchProgress {
     pub finished: usize,
@@ -97,8 +97,8 @@ impl ConditionRecords {
 }
 
 impl State {
-    /// Returns the identification band \[rad/s\] of a condition: its own band if one is set,
-    /// otherwise the study's.
+    /// Returns a condition's identification band \[rad/s\]: its own band if one is set, otherwise
+    /// the study's.
     pub fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
         let records = self.records.conditions.get(&condition);
         if let Some(own) = records.and_then(|records| records.band) {
@@ -108,7 +108,7 @@ impl State {
         [band.min(), band.max()]
     }
 
-    /// Returns whether records or settings of a condition have changed since its latest
+    /// Returns whether a condition's records or settings have changed since its latest
     /// identification; false without one.
     pub fn is_fit_outdated(&self, condition: ConditionId) -> bool {
         let Some(records) = self.records.conditions.get(&condition) else {
@@ -120,7 +120,7 @@ impl State {
         records.changed || job.request.options.band != self.identified_band(condition)
     }
 
-    /// Returns records and fit of a condition; without loaded records, there are none.
+    /// Returns a condition's records and fit; without loaded records, there are none.
     pub fn condition_fit(&self, condition: ConditionId) -> ConditionFit {
         let mut fit = ConditionFit {
             counts: RecordCounts::default(),
@@ -195,7 +195,7 @@ impl State {
         unused
     }
 
-    /// Returns the progress of the requested identifications; `None` if none is running.
+    /// Returns how far the requested identifications have come; `None` if none is running.
     pub fn batch_progress(&self) -> Option<BatchProgress> {
         let unfinished = self.records.running.len();
         if unfinished == 0 {

@@ -1,9 +1,8 @@
-//! Identification of models from the records of a condition: the job, the cautions about its
-//! result, and the models to adopt.
+//! Identifying models from a condition's records: the job, the cautions about its result, and the
+//! models to adopt.
 //!
-//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed`
-//! tells that the settings have changed since; the cautions about the outcome are then no longer
-//! shown.
+//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed` is
+//! set once the settings have changed; the cautions about the outcome are then no longer shown.
 
 use std::sync::Arc;
 
@@ -27,7 +26,7 @@ impl ConditionRecords {
     }
 
     /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
-    /// the channels of the records.
+    /// the channels in the records.
     ///
     /// # Errors
     /// A message, if no record is used, if all are held out, or if a record lacks a reference.
@@ -84,7 +83,7 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns the preparation of a channel, for editing.
+    /// Returns a channel's preparation, for editing.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         match signal.role {
             ChannelSide::Input => self.inputs.get_mut(signal.index),
@@ -92,7 +91,7 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns the preparation of all channels.
+    /// Returns all channels' preparation.
     pub fn preparation(&self) -> Preparation {
         Preparation {
             inputs: self.inputs.clone(),
@@ -135,8 +134,8 @@ impl ConditionRecords {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
 
-    /// Returns the number, counted from 0, of the record that the latest identification used under
-    /// this name, whatever has changed since.
+    /// Returns the number, counted from 0, that the record with this name had in the latest
+    /// identification, whatever has changed since.
     pub fn record_of_name(&self, name: &str) -> Option<usize> {
         let (job, _) = self.found.as_ref()?;
         job.request
@@ -145,7 +144,7 @@ impl ConditionRecords {
             .position(|record| record.name == name)
     }
 
-    /// Returns χ²/dof of the record with this name in the latest identification, whatever has
+    /// Returns χ²/dof for the record with this name in the latest identification, whatever has
     /// changed since; `None` if it was not used.
     pub fn fit_cost(&self, name: &str) -> Option<f64> {
         let number = self.record_of_name(name)?;
@@ -172,7 +171,7 @@ impl ConditionRecords {
     }
 
     /// Returns these records from the history, to replace the records `now`. Models identified in
-    /// the meantime are kept, but marked as results of other settings.
+    /// the meantime are kept, but marked as results from other settings.
     pub(super) fn restored(mut self, now: Option<Self>) -> Self {
         let Some(now) = now else {
             return self;

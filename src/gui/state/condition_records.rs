@@ -1,10 +1,10 @@
-//! Flight records of a condition: which records there are, the parts cut from them, and which of
-//! them are used.
+//! A condition's flight records: which records there are, the parts cut from them, and which are
+//! used.
 //!
 //! Each record and each part is a row; the parts follow their record and have the same source. A
-//! part replaces its whole record, so that no sample counts twice: adding the first part ends the
-//! use of the whole record, removing the last part restores it. A record that the engineer left
-//! out stays out.
+//! part replaces its whole record, so that no sample counts twice: once the first part is added,
+//! the whole record is no longer used; once the last part is removed, it is used again. A record
+//! that the engineer left out stays out.
 //!
 //! `condition_identification.rs` extends [`ConditionRecords`] by the identification.
 
@@ -22,7 +22,7 @@ use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordSource};
 
 use crate::message::Message;
 
-/// Result of adding a record.
+/// Outcome of adding a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AddedRecord {
     New,
@@ -32,14 +32,14 @@ pub enum AddedRecord {
     KnownAlready,
 }
 
-/// Input and number of records for which the displayed record was found.
+/// Input and record count for which the displayed record was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opening {
     pub input: usize,
     pub records: usize,
 }
 
-/// Flight records of a condition, and the models identified from them.
+/// A condition's flight records, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
     /// The records, each followed by its parts.
@@ -50,11 +50,11 @@ pub struct ConditionRecords {
     pub is_chosen: bool,
     /// Input for which the displayed row was found, while the engineer has not chosen one.
     pub opening: Option<Opening>,
-    /// Delay and hold of each input.
+    /// Delay and hold for each input.
     pub inputs: Vec<ChannelPreparation>,
-    /// Delay and hold of each output.
+    /// Delay and hold for each output.
     pub outputs: Vec<ChannelPreparation>,
-    /// Identification band \[rad/s\]; `None` selects the band of the study.
+    /// Identification band \[rad/s\]; `None` selects the study's band.
     pub band: Option<[f64; 2]>,
     /// Columns with recorded references that excited the loop externally (M14.15).
     pub references: Vec<String>,
@@ -67,8 +67,8 @@ pub struct ConditionRecords {
     )>,
     /// Whether the settings have changed since the latest identification.
     pub changed: bool,
-    /// Upper band limit \[rad/s\] from which the common clock of resampled topics is chosen; `None`
-    /// if unknown for some records.
+    /// Upper band limit \[rad/s\] that determines the common clock for resampled topics; `None` if
+    /// unknown for some records.
     pub clock_band_end: Option<f64>,
     /// Records that the engineer has left out; records that are unused only because parts replace
     /// them are not included.
@@ -76,7 +76,7 @@ pub struct ConditionRecords {
 }
 
 impl ConditionRecords {
-    /// Creates the records of a condition in `dataset`.
+    /// Creates a condition's records in `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let (inputs, outputs) = dataset.names_of_channels();
         Self {
@@ -100,8 +100,8 @@ impl ConditionRecords {
         true
     }
 
-    /// Adds a part behind its record, and displays it. The whole record is no longer used, so that no
-    /// sample counts twice. A part of a part is a part of the whole record.
+    /// Adds a part behind its record, and displays it. The whole record is no longer used, so that
+    /// no sample counts twice. A part cut from a part belongs to the whole record.
     ///
     /// # Errors
     /// A message, if the record has no samples in that time span.
@@ -120,13 +120,13 @@ impl ConditionRecords {
         let was_used = whole.used;
         if whole.table.part_s.is_none() {
             whole.used = false;
-            // Without parts, an unused record was left out, for example as a copy of another record;
+            // Without parts, an unused record was left out, for example because it is a copy;
             // removing its parts must not use it.
             if !was_used && !self.has_parts(&source) && !self.left_out.contains(&source) {
                 self.left_out.push(source);
             }
         }
-        // Insert after the earlier parts of the record.
+        // Insert after the record's earlier parts.
         let mut position = index + 1;
         while self.is_part(position) {
             position += 1;
@@ -137,7 +137,7 @@ impl ConditionRecords {
         Ok(())
     }
 
-    /// Returns the index of the whole record of a row, or of the row itself if the whole is not
+    /// Returns the index of the row's whole record, or of the row itself if the whole is not
     /// loaded.
     fn whole_index(&self, index: usize) -> usize {
         let Some(row) = self.rows.get(index) else {
@@ -174,7 +174,7 @@ impl ConditionRecords {
         Ok(())
     }
 
-    /// Returns whether a row exists and is a part of a record.
+    /// Returns whether a row exists and is only a part.
     fn is_part(&self, index: usize) -> bool {
         match self.rows.get(index) {
             Some(row) => row.table.part_s.is_some(),
@@ -237,7 +237,7 @@ impl ConditionRecords {
         self.rows.iter().any(|row| row.table.name == name)
     }
 
-    /// Removes a part of a record; returns whether the row is a part. If it was the last part, the
+    /// Removes a part; returns whether the row is a part. If it was the record's last part, the
     /// whole record is used again, unless the engineer left it out.
     pub fn remove_part(&mut self, index: usize) -> bool {
         if !self.is_part(index) {
@@ -280,7 +280,7 @@ impl ConditionRecords {
     }
 }
 
-/// Creates a part of a record between two times \[s\].
+/// Cuts the part between two times \[s\] from a record.
 ///
 /// # Errors
 /// A message, if the record has no samples in that time span.

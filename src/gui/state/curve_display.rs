@@ -1,5 +1,5 @@
-//! Display options for plots over frequency: units, hidden curves, cursors. None of them changes
-//! a result.
+//! Options for displaying plots over frequency: units, hidden curves, cursors. No result depends on
+//! them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,10 +11,10 @@ use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Display options for plots over frequency.
+/// Options for displaying plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
-    /// Unit of the frequency axes.
+    /// Unit on the frequency axes.
     pub unit: FrequencyUnit,
     /// Curve colours and widths.
     pub looks: PlotStyle,
@@ -29,16 +29,15 @@ pub struct CurveDisplay {
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\]: none, one or two.
     pub pinned: Vec<f64>,
-    /// Named frequencies \[rad/s\] that define the bandwidth of the displayed response.
+    /// Named frequencies \[rad/s\] that define the displayed response's bandwidth.
     pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
-    /// Whether the Bode and error plots show the envelopes of maximum unnoticeable added
-    /// dynamics.
+    /// Whether the Bode and error plots show the envelopes for maximum unnoticeable added dynamics.
     pub shows_muad: bool,
     /// Models selected by drawing a box.
     pub selected: BTreeSet<ModelId>,
-    /// Whether the confidence bands of identified responses are drawn.
+    /// Whether confidence bands about identified responses are drawn.
     pub shows_bands: bool,
     /// Role drawn above all other roles.
     pub raised: Option<Role>,
@@ -140,7 +139,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Drops all display options of single models; called when another dataset is opened.
+    /// Drops all display options that concern single models; called when another dataset is opened.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();

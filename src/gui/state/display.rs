@@ -1,4 +1,4 @@
-//! Display state; none of it changes a result.
+//! Display state; no result depends on it.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::view::View;
 use super::view_pages::ViewPages;
 use crate::gui::plot::FigureView;
 
-/// Display state; none of it changes a result.
+/// Display state; no result depends on it.
 #[derive(Debug, Default)]
 pub struct Display {
     pub selection: Selection,
@@ -26,6 +26,6 @@ pub struct Display {
     pub poles: PolesDisplay,
     pub judging: JudgingDisplay,
     pub pages: ViewPages,
-    /// Figures of the views, kept between frames.
+    /// Each view's figure, kept between frames.
     pub figures: BTreeMap<View, FigureView>,
 }

@@ -12,8 +12,9 @@ use gdcm_study::Analysis;
 pub struct CachedEvidence {
     /// Analysis to which the evidence belongs.
     pub analysis: Option<Arc<Analysis>>,
-    /// Scheduled conditions, and the comparison of the forms over them; `None` if it failed.
+    /// Scheduled conditions, and how well each schedule form fits over them; `None` if the
+    /// comparison failed.
     pub found: Option<(Vec<ConditionId>, FormComparison)>,
-    /// Comparison of the degrees for scheduled leads.
+    /// Fits of the scheduled leads, one for each polynomial degree.
     pub leads: Vec<LeadDegreeFit>,
 }

@@ -1,5 +1,5 @@
-//! The input that a flight record excites most, found by comparison with the other records of the
-//! condition: the unit and the trim of an input have no influence.
+//! The input that a flight record excites most, found by comparison with the condition's other
+//! records: an input's unit and trim have no influence.
 
 use std::sync::Arc;
 
@@ -9,11 +9,11 @@ use gdcm_sysid::records::LaidOutRecord;
 
 use super::condition_records::{ConditionRecords, Opening};
 
-/// Share from which an input counts as excited.
+/// Minimum share at which an input counts as excited.
 const EXCITED: f64 = 0.5;
 
-/// Excitation of the inputs by a record: the standard deviation of each input, relative to the
-/// largest among the records, 0 to 1.
+/// Excitation of the inputs by a record: each input's standard deviation, relative to the largest
+/// among the records, 0 to 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Excitation(Vec<f64>);
 
@@ -52,7 +52,7 @@ impl Excitation {
         self.share(input) >= EXCITED
     }
 
-    /// Returns the share of an input, 0 to 1; 0 for an input that the record lacks.
+    /// Returns an input's share, 0 to 1; 0 for an input that the record lacks.
     fn share(&self, input: usize) -> f64 {
         self.0.get(input).copied().unwrap_or(0.0)
     }
@@ -75,7 +75,7 @@ impl Excitation {
     }
 }
 
-/// Returns the standard deviation of each input over its finite samples.
+/// Returns each input's standard deviation over its finite samples.
 fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
     let mut deviations = Vec::with_capacity(flight.inputs.ncols());
     for column in flight.inputs.column_iter() {
@@ -99,10 +99,10 @@ fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
 /// A record that excites an input.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
-    /// Row of the record.
+    /// The record's row.
     index: usize,
     is_sweep: bool,
-    /// Share of the input, 0 to 1.
+    /// The input's share, 0 to 1.
     share: f64,
 }
 
@@ -119,8 +119,8 @@ impl Candidate {
 }
 
 impl ConditionRecords {
-    /// Displays a used sweep of an input, unless the engineer has chosen a record; any other used
-    /// record of the input if there is no sweep.
+    /// Displays a used record that sweeps an input, or any other used record that excites it if
+    /// there is no sweep; does nothing if the engineer has chosen a record.
     pub fn open_on_input(&mut self, input: usize) {
         let opening = Opening {
             input,
@@ -142,8 +142,8 @@ impl ConditionRecords {
             .filter_map(|(_, row)| row.flight.clone())
             .collect();
         let excitations = Excitation::compare_records(&flights);
-        // A sweep of another input may excite this one too, by the pilot's compensation: the record
-        // that excites it most is the sweep of it.
+        // A sweep on another input may excite this one too, by the pilot's compensation: this
+        // input's own sweep is the record that excites it most.
         let mut best: Option<Candidate> = None;
         for ((index, row), excitation) in rows.into_iter().zip(excitations) {
             if row.guess.held_out || !excitation.excites(input) {

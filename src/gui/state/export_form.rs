@@ -1,5 +1,5 @@
-//! The export dialog: its choices and typed texts, and the job of its dry run. `export_plan.rs`
-//! says when a dry run is requested.
+//! The export dialog: its choices and typed texts, and its dry-run job. `export_plan.rs` says when
+//! a dry run is requested.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -20,14 +20,14 @@ use gdcm_study::{Analysis, AssessedCorrection};
 
 use crate::message::Message;
 
-/// Name of the report among the formats of the dialog.
+/// Name for the report among the dialog's formats.
 pub const REPORT: &str = "report";
 
-/// Dry run of an export.
+/// Dry run before an export.
 #[derive(Clone, Debug)]
 pub struct ExportPlanJob {
     pub analysis: Arc<Analysis>,
-    /// Error bars of the analysis, as far as they are computed.
+    /// Error bars from the analysis, as far as they are computed.
     pub uncertainty: Option<Arc<Uncertainty>>,
     pub source: ExportSource,
     pub set: ExportSet,
@@ -72,11 +72,11 @@ pub struct ExportForm {
     pub remembers: bool,
     /// Typed folder.
     pub folder: String,
-    /// Typed beginning of the file names.
+    /// Typed prefix for the file names.
     pub prefix: String,
-    /// Typed airspeeds of the tables \[kt\].
+    /// Typed airspeeds for the tables \[kt\].
     pub breakpoints: String,
-    /// Airspeeds \[kt\] of the scheduled conditions, which tables have by default.
+    /// Airspeeds \[kt\] in the scheduled conditions, which tables have by default.
     pub default_breakpoints_kt: Vec<f64>,
     /// Directory that replaces `~` in the folder.
     pub home: Option<PathBuf>,
@@ -95,8 +95,8 @@ pub struct ExportForm {
 }
 
 impl ExportForm {
-    /// Creates the form with the choices of the last export; the folder and the prefix are proposed
-    /// where the study has none.
+    /// Creates the form with the choices made for the last export; the folder and the prefix are
+    /// proposed where the study has none.
     pub fn new(
         choices: &ExportChoices,
         dataset: &Dataset,
@@ -104,7 +104,7 @@ impl ExportForm {
         proposed_name: &str,
     ) -> Self {
         let mut choices = choices.clone();
-        // Conditions of an earlier dataset are forgotten.
+        // Conditions chosen in an earlier dataset are forgotten.
         if let Some(conditions) = &mut choices.conditions {
             conditions.retain(|id| dataset.condition(*id).is_some());
             if conditions.len() == dataset.conditions().len() || conditions.is_empty() {
@@ -173,7 +173,7 @@ impl ExportForm {
         }
     }
 
-    /// Returns the typed airspeeds \[kt\]; `None` for those of the scheduled conditions.
+    /// Returns the typed airspeeds \[kt\]; `None` for those in the scheduled conditions.
     ///
     /// # Errors
     /// A message if they are not increasing numbers.

@@ -1,6 +1,6 @@
-//! The dry run of the export dialog.
+//! The export dialog's dry run.
 //!
-//! 1. A change of the dialog, of the study or of the results changes [`State::export_plan_job`].
+//! 1. When the dialog, the study or the results change, [`State::export_plan_job`] changes.
 //! 2. The job computes every file without writing any; its outcome is `ExportForm::plan`.
 //! 3. Files are written only from a plan whose job is the requested one.
 
@@ -64,7 +64,7 @@ impl State {
         Some(Message::new("computation-running", text))
     }
 
-    /// Returns the distinct airspeeds \[kt\] of the scheduled conditions, increasing.
+    /// Returns the distinct airspeeds \[kt\] in the scheduled conditions, increasing.
     pub fn scheduled_airspeeds_kt(&self) -> Vec<f64> {
         let Some(analysis) = self.analysis() else {
             return Vec::new();
@@ -78,7 +78,7 @@ impl State {
         airspeeds_kt
     }
 
-    /// Returns the names of the physics models that every chosen condition of the export has.
+    /// Returns the names of the physics models that every condition chosen for the export has.
     pub fn exported_model_names(&self) -> Vec<String> {
         let chosen = self.forms.export.chosen(self.dataset());
         let mut conditions = self

@@ -1,4 +1,4 @@
-//! Forms in front of the window, and their contents.
+//! Forms in front of the window, and what they contain.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,33 +21,33 @@ pub enum RequirementTable {
 /// Form in front of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FormKind {
-    /// Path of the file to open.
+    /// Path to the file to open.
     Open,
-    /// New path of a study's dataset.
+    /// New path to a study's dataset.
     FindDataset,
-    /// Path of the study.
+    /// Path for the study.
     Save,
     /// Files to export, their contents and folder.
     Export,
-    /// Messages of the session.
+    /// Messages from this session.
     Messages,
     /// Reason for a rejection, in the engineer's words.
     Reason,
-    /// Path of a table to save.
+    /// Path for a table to save.
     SaveTable,
     /// Dataset to make from imported models.
     Models,
     /// Channels and path for a dataset made from records.
     RecordDataset,
-    /// Path of flight records to add.
+    /// Path to flight records to add.
     AddRecords,
-    /// Path and printed width of a figure.
+    /// Path and printed width for a figure.
     SaveFigure,
-    /// Path of the report.
+    /// Path for the report.
     Report,
-    /// Path of a table to read.
+    /// Path to a table to read.
     ReadRequirementTable(RequirementTable),
-    /// Path of the tolerances.
+    /// Path for the tolerances.
     WriteTolerances,
     /// Command palette, searched by name.
     Palette,
@@ -57,7 +57,7 @@ pub enum FormKind {
     Differences,
     Shortcuts,
     About,
-    /// Licences of the libraries.
+    /// Licences under which the libraries are used.
     Licences,
 }
 
@@ -88,7 +88,7 @@ pub struct Forms {
     pub table: Option<Arc<Table>>,
     /// View whose figure is to be saved.
     pub figure: Option<View>,
-    /// Printed width of the figure.
+    /// Width at which the figure is printed.
     pub figure_width: ColumnWidth,
     pub export: ExportForm,
     pub palette: PaletteForm,
@@ -97,7 +97,7 @@ pub struct Forms {
 }
 
 impl Forms {
-    /// Returns the editable text in the field of a form.
+    /// Returns the editable text in a form's field.
     pub fn typed_in(&mut self, form: FormKind) -> &mut String {
         self.typed.entry(form).or_default()
     }

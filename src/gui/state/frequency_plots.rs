@@ -1,4 +1,4 @@
-//! State of the frequency plots, kept between frames.
+//! State that the frequency plots keep between frames.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,20 +12,20 @@ use super::across_display::{AcrossDisplay, AcrossFit};
 use crate::gui::plot::overview_scene::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
-/// Axis ranges, transforms and cached curves of the frequency plots.
+/// Axis ranges, transforms and cached curves for the frequency plots.
 #[derive(Debug, Default)]
 pub struct FrequencyPlots {
-    /// Axis ranges and transforms of the Bode plot.
+    /// Axis ranges and transforms in the Bode plot.
     pub bode: BodeView,
-    /// Axis ranges and transforms of the error plot (ratio and phase difference of the models).
+    /// Axis ranges and transforms in the error plot (the models' ratios and phase differences).
     pub error: BodeView,
     /// Models and conditions in the plots across conditions.
     pub across_display: AcrossDisplay,
-    /// Axis ranges and transforms of the plot across conditions.
+    /// Axis ranges and transforms in the plot across conditions.
     pub across: BodeView,
-    /// Axis ranges and transforms of the plot of the error of the schedule.
+    /// Axis ranges and transforms in the plot that shows the schedule's error.
     pub across_error: BodeView,
-    /// Content for which the axes of both plots were last fitted.
+    /// Content to which the axes in both plots were last fitted.
     pub across_fitted: Option<AcrossFit>,
     /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
@@ -34,15 +34,15 @@ pub struct FrequencyPlots {
     pub shapes: BTreeMap<Pair, ResponseCache>,
     /// Curves shown by the Bode plot.
     pub drawn: Vec<BodeCurve>,
-    /// Curves of the model errors, cached between frames.
+    /// The models' error curves, cached between frames.
     pub errors: ErrorCache,
     /// Curves shown by the error plot.
     pub drawn_errors: Vec<BodeCurve>,
 }
 
 impl FrequencyPlots {
-    /// Drops the shapes of responses that do not belong to these curves, with the curves of other
-    /// conditions that they keep in memory.
+    /// Drops response shapes that do not belong to these curves, and with them other conditions'
+    /// curves that they keep in memory.
     pub fn keep_shapes_of(&mut self, curves: Option<&Arc<ConditionCurves>>) {
         match curves {
             Some(curves) => self.shapes.retain(|_, cache| cache.is_from(curves)),

@@ -10,7 +10,7 @@ use super::evidence_cache::CachedEvidence;
 use super::pair_set::PairSet;
 use crate::gui::widgets::tables::Sorting;
 
-/// Display options of the channel plots, the net-gain plots and the evidence.
+/// Options for displaying the channel plots, the net-gain plots and the evidence.
 #[derive(Debug, Default)]
 pub struct GainDisplay {
     /// Responses shown in the net-gain plots.
@@ -19,13 +19,13 @@ pub struct GainDisplay {
     pub once_held: BTreeSet<Pair>,
     /// Responses picked by the engineer for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
-    /// Quantity of the channel plots, and whether it is drawn over airspeed or over conditions.
+    /// Quantity in the channel plots, and whether it is drawn over airspeed or over conditions.
     pub channel_values: (Measure, Across),
-    /// Ranges and transforms of the channel plots.
+    /// Ranges and transforms in the channel plots.
     pub channels: ChannelsView,
     /// Whether gain plots omit error bars and bands.
     pub hide_bars: bool,
-    /// Sorting of the evidence tables: differences, second variables, schedule forms.
+    /// Sort order for the evidence tables: differences, second variables, schedule forms.
     pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule is shown beside the net gains.
     pub show_evidence: bool,

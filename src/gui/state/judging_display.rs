@@ -1,4 +1,4 @@
-//! Display options of the views that assess the correction: assessment, requirements, variants,
+//! Display options for the views that assess the correction: assessment, requirements, variants,
 //! costs.
 
 use super::assessment_display::AssessmentDisplay;
@@ -7,7 +7,7 @@ use super::requirements_display::RequirementsDisplay;
 use crate::gui::plot::figure_view::FigureView;
 use crate::gui::widgets::tables::Sorting;
 
-/// Display options of the assessment, the requirements, the variants and the cost map.
+/// Options for displaying the assessment, the requirements, the variants and the cost map.
 #[derive(Debug, Default)]
 pub struct JudgingDisplay {
     pub mapped_cost: MappedCost,
@@ -16,12 +16,12 @@ pub struct JudgingDisplay {
     /// Whether responses to a test input are shown even if flight records are available.
     pub shows_test: bool,
     pub requirements: RequirementsDisplay,
-    /// Plots of the record or of the test input among the details of a requirement.
+    /// Plots over time, from the record or the test input, among a requirement's details.
     pub history_figure: FigureView,
     /// Typed name under which the current decisions are stored as a variant.
     pub variant_name: String,
     /// Variant whose corrected model and net gains are overlaid.
     pub overlaid: Option<String>,
-    /// Sorting of the comparison tables: differences, and their effects.
+    /// Sort order for the comparison tables: differences, and their effects.
     pub compare_sorting: [Sorting; 2],
 }

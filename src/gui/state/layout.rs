@@ -1,4 +1,4 @@
-//! Layout of views, panels and sheets.
+//! Visible views, panels and sheets.
 
 use super::opens_with::OpensWith;
 use super::sheet::Sheet;
@@ -29,8 +29,8 @@ impl Layout {
         self.left_open.unwrap_or(self.is_wide)
     }
 
-    /// Opens a sheet, or closes the open one. A list closes the settings: beside the rail of a narrow
-    /// window, only one of them has room.
+    /// Opens a sheet, or closes the open one. A list closes the settings: beside the rail in a
+    /// narrow window, only one has room.
     pub fn show_sheet(&mut self, sheet: Option<Sheet>) {
         self.sheet = sheet;
         if let Some(sheet) = sheet

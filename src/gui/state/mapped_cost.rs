@@ -5,7 +5,7 @@
 pub enum MappedCost {
     /// The uncorrected physics representative.
     Before,
-    /// Optimum of each condition.
+    /// Each condition's optimum.
     #[default]
     Own,
     /// The schedule, applied to the nominal model.

@@ -1,7 +1,7 @@
-//! Window state: the study, what is displayed of it, and its results.
+//! Window state: the study, how it is displayed, and its results.
 //!
 //! Begin with [`window_state`]; its `State` contains everything else. [`shown_results`] says which
-//! results are shown, [`display`] holds the display options of all views.
+//! results are shown, [`display`] holds the display options for all views.
 
 pub mod across_display;
 pub mod assembling;

@@ -10,7 +10,7 @@ use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::fitted_couplings::FittedCouplings;
 use gdcm_words::Table;
 
-/// Modes followed from model to model, zeros of the focused response, and pole shifts due to
+/// Modes followed from model to model, the focused response's zeros, and pole shifts due to
 /// couplings; cached until their inputs change.
 #[derive(Debug, Default)]
 pub struct CachedModes {
@@ -18,19 +18,19 @@ pub struct CachedModes {
     pub inputs: Option<ModesInputs>,
     /// Modes by row, models by column.
     pub table: Table,
-    /// For each row, the first model whose pole is an outlier of the mode.
+    /// For each row, the first model whose pole is an outlier from the mode.
     pub outliers: Vec<Option<ModelId>>,
-    /// Zeros of the focused response, by model.
+    /// The focused response's zeros, by model.
     pub zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Pole shifts of the physics representative due to couplings.
+    /// Shifts that couplings cause in the physics representative's poles.
     pub shifts: Vec<PoleShift>,
 }
 
-/// Inputs of the modes, the zeros and the shifts.
+/// Inputs from which modes, zeros and shifts are computed.
 #[derive(Debug)]
 pub struct ModesInputs {
     pub modes: Arc<ConditionModes>,
-    /// Index of the physics model to whose modes the modes of all other models are matched.
+    /// Index of the physics model to whose modes all other models' modes are matched.
     pub reference: usize,
     /// Couplings that shift the poles.
     pub couplings: Option<Arc<FittedCouplings>>,

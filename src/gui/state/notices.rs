@@ -21,29 +21,29 @@ pub enum MessageBar {
     },
 }
 
-/// Report of a panic, with the details to send to the program's authors.
+/// Report about a panic, with the details to send to the program's authors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaultReport {
     /// The interrupted work, such as "the computation".
     pub work: String,
-    /// Origin of the dataset.
+    /// Origin of the dataset, such as a file.
     pub dataset: String,
-    /// Version of the program.
+    /// Program version.
     pub version: String,
-    /// Message and place of the panic.
+    /// The panic's message and place in the source.
     pub fault: String,
 }
 
 /// Offer to restore decisions that were not saved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecoveryOffer {
-    /// Number of the offer.
+    /// Number by which the window knows the offer.
     pub number: usize,
-    /// Origin of the dataset.
+    /// Origin of the dataset, such as a file.
     pub dataset: String,
-    /// File name of the study, if it was saved before.
+    /// File name under which the study was saved before, if it was.
     pub study: Option<String>,
-    /// Time of the last decision, as displayed.
+    /// When the last decision was made, as displayed.
     pub kept_at: String,
 }
 
@@ -66,14 +66,14 @@ pub enum NoticeKind {
     Trouble,
 }
 
-/// What the engineer can do about a notice, with a button.
+/// Remedy that a notice offers, with a button.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoticeAction {
     /// Opens a folder in the desktop.
     ShowFolder(PathBuf),
     /// Undoes the last step.
     Undo,
-    /// Asks for another path of the study.
+    /// Asks for another path for the study.
     SaveElsewhere,
     /// Asks for another file to open.
     OpenAnother,
@@ -81,7 +81,7 @@ pub enum NoticeAction {
     Compute,
 }
 
-/// Activity that a notice reports. A success resolves the failures of the same activity.
+/// Activity that a notice reports. A success resolves the same activity's failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// A decision about the study.
@@ -112,7 +112,7 @@ pub struct Notice {
 pub const SHOWN_FOR_S: f64 = 6.0;
 /// Maximum number of messages kept in a session.
 const MOST_MESSAGES: usize = 500;
-/// Maximum number of toasts; older ones are in the list of messages only.
+/// Maximum number of toasts; older ones are in the message list only.
 const MOST_TOASTS: usize = 20;
 
 /// Notice in the top bar.
@@ -123,24 +123,24 @@ pub struct Toast {
     pub remaining_s: Option<f64>,
 }
 
-/// Messages of the session, and those of them that the top bar shows.
+/// All messages from the session, and those that the top bar shows.
 #[derive(Debug, Default)]
 pub struct Notices {
     /// Oldest first.
     messages: Vec<Notice>,
     /// Oldest first.
     toasts: Vec<Toast>,
-    /// Whether the list of toasts is open below the newest.
+    /// Whether the toast list is open below the newest toast.
     pub is_list_open: bool,
-    /// Whether the pointer is on a toast, so that no time passes for them.
+    /// Whether the pointer is on a toast, which pauses the timers.
     pub is_held: bool,
-    /// Time of the last call of [`Self::pass_time`] \[s, window clock\].
+    /// When [`Self::pass_time`] was last called \[s, window clock\].
     seen_at_s: f64,
     next_number: u64,
 }
 
 impl Notices {
-    /// Adds a notice, and shows it. It resolves failures of the same activity if it is a success.
+    /// Adds a notice, and shows it. If it is a success, it resolves the same activity's failures.
     pub fn add(&mut self, mut notice: Notice) {
         notice.number = self.next_number;
         self.next_number += 1;
@@ -164,7 +164,7 @@ impl Notices {
         }
     }
 
-    /// Removes the failures of an activity from the top bar; those of [`Activity::Other`] remain
+    /// Removes an activity's failures from the top bar; those under [`Activity::Other`] remain
     /// until they are dismissed.
     pub fn resolve(&mut self, activity: Activity) {
         if activity == Activity::Other {
@@ -197,8 +197,8 @@ impl Notices {
         self.is_list_open = false;
     }
 
-    /// Lets time pass until `now_s` \[s, window clock\] unless the pointer holds the toasts; removes
-    /// those whose time is over. Returns the time \[s\] until the next one disappears.
+    /// Advances the toasts' timers to `now_s` \[s, window clock\] unless the pointer is on a toast;
+    /// removes toasts whose time is over. Returns the time \[s\] until the next one disappears.
     pub fn pass_time(&mut self, now_s: f64) -> Option<f64> {
         let passed_s = (now_s - self.seen_at_s).max(0.0);
         self.seen_at_s = now_s;
@@ -231,7 +231,7 @@ impl Notices {
         self.messages.last()
     }
 
-    /// Returns the messages of the session, oldest first.
+    /// Returns the session's messages, oldest first.
     pub fn messages(&self) -> &[Notice] {
         &self.messages
     }

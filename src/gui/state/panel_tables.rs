@@ -1,4 +1,4 @@
-//! Tables of the panels (conditions, models, matrix, channels) as text, to be copied and saved.
+//! The panels' tables (conditions, models, matrix, channels) as text, to be copied and saved.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -21,9 +21,9 @@ pub enum TableKind {
     PhysicsModels,
     /// Identified models in the displayed condition.
     IdentifiedModels,
-    /// G, D and J of every response.
+    /// G, D and J for every response.
     Matrix,
-    /// Gain and delay of every channel.
+    /// Gain and delay for every channel.
     Channels,
 }
 
@@ -56,8 +56,8 @@ impl TableKind {
     }
 }
 
-/// Builds a table of this kind from the current state. Values have full precision; cells of missing
-/// values are empty.
+/// Builds a table of this kind from the current state. Values have full precision; missing values
+/// leave their cells empty.
 pub fn table_of(state: &State, kind: TableKind) -> Table {
     match kind {
         TableKind::Conditions => conditions(state),
@@ -72,7 +72,7 @@ fn yes_or_no(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-/// Returns the title of a table about the displayed condition.
+/// Returns the title for a table about the displayed condition.
 pub fn title(state: &State, subject: &str) -> String {
     let condition = state.condition();
     format!(
@@ -99,7 +99,7 @@ fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
     table
 }
 
-/// Builds the condition table: flight state, and numbers of open tasks.
+/// Builds the condition table: flight state, and how many tasks are open.
 fn conditions(state: &State) -> Table {
     let mut rows = Vec::new();
     for condition in state.dataset().conditions() {
@@ -134,7 +134,7 @@ fn condition_row(state: &State, condition: &Condition) -> Row {
     ]
 }
 
-/// Builds the table of the models of a bundle in the displayed condition.
+/// Builds the table for the models in one of the displayed condition's bundles.
 fn models(state: &State, bundle: BundleKind) -> Table {
     let mut rows = Vec::new();
     for model in state.condition().bundle(bundle) {
@@ -176,7 +176,7 @@ fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
     ]
 }
 
-/// Returns the title of a table with error bars: subject, condition and confidence level.
+/// Returns the title for a table with error bars: subject, condition and confidence level.
 fn title_with_bars(state: &State, kind: TableKind) -> String {
     let mut subject = kind.name().to_owned();
     if let Some(level) = state.value_uncertainty().level() {
@@ -216,7 +216,7 @@ fn displayed_half(scalar: Scalar, half: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Builds the table of all responses: G, D and net gain, each with its error bar; net delay; J,
+/// Builds the table for all responses: G, D and net gain, each with its error bar; net delay; J,
 /// J_mag and J_phase before and after the correction.
 fn matrix(state: &State) -> Table {
     let pairs = state.dataset().on_axis().pairs();
@@ -274,7 +274,7 @@ fn response_row(state: &State, pair: Pair) -> Row {
     row
 }
 
-/// Builds the table of channel gains and delays with their error bars.
+/// Builds the table for channel gains and delays with their error bars.
 fn channels(state: &State) -> Table {
     let channels = all_channels(state.dataset()).into_iter();
     let rows = channels

@@ -1,18 +1,18 @@
-//! Display options of the view of physics parameters.
+//! Options for displaying the physics parameters.
 
 use crate::gui::plot::FigureView;
 
-/// Page of the view in a window that cannot show everything at once.
+/// Page shown in a window that has no room for the whole view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PhysicsPage {
     /// Every parameter: change, interval, share explained.
     #[default]
     Ranking,
-    /// What cannot be told apart.
+    /// Parameters that cannot be told apart.
     Correlation,
     /// The selected parameter in each condition, and the misfit that remains.
     Conditions,
-    /// Responses and poles of the condition before and after the parameters.
+    /// The condition's responses and poles before and after the parameters.
     Change,
 }
 
@@ -26,10 +26,10 @@ impl PhysicsPage {
     ];
 }
 
-/// Display options of the view of physics parameters.
+/// Options for displaying the physics parameters.
 #[derive(Clone, Debug, Default)]
 pub struct PhysicsDisplay {
-    /// Name of the selected parameter; `None` selects the first of the ranking.
+    /// Name of the selected parameter; `None` selects the first in the ranking.
     pub selected: Option<String>,
     pub page: PhysicsPage,
     /// Responses and poles before and after, as last drawn.

@@ -3,10 +3,10 @@
 use super::modes_cache::CachedModes;
 use crate::gui::widgets::tables::Sorting;
 
-/// Display options of the pole view.
+/// Options for displaying poles.
 #[derive(Debug, Default)]
 pub struct PolesDisplay {
-    /// Whether zeros of the focused response are shown among the poles.
+    /// Whether the focused response's zeros are shown among the poles.
     pub show_zeros: bool,
     /// Modes and zeros, cached between frames.
     pub modes: CachedModes,

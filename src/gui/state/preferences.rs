@@ -14,7 +14,7 @@ use crate::gui::plot::Role;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Preferences of the window. Fields that are missing from a file written by an earlier version get
+/// The window's preferences. Fields that are missing from a file written by an earlier version get
 /// their default values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -31,8 +31,7 @@ pub struct Preferences {
     /// Roles whose visibility differs from the default. Only differences are stored, because later
     /// versions may change the default.
     pub hidden_roles: BTreeSet<Role>,
-    /// Whether the Bode and error plots show the envelopes of maximum unnoticeable added
-    /// dynamics.
+    /// Whether the Bode and error plots show the envelopes for maximum unnoticeable added dynamics.
     pub shows_muad: bool,
     pub shows_bands: bool,
     /// Whether the list of values at the cursor is hidden.

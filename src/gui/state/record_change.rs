@@ -1,19 +1,19 @@
-//! Changes of flight records in the undo history.
+//! Changes to flight records in the undo history.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::number_format::counted;
 
-/// A change of flight records that can be undone, with the names of the records and channels that
+/// A change to flight records that can be undone, with the names of the records and channels that
 /// it concerns.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordChange {
-    /// A change of the records of one condition.
+    /// A change to the records in one condition.
     InCondition {
         condition: ConditionId,
         change: ConditionRecordChange,
     },
-    /// The columns of a record, and of similar records of all conditions.
+    /// A record's columns were changed, and those of similar records in all conditions.
     Columns { record: String },
     /// The assumed units were confirmed.
     DatasetUnits,
@@ -28,7 +28,7 @@ pub enum RecordChange {
     Discard { record: String },
 }
 
-/// A change of the records of a condition.
+/// A change to the records in one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConditionRecordChange {
     Kind {
@@ -69,7 +69,7 @@ pub enum ConditionRecordChange {
 }
 
 impl RecordChange {
-    /// Returns the name of the change in the menu: "leave run_2 out (condition 10)".
+    /// Returns the change's name in the menu: "leave run_2 out (condition 10)".
     pub fn name(&self) -> String {
         match self {
             Self::InCondition { condition, change } => {

@@ -1,4 +1,4 @@
-//! State of the Records view: flight records by condition.
+//! State behind the Records view: flight records by condition.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -14,8 +14,8 @@ pub use super::condition_records::ConditionRecords;
 pub use super::records_page::{RecordsPage, TimeRole};
 pub use super::wanted_dataset::WantedDataset;
 
-/// State of the records before or after an edit, which an undo or redo step restores. Only the
-/// conditions changed by the edit are included.
+/// The records before or after an edit, which an undo or redo step restores. Only the conditions
+/// changed by the edit are included.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsBefore {
     /// Records by condition; `None` for a condition without loaded records.
@@ -29,18 +29,18 @@ pub struct RecordsBefore {
 /// Section below the records that can be unfolded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RecordsFold {
-    /// Columns and units of all records.
+    /// Columns and units in all records.
     Columns,
-    /// Settings of the identification of the displayed condition.
+    /// Settings for identifying the displayed condition.
     Settings,
 }
 
-/// State of the Records view. Not saved: records stay in their files.
+/// State behind the Records view. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
-    /// Records by condition; without an entry, the records of a condition are not loaded yet.
+    /// Records by condition; without an entry, a condition's records are not loaded yet.
     pub conditions: BTreeMap<ConditionId, ConditionRecords>,
-    /// The example that the dataset is, if any: its records are part of the program.
+    /// Embedded example, if the dataset is one: its records are part of the program.
     pub example: Option<Example>,
     pub page: RecordsPage,
     /// Roles whose curves over time are hidden.
@@ -54,26 +54,26 @@ pub struct RecordsState {
     pub advanced_field: Option<&'static str>,
     /// Section that is unfolded below the records.
     pub open_fold: Option<RecordsFold>,
-    /// Added records whose names match no condition of the dataset.
+    /// Added records whose names match no condition in the dataset.
     pub unassigned: Vec<LaidOutRecord>,
     /// The added files and folders.
     pub sources: Vec<PathBuf>,
-    /// Paths of the files read, by SHA-256, to recognise changed files.
+    /// Paths to the files read, by SHA-256, to recognise changed files.
     pub read_from: BTreeMap<String, PathBuf>,
     /// Form for a dataset made from the displayed records.
     pub wanted: WantedDataset,
-    /// Name of the files being read.
+    /// Name under which the files being read are displayed.
     pub reading: Option<String>,
     /// Messages about unreadable content.
     pub faults: Vec<String>,
-    /// Running and waiting identification jobs, in the order of the requests.
+    /// Running and waiting identification jobs, ordered as requested.
     pub running: Vec<IdentifyJob>,
-    /// Number of conditions requested since the queue was last empty.
+    /// Conditions requested since the queue was last empty.
     pub requested_count: usize,
 }
 
 impl RecordsState {
-    /// Returns a copy of the records of the given conditions, to be restored by an undo step.
+    /// Copies the given conditions' records, to be restored by an undo step.
     pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
         let conditions = conditions
             .into_iter()
@@ -149,7 +149,7 @@ impl RecordsState {
         histories
     }
 
-    /// Returns the held-out records in use, of the conditions that have some.
+    /// Returns the held-out records in use, for the conditions that have some.
     pub fn held_out_records(&self) -> Vec<HistoryRecords> {
         let mut histories = self.history_records();
         for history in &mut histories {

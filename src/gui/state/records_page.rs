@@ -1,4 +1,4 @@
-//! Pages of the Records view, and the roles of the curves over time.
+//! Pages in the Records view, and the roles that curves over time have.
 
 use egui::Color32;
 
@@ -7,15 +7,15 @@ use gdcm_plot::figure::Role;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 
-/// A page of the Records view.
+/// A page in the Records view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RecordsPage {
     /// The displayed record over time, and the response in focus with its models.
     #[default]
     Fit,
-    /// Excitation of the inputs, and its highest frequency.
+    /// Excitation of the inputs, and the highest frequency that it reaches.
     Inputs,
-    /// Models of all orders: fit, stabilisation diagram and poles; what further sweeps would bring.
+    /// Models at all orders: fit, stabilisation diagram and poles; what further sweeps would bring.
     Order,
     /// Columns assigned to channels.
     Columns,
@@ -25,7 +25,7 @@ impl RecordsPage {
     /// All pages, in display order.
     pub const ALL: [Self; 4] = [Self::Fit, Self::Inputs, Self::Order, Self::Columns];
 
-    /// Returns the texts of the page's tab.
+    /// Returns the texts on the page's tab.
     pub fn words(self) -> PageWords {
         match self {
             Self::Fit => PageWords {
@@ -55,7 +55,7 @@ impl RecordsPage {
     }
 }
 
-/// Role of a curve over time, in the order of the chips.
+/// Role that a curve over time has, ordered as the chips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TimeRole {
     /// The physics representative.
@@ -64,7 +64,7 @@ pub enum TimeRole {
     Identified,
     /// The corrected physics representative.
     Corrected,
-    /// The samples of the record.
+    /// The recorded samples.
     Measured,
 }
 
@@ -77,7 +77,7 @@ impl TimeRole {
         Self::Measured,
     ];
 
-    /// Roles of the models, whose responses to the recorded inputs are simulated.
+    /// Models' roles; their responses to the recorded inputs are simulated.
     pub const MODELS: [Self; 3] = [Self::Physics, Self::Identified, Self::Corrected];
 
     pub fn name(self) -> &'static str {
@@ -89,7 +89,7 @@ impl TimeRole {
         }
     }
 
-    /// Returns the colour of the role, which is that of the same role in the Bode view.
+    /// Returns the role's colour, which is the same as in the Bode view.
     pub fn color(self, palette: &Palette) -> Color32 {
         let role = match self {
             Self::Physics => Role::Representative,

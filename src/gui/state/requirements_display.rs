@@ -1,10 +1,10 @@
-//! Display options of the requirements: selected cell, details, order of the columns.
+//! Options for displaying the requirements: selected cell, details, column order.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::grid_requirement::{Requirement, RequirementGroup};
 use gdcm_study::results::requirement_role::RequirementRole;
 
-/// Details of the selected requirement.
+/// Details shown about the selected requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RequirementDetail {
     /// Phase delay over bandwidth in all conditions.
@@ -18,8 +18,7 @@ pub enum RequirementDetail {
 impl RequirementDetail {
     pub const ALL: [Self; 3] = [Self::Frequency, Self::Time, Self::Modes];
 
-    /// Returns the details about the requirements of a group; `None` for summary costs, which have
-    /// none of their own.
+    /// Returns the details for a requirement group; `None` for summary costs, which have none.
     pub fn of_group(group: RequirementGroup) -> Option<Self> {
         match group {
             RequirementGroup::Bandwidth => Some(Self::Frequency),
@@ -30,7 +29,7 @@ impl RequirementDetail {
     }
 }
 
-/// Order of the conditions in the grid.
+/// Order in which the grid lists the conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GridOrder {
     #[default]
@@ -38,22 +37,22 @@ pub enum GridOrder {
     Airspeed,
 }
 
-/// A flight record of a condition, by its index among the records of the condition.
+/// A flight record, by its index among its condition's records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordChoice {
     pub condition: ConditionId,
     pub index: usize,
 }
 
-/// Display options of the requirements. The column of the selected cell is the displayed condition.
+/// Options for displaying the requirements. The selected cell's column is the displayed condition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RequirementsDisplay {
-    /// Row of the selected cell; `None` before the first selection.
+    /// The selected cell's row; `None` before the first selection.
     pub selected: Option<Requirement>,
     /// Details in front where only some fit.
     pub detail: RequirementDetail,
     pub are_details_hidden: bool,
-    /// Whether the models corrected by the schedule are judged instead of those with their own
+    /// Whether the models corrected by the schedule are judged; otherwise those with their own
     /// corrections.
     pub judges_schedule: bool,
     pub order: GridOrder,
@@ -65,7 +64,7 @@ pub struct RequirementsDisplay {
 }
 
 impl RequirementsDisplay {
-    /// Returns the role of the judged models.
+    /// Returns the role that the judged models have.
     pub fn role(&self) -> RequirementRole {
         if self.judges_schedule {
             RequirementRole::Scheduled
@@ -74,7 +73,8 @@ impl RequirementsDisplay {
         }
     }
 
-    /// Returns the display after a click on the heading of an order; a second click reverses it.
+    /// Returns the display after a click on the heading that sorts by `order`; a second click
+    /// reverses it.
     pub fn ordered_by(self, order: GridOrder) -> Self {
         Self {
             order,

@@ -13,7 +13,7 @@ pub struct Selection {
     pub hovered: Option<ModelId>,
     /// Condition under the pointer, in the list or as a dot.
     pub hovered_condition: Option<ConditionId>,
-    /// Description of the plot element under the pointer. It is shown in the status bar, because a
+    /// Describes the plot element under the pointer. It is shown in the status bar, because a
     /// tooltip would cover curves.
     pub pointed_words: Option<String>,
     /// The only model shown beside the representatives.

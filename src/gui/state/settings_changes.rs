@@ -1,4 +1,4 @@
-//! Changes since the opening of the settings panel.
+//! Changes since the settings panel was opened.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ impl State {
         self.history.begin_session();
     }
 
-    /// Ends the session; its changes of settings become one undo step.
+    /// Ends the session; its changes to settings become one undo step.
     pub fn end_settings_session(&mut self) {
         self.settings_session = None;
         self.history.end_session(&self.study);
@@ -39,7 +39,7 @@ impl State {
         }
     }
 
-    /// Returns the settings of the table that have changed in the session, in its order.
+    /// Returns the settings in the table that have changed in the session, in table order.
     pub fn changed_settings(&self) -> Vec<&'static Setting> {
         let Some(session) = &self.settings_session else {
             return Vec::new();
@@ -52,7 +52,7 @@ impl State {
             .collect()
     }
 
-    /// Returns the value of a setting at the opening of the panel, if it has changed since.
+    /// Returns a setting's value when the panel was opened, if it has changed since.
     pub fn previous_setting(&self, setting: &Setting) -> Option<Value> {
         let session = self.settings_session.as_ref()?;
         let previous = setting.value(&session.settings);
@@ -63,7 +63,7 @@ impl State {
         }
     }
 
-    /// Returns the decisions that restore all settings of the session.
+    /// Returns the decisions that restore all settings changed in the session.
     pub fn reverting_edits(&self) -> Vec<Edit> {
         let mut edits = Vec::new();
         for setting in self.changed_settings() {
@@ -74,7 +74,7 @@ impl State {
         edits
     }
 
-    /// Returns the analysis at the opening of the panel, once a setting has changed.
+    /// Returns the analysis from when the panel was opened, once a setting has changed.
     pub fn previous_analysis(&self) -> Option<&Analysis> {
         let analysis = self.settings_session.as_ref()?.analysis.as_deref()?;
         let is_of_dataset = Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset);
@@ -84,8 +84,8 @@ impl State {
         Some(analysis)
     }
 
-    /// Returns the result of the displayed condition at the opening of the panel, once a setting
-    /// has changed.
+    /// Returns the displayed condition's result from when the panel was opened, once a setting has
+    /// changed.
     pub fn previous_result(&self) -> Option<&ConditionAnalysis> {
         self.previous_analysis()?.condition(self.condition().id())
     }

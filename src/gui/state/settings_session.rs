@@ -1,12 +1,12 @@
-//! Session of the settings panel: the settings and results at its opening, with which the present
-//! ones are compared.
+//! Settings session: the settings and results from when the panel was opened, with which the
+//! present ones are compared.
 
 use std::sync::Arc;
 
 use gdcm_study::Analysis;
 use gdcm_study::decisions::settings::Settings;
 
-/// Settings and results at the opening of the settings panel.
+/// Settings and results from when the settings panel was opened.
 #[derive(Clone, Debug)]
 pub struct SettingsSession {
     pub settings: Settings,

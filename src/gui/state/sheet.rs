@@ -1,4 +1,4 @@
-//! Sheets that cover part of the views.
+//! Sheets, which cover part of the views.
 
 use crate::gui::plot::derivation_menu::QUESTION;
 
@@ -7,11 +7,11 @@ use crate::gui::plot::derivation_menu::QUESTION;
 pub enum Sheet {
     /// Reasons for the result, below the verdict.
     Reasons,
-    /// Physics models, beside the narrow form of the left panel.
+    /// Physics models, beside the left panel in its narrow form.
     Models,
-    /// Identified models, beside the narrow form of the left panel.
+    /// Identified models, beside the left panel in its narrow form.
     Identified,
-    /// Flight records of the displayed condition, beside the narrow form of the left panel.
+    /// The displayed condition's flight records, beside the left panel in its narrow form.
     Records,
     /// Derivation of a value.
     Derivation,

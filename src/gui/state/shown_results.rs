@@ -1,10 +1,10 @@
 //! Results that the window shows: which computed results are still valid for the displayed study,
 //! and how old they may be.
 //!
-//! [`Results`](super::computed_results::Results) keeps the last output of each kind of job, together with
-//! the job. A newer output replaces it only when its job is complete. Until then the methods below
-//! return the older output, so that a view does not become empty at each change, but only if it
-//! answers the displayed question. They return `None` otherwise:
+//! [`Results`](super::computed_results::Results) keeps the last output from each kind of job,
+//! together with the job. A newer output replaces it only when its job is complete. Until then the
+//! methods below return the older output, so that a view does not become empty at each change, but
+//! only if it answers the displayed question. They return `None` otherwise:
 //!
 //! | result                         | must belong to                              | settings    |
 //! |--------------------------------|---------------------------------------------|-------------|
@@ -23,8 +23,8 @@
 //! | `uncertainty`                  | newest analysis                             | its own     |
 //! | `value_uncertainty`            | newest analysis, not older than `shown`     | its own     |
 //!
-//! The result of the displayed condition arrives before the others (`Results::first`). It is then
-//! newer than the analysis; [`State::others_are_older`] says so, and views show a notice.
+//! The displayed condition's result arrives before the others (`Results::first`). It is then newer
+//! than the analysis; [`State::others_are_older`] says so, and views show a notice.
 //!
 //! Datasets are compared by pointer: a result belongs to a single dataset even if another is equal.
 
@@ -63,7 +63,7 @@ impl State {
         Some(analysis)
     }
 
-    /// Returns the newest outcome of the displayed condition for the displayed dataset.
+    /// Returns the newest outcome for the displayed condition and dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
         if let Some(first) = &self.results.first
@@ -75,14 +75,14 @@ impl State {
         self.analysis()?.conditions.get(&condition)
     }
 
-    /// Returns the result of the displayed condition, if it belongs to the displayed dataset.
+    /// Returns the displayed condition's result, if it belongs to the displayed dataset.
     pub fn shown(&self) -> Option<&ConditionAnalysis> {
         self.outcome()?.as_ref().ok()
     }
 
-    /// Returns whether the results of the other conditions, and everything derived from them,
-    /// belong to older settings than the result of the displayed condition. Views display a notice
-    /// beside such results.
+    /// Returns whether the other conditions' results, and everything derived from them, belong to
+    /// older settings than the displayed condition's result. Views display a notice beside such
+    /// results.
     pub fn others_are_older(&self) -> bool {
         match &self.results.first {
             Some(first) => {
@@ -115,7 +115,7 @@ impl State {
         Some(toggles)
     }
 
-    /// Returns the frequency responses of the displayed condition; `None` until they are computed.
+    /// Returns the displayed condition's frequency responses; `None` until they are computed.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
         if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
@@ -138,7 +138,7 @@ impl State {
         }
     }
 
-    /// Returns the modes of every model in the displayed condition; `None` until they are computed.
+    /// Returns every model's modes in the displayed condition; `None` until they are computed.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
         if !Arc::ptr_eq(&job.condition, self.condition()) {
@@ -147,8 +147,8 @@ impl State {
         Some(modes)
     }
 
-    /// Returns the responses of a model in each condition; until they are ready, the responses for
-    /// older settings.
+    /// Returns the models' responses in each condition; until they are ready, those for older
+    /// settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
         if !self.is_shown_dataset(&job.dataset) {
@@ -157,8 +157,8 @@ impl State {
         Some(curves)
     }
 
-    /// Returns the requested assessment; until it is ready, the assessment from an older analysis
-    /// of the same dataset.
+    /// Returns the requested assessment; until it is ready, that from an older analysis of the same
+    /// dataset.
     pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
         let (job, table) = self.results.assessment.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
@@ -179,8 +179,8 @@ impl State {
         }
     }
 
-    /// Returns the requirements; until they are ready, the requirements from an older analysis of
-    /// the same dataset.
+    /// Returns the requirements; until they are ready, those from an older analysis of the same
+    /// dataset.
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
         let (job, requirements) = self.results.requirements.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset) {
@@ -189,9 +189,9 @@ impl State {
         Some(requirements)
     }
 
-    /// Returns the responses of the models to the test input in the displayed condition, or the
-    /// reason for their absence. Until they are ready, returns the responses from an older analysis
-    /// in the same condition.
+    /// Returns the models' responses to the test input in the displayed condition, or the reason
+    /// why there are none. Until they are ready, returns the responses from an older analysis in
+    /// the same condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, NoResult>> {
         let (job, answers) = self.results.test_answers.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
@@ -203,8 +203,8 @@ impl State {
         Some(answers)
     }
 
-    /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
-    /// until it is ready, the comparison from an older analysis.
+    /// Compares a job's record with the tolerances, or returns the reason why it cannot be
+    /// compared; until this is ready, returns the comparison from an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
@@ -216,8 +216,8 @@ impl State {
         Some(history)
     }
 
-    /// Returns the responses of the models to the held-out records; until they are ready, the
-    /// responses from an older analysis with the same records.
+    /// Returns the models' responses to the held-out records; until they are ready, those from an
+    /// older analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, histories) = self.results.time_histories.as_ref()?;
         if job.records != self.records.held_out_records() {
@@ -226,8 +226,8 @@ impl State {
         Some(histories)
     }
 
-    /// Returns the assessed benefit of the couplings, whether or not they are in use; until it is
-    /// ready, the benefit under older settings.
+    /// Returns the benefit of the couplings, whether or not they are in use; until it is ready,
+    /// that under older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         if !self.is_shown_dataset(&known.study.dataset)
@@ -247,9 +247,9 @@ impl State {
         }
     }
 
-    /// Returns the diagnosis of the physics parameters and their benefit, whether or not they are
-    /// applied; until it is ready, that under older settings. The inner `None` stands for a study
-    /// that selects none.
+    /// Returns the diagnosis with the physics parameters and their benefit, whether or not they are
+    /// applied; until it is ready, that under older settings. The inner `None` means that the study
+    /// selects no parameters.
     pub fn physics(&self) -> Option<&Option<AssessedPhysics>> {
         let (known, assessed) = self.results.physics.as_ref()?;
         if !self.is_shown_dataset(&known.study.dataset) || known.physics != self.assessed_physics()
@@ -268,7 +268,7 @@ impl State {
         }
     }
 
-    /// Returns the index of the selected parameter among those that are on.
+    /// Returns the selected parameter's index among those that are on.
     pub fn selected_parameter(&self, findings: &PhysicsFindings) -> usize {
         let name = self.display.physics.selected.as_deref();
         findings.selected(name).unwrap_or(0)
@@ -284,8 +284,8 @@ impl State {
         Some(uncertainty)
     }
 
-    /// Returns the uncertainty of the values in the displayed condition; empty until it is
-    /// computed, or if it belongs to older settings.
+    /// Returns the uncertainty in the displayed condition's values; empty until it is computed, or
+    /// if it belongs to older settings.
     pub fn value_uncertainty(&self) -> ValueUncertainty<'_> {
         let uncertainty = if self.others_are_older() {
             None
@@ -298,8 +298,8 @@ impl State {
         }
     }
 
-    /// Returns the uncertainty of the values in the displayed condition for painting: until it
-    /// is computed for the present settings, that of earlier settings, which is dimmed.
+    /// Returns the uncertainty to paint in the displayed condition: until it is computed for the
+    /// present settings, that for earlier settings, which is dimmed.
     pub fn painted_uncertainty(&self) -> ValueUncertainty<'_> {
         let current = self.value_uncertainty();
         if current.uncertainty.is_some() {
@@ -322,8 +322,8 @@ impl State {
         Some(uncertainty)
     }
 
-    /// Returns the trade-off of α in the displayed condition; until it is ready, the trade-off for
-    /// other settings.
+    /// Returns the trade-off over α in the displayed condition; until it is ready, that for other
+    /// settings.
     pub fn trade_off(&self) -> Option<&TradeOff> {
         let (_, trade_off) = self.results.trade_off.as_ref()?;
         let trade_off = trade_off.as_ref().ok()?;
@@ -343,7 +343,7 @@ impl State {
         })
     }
 
-    /// Returns whether the optimality proof of a result is still running.
+    /// Returns whether a result's optimality proof is still running.
     pub fn is_proving(&self, shown: &ConditionAnalysis) -> bool {
         self.results.background.proofs.contains(&shown.gain_problem)
     }

@@ -1,10 +1,10 @@
-//! Error bars of the values in the displayed condition.
+//! Error bars for the values in the displayed condition.
 
 use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::uncertainty::Uncertainty;
 
-/// Uncertainty of the values in the displayed condition.
+/// Uncertainty in the displayed condition's values.
 #[derive(Clone, Copy, Debug)]
 pub struct ValueUncertainty<'a> {
     pub condition: ConditionId,
@@ -13,7 +13,7 @@ pub struct ValueUncertainty<'a> {
 }
 
 impl<'a> ValueUncertainty<'a> {
-    /// Returns the error bar of a value with its confidence level; `None` if it is not available.
+    /// Returns a value's error bar with its confidence level; `None` if it is not available.
     pub fn error_bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
         let uncertainty = self.uncertainty?;
         Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_plot::figure::FigureKind;
 use gdcm_study::PhaseCorrection;
 
-/// Group of views on the same subject.
+/// Views on the same subject.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ViewGroup {
     /// Responses over frequency.
@@ -47,14 +47,14 @@ impl ViewGroup {
 pub enum View {
     /// Response in focus: magnitude and phase.
     Bode,
-    /// Magnitude ratio and phase difference of the models in the response in focus, as used by the
+    /// The models' magnitude ratio and phase difference in the response in focus, as used by the
     /// fit.
     Error,
     /// Every response, in small plots.
     Overview,
     /// The response in focus, in every condition.
     Across,
-    /// Poles and modes of every model in the condition.
+    /// Every model's poles and modes in the condition.
     Poles,
     /// Named physics parameters: which would have to move, and by how much (M18).
     Physics,
@@ -75,8 +75,8 @@ pub enum View {
     /// Phase change by delay or lead in each channel, and the gain that leads add above the band,
     /// up to ten times the band.
     Leads,
-    /// Net gain of the response in focus over airspeed, and J before the correction, at each optimum
-    /// and under the schedule.
+    /// Net gain over airspeed for the response in focus, and its J before the correction, at each
+    /// optimum and under the schedule.
     ScheduleCost,
     /// Flight records in the condition, and models identified from them.
     Records,
@@ -103,7 +103,7 @@ impl View {
         Self::Compare,
     ];
 
-    /// Returns the pages of the dock; the leads only if the study requests them.
+    /// Returns the dock's pages; the leads only if the study requests them.
     pub fn docked(phase: PhaseCorrection) -> impl Iterator<Item = Self> {
         let has_leads = phase == PhaseCorrection::Lead;
         Self::ALL
@@ -111,7 +111,7 @@ impl View {
             .filter(move |view| view.is_dock_page() && (*view != Self::Leads || has_leads))
     }
 
-    /// Returns whether the view is a page of the dock, and therefore absent from the view bar.
+    /// Returns whether the view is a page in the dock, and therefore absent from the view bar.
     pub fn is_dock_page(self) -> bool {
         self.facts().group.is_none()
     }
@@ -121,7 +121,7 @@ impl View {
         self.facts().name
     }
 
-    /// Returns the kind of exported figure, if the view has one.
+    /// Returns which figure the view exports, if any.
     pub fn figure(self) -> Option<FigureKind> {
         self.facts().figure
     }
@@ -139,10 +139,10 @@ pub struct ViewFacts {
     pub name: &'static str,
     /// Purpose, in a sentence.
     pub purpose: &'static str,
-    /// Whether the view shows results of every condition. Such a view displays a notice while its
+    /// Whether the view shows results from every condition. Such a view displays a notice while its
     /// results belong to older settings.
     pub is_of_all_conditions: bool,
-    /// Group in the view bar; `None` for the pages of the dock.
+    /// Group in the view bar; `None` for pages in the dock.
     pub group: Option<ViewGroup>,
     /// Whether the dock is hidden while this view is in front.
     pub takes_dock: bool,
@@ -164,7 +164,7 @@ impl ViewFacts {
 }
 
 impl View {
-    /// Returns the properties of the view, from which tabs, menus and the palette are built.
+    /// Returns the view's properties, from which tabs, menus and the palette are built.
     pub fn facts(self) -> ViewFacts {
         match self {
             Self::Bode => BODE,

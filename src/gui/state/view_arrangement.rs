@@ -1,5 +1,5 @@
-//! Arrangement of the views between the side panels: the view in front of its group, a second view
-//! beside it, and the dock below.
+//! Arrangement of the views between the side panels: the view in front from each group, a second
+//! view beside it, and the dock below.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +11,8 @@ use super::view::{View, ViewGroup};
 pub struct Arrangement {
     /// Group in front.
     group: ViewGroup,
-    /// View shown by each group, indexed by `ViewGroup as usize`. The name is part of the stored
-    /// preferences.
+    /// View shown by each group, indexed by `ViewGroup as usize`. The field's name is part of the
+    /// stored preferences.
     of_groups: [View; 4],
     /// View beside the view in front.
     beside: Option<View>,
@@ -56,7 +56,7 @@ impl Arrangement {
         self.beside.filter(|beside| *beside != self.view())
     }
 
-    /// Returns the page of the dock; `None` if the view in front takes the space of the dock.
+    /// Returns the page in the dock; `None` if the view in front takes its space.
     pub fn dock(&self) -> Option<View> {
         if self.view().facts().takes_dock {
             return None;
@@ -79,7 +79,7 @@ impl Arrangement {
         self.is_dock_enlarged
     }
 
-    /// Doubles the height of the dock and unfolds it, or restores its usual height.
+    /// Doubles the dock's height and unfolds it, or restores its usual height.
     pub fn enlarge_dock(&mut self, is_enlarged: bool) {
         self.is_dock_enlarged = is_enlarged;
         if is_enlarged {
@@ -92,8 +92,8 @@ impl Arrangement {
         self.group = group;
     }
 
-    /// Brings a view and its group to the front; the view is then no longer shown beside. A page of
-    /// the dock is shown in the dock.
+    /// Brings a view and its group to the front; the view is then no longer shown beside. A dock
+    /// page is shown in the dock.
     pub fn show(&mut self, view: View) {
         let Some(group) = view.facts().group else {
             self.dock_view(view);
@@ -106,7 +106,7 @@ impl Arrangement {
         }
     }
 
-    /// Shows a page of the dock, and unfolds the dock. If the view in front takes its space, the
+    /// Shows a page in the dock, and unfolds the dock. If the view in front takes its space, the
     /// Bode view comes to the front.
     pub fn dock_view(&mut self, view: View) {
         self.dock = view;
@@ -117,7 +117,7 @@ impl Arrangement {
     }
 
     /// Shows a view beside the view in front; with `None`, or with the view in front itself, shows
-    /// none. A page of the dock is shown in the dock.
+    /// none. A dock page is shown in the dock.
     pub fn show_beside(&mut self, view: Option<View>) {
         match view {
             Some(page) if page.is_dock_page() => self.dock_view(page),
@@ -142,7 +142,7 @@ impl Arrangement {
     }
 
     /// Returns this stored arrangement, which an older version may have written: views that have
-    /// become pages of the dock are shown there. `None` unless every group shows one of its own
+    /// become dock pages are shown in the dock. `None` unless every group shows one of its own
     /// views, which may have changed between versions.
     pub fn if_valid(mut self) -> Option<Self> {
         if let Some(page) = self.beside

@@ -1,18 +1,18 @@
-//! Pages in front of the views that have pages.
+//! For each view with pages, the page in front.
 
 use crate::gui::widgets::choices::PageWords;
 
-/// Page of the pole view.
+/// Page in the pole view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PolesPage {
     /// Poles in the s-plane; in a high window, also the modes.
     #[default]
     Plane,
-    /// Table of the modes.
+    /// Mode table.
     Modes,
 }
 
-/// Page of the coupling view.
+/// Page in the coupling view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CouplingsPage {
     /// J with and without the couplings, and remarks.
@@ -24,7 +24,7 @@ pub enum CouplingsPage {
     Loop,
 }
 
-/// Page of the evidence view.
+/// Page in the evidence view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EvidencePage {
     /// Significant differences, and sources of the scatter.
@@ -32,21 +32,21 @@ pub enum EvidencePage {
     Findings,
     /// All differences at equal airspeed.
     Differences,
-    /// Second variables and forms of the schedule.
+    /// Second variables and schedule forms.
     Forms,
 }
 
-/// Page of the comparison of variants.
+/// Page in the view that compares variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ComparePage {
     /// Differences between the decisions.
     #[default]
     Decisions,
-    /// Effects of the differences.
+    /// Effects of these differences on the results.
     Effects,
 }
 
-/// Page of a view.
+/// A view's page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewPage {
     /// Overview with (`true`) or without phases.
@@ -58,7 +58,7 @@ pub enum ViewPage {
 }
 
 impl ViewPage {
-    /// Returns the name and the purpose of the page.
+    /// Returns the page's name and purpose.
     pub fn words(self) -> PageWords {
         let [name, purpose] = match self {
             Self::Overview(false) => ["Magnitude", "Magnitude of every response"],
@@ -111,7 +111,7 @@ impl ViewPage {
     }
 }
 
-/// Page in front of each view.
+/// For each view with pages, the page in front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewPages {
     pub poles: PolesPage,

@@ -34,8 +34,8 @@ pub struct WantedDataset {
 }
 
 impl WantedDataset {
-    /// Creates a proposal from records. It contains the channels whose role the
-    /// documentation of the logging system states; others must be typed.
+    /// Creates a proposal from records. It contains the channels whose role the logging system's
+    /// documentation states; others must be typed.
     pub fn proposed<'r>(
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
         band: Band,
@@ -103,7 +103,7 @@ fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     }
 }
 
-/// Adds the channel name of a column, unless the list contains it.
+/// Adds a column's channel name, unless the list contains it.
 fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
     let name = column.meaning.unwrap_or(&column.name);
     if !names.iter().any(|known| known == name) {

@@ -1,4 +1,4 @@
-//! Window state: the study, what is displayed of it, results, messages and forms.
+//! Window state: the study, how it is displayed, results, messages and forms.
 //!
 //! `shown_results.rs` extends [`State`] by the methods that select the results to show.
 
@@ -33,18 +33,18 @@ pub struct RecentFile {
     pub missing: bool,
 }
 
-/// Undo history of the study and of the flight records.
+/// Undo history for the study and the flight records.
 pub type UndoHistory = History<RecordsBefore, RecordChange>;
 
-/// Step of the undo history.
+/// Step in the undo history.
 pub type UndoStep = Step<RecordsBefore, RecordChange>;
 
-/// Complete state of the window.
+/// Everything that the window keeps.
 #[derive(Debug)]
 pub struct State {
     /// The study, the only saved part.
     pub study: Study,
-    /// The embedded example that the dataset is, if any.
+    /// Embedded example, if the dataset is one.
     pub example: Option<Example>,
     /// Whether the start page covers everything else.
     pub on_start_page: bool,
@@ -52,9 +52,9 @@ pub struct State {
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: UndoHistory,
-    /// Session of the settings panel, while it is open.
+    /// Settings session, while the panel is open.
     pub settings_session: Option<SettingsSession>,
-    /// File name of the study, or a substitute if it has not been saved.
+    /// The study's file name, or a substitute if it has not been saved.
     pub study_name: String,
     /// Whether there are unsaved decisions.
     pub unsaved: bool,
@@ -64,7 +64,7 @@ pub struct State {
     pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
-    /// Messages of the session, and toasts.
+    /// The session's messages, and toasts.
     pub notices: Notices,
     /// Persistent messages, in bars below the menu.
     pub message_bars: Vec<MessageBar>,
@@ -78,7 +78,7 @@ pub struct State {
     pub tour: Option<usize>,
     /// Flight records, and models identified from them.
     pub records: RecordsState,
-    /// Models being imported, shown instead of the study.
+    /// Models being imported, shown in place of the study.
     pub assembling: Option<AssemblyState>,
 }
 
@@ -174,7 +174,7 @@ impl State {
         self.display.frequency.fit();
     }
 
-    /// Formats the number of kept models in a bundle: "14 of 19".
+    /// Says how many models in a bundle are kept: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
         let choice = self.study.choice(self.condition().id());
@@ -182,7 +182,7 @@ impl State {
         format!("{} of {count}", count - rejected)
     }
 
-    /// Returns the id of a model in the displayed condition.
+    /// Returns a model's id in the displayed condition.
     pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
         ModelId::new(self.condition().id(), bundle, name)
     }

@@ -1,4 +1,4 @@
-//! Curves of a response in every condition, coloured by airspeed, and the error that the schedule
+//! Curves of one response in every condition, coloured by airspeed, and the error that the schedule
 //! leaves in each.
 
 use std::sync::Arc;
@@ -13,27 +13,28 @@ use super::bode_curve::{BodeCurve, CurveId};
 use super::role::{AirspeedLine, Role};
 use super::uncertainty_band::BodeBand;
 
-/// A response in several conditions. Conditions without the model or its correction are not drawn.
+/// One response in several conditions. Conditions without the model or its correction are not
+/// drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct AirspeedResponse<'a> {
     pub dataset: &'a Dataset,
-    /// Source of corrections and of the schedule; `None` before the conditions are compared.
+    /// Source for corrections and schedule; `None` before the conditions are compared.
     pub analysis: Option<&'a Analysis>,
-    /// Models drawn in each condition.
+    /// Kinds of model drawn in each condition, such as identified or scheduled.
     pub roles: &'a [AcrossRole],
     /// Conditions in the figure.
     pub conditions: &'a [ConditionId],
     pub pair: Pair,
-    /// Band of comparison; phases are aligned up to its upper end.
+    /// Comparison band; phases are aligned up to its upper end.
     pub band: Band,
-    /// Responses of the models in each condition.
+    /// Model responses in each condition.
     pub responses: &'a Arc<AcrossCurves>,
 }
 
-/// Curves of a response over the conditions.
+/// A response's curves over the conditions.
 #[derive(Clone, Debug, Default)]
 pub struct AirspeedCurves {
-    /// Models of all roles, condition by condition.
+    /// Models in all roles, condition by condition.
     pub responses: Vec<BodeCurve>,
     /// Scheduled minus identified model in each condition.
     pub errors: Vec<BodeCurve>,
@@ -74,7 +75,7 @@ impl AirspeedResponse<'_> {
         curves
     }
 
-    /// Returns the response of a role in a condition; `None` without the model or its correction.
+    /// Returns a role's response in a condition; `None` without the model or its correction.
     fn shape(
         &self,
         shapes: &ConditionShapes,
@@ -95,8 +96,8 @@ impl AirspeedResponse<'_> {
         Some(shape.corrected(omega, correction))
     }
 
-    /// Returns the difference between the model of a role and the identified model of a condition;
-    /// `None` where one of them is missing.
+    /// Returns the difference between a role's model and the identified model; `None` if either is
+    /// missing in the condition.
     fn error(
         &self,
         shapes: &ConditionShapes,
@@ -115,7 +116,7 @@ impl AirspeedResponse<'_> {
         })
     }
 
-    /// Returns the empty curve of a role in a condition.
+    /// Returns a role's curve in a condition, without points.
     fn curve(&self, condition: &Condition, role: AcrossRole) -> BodeCurve {
         let state = condition.flight_state();
         let step = Role::airspeed_step(state.airspeed_kt, self.dataset.airspeed_range_kt());
@@ -139,7 +140,7 @@ impl AirspeedResponse<'_> {
     }
 }
 
-/// Returns the line of a role.
+/// Returns the line style that tells a role apart.
 pub fn line_of(role: AcrossRole) -> AirspeedLine {
     match role {
         AcrossRole::Identified => AirspeedLine::Identified,
@@ -150,7 +151,7 @@ pub fn line_of(role: AcrossRole) -> AirspeedLine {
     }
 }
 
-/// Returns the number of leading frequencies up to `limit` \[rad/s\].
+/// Counts the leading frequencies up to `limit` \[rad/s\].
 fn points_up_to(omega: &[f64], limit: f64) -> usize {
     // The last frequency of a grid may exceed its limit by a rounding error.
     omega.partition_point(|omega| *omega <= limit * (1.0 + 1e-9))
@@ -193,7 +194,7 @@ fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     ends
 }
 
-/// Uncorrected shapes of a response in a condition.
+/// Uncorrected shapes in one condition.
 #[derive(Debug)]
 struct ConditionShapes {
     condition: ConditionId,
@@ -206,7 +207,7 @@ struct ConditionShapes {
     nominal: Option<ResponseShape>,
 }
 
-/// Shapes of a response in each condition, kept until their source changes.
+/// A response's shapes in each condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
     curves: Option<Arc<AcrossCurves>>,
@@ -216,8 +217,8 @@ pub struct AirspeedCache {
 }
 
 impl AirspeedCache {
-    /// Computes the shapes of a response. Phases of the identified models are aligned with the
-    /// first condition, those of the physics models with the identified model of their condition.
+    /// Computes a response's shapes. Phases from identified models are aligned with the first
+    /// condition, those from physics models with their condition's identified model.
     fn refresh(&mut self, response: &AirspeedResponse<'_>) {
         if let Some(known) = &self.curves
             && Arc::ptr_eq(known, response.responses)
@@ -245,11 +246,11 @@ impl AirspeedCache {
     }
 }
 
-/// Responses of the models of a condition.
+/// Model responses in one condition.
 struct ShapeSource<'a> {
     response: &'a AirspeedResponse<'a>,
     condition: &'a Condition,
-    /// Number of leading frequencies over which phases are aligned.
+    /// Leading frequencies over which phases are aligned.
     points: usize,
 }
 
@@ -268,7 +269,7 @@ impl ShapeSource<'_> {
         }
     }
 
-    /// Returns the shape of the model of a role before its correction; `None` without its response.
+    /// Returns the shape of a role's model before correction; `None` without its response.
     fn shape(&self, role: AcrossRole, reference: Option<&ResponseShape>) -> Option<ResponseShape> {
         let model = role.model(self.condition, self.response.analysis)?;
         let found = self.response.responses.model(&model)?;
@@ -285,7 +286,7 @@ impl ShapeSource<'_> {
 }
 
 impl ConditionShapes {
-    /// Returns the shape with which the phases of other conditions are aligned.
+    /// Returns the shape to which other conditions align their phases.
     fn any(&self) -> &Option<ResponseShape> {
         if self.identified.is_some() {
             &self.identified

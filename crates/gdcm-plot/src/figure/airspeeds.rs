@@ -1,4 +1,4 @@
-//! A response in every condition, coloured by airspeed, and the error that the schedule leaves.
+//! One response in every condition, coloured by airspeed, and the error that the schedule leaves.
 
 use std::sync::Arc;
 
@@ -23,21 +23,21 @@ use super::marks::{Envelope, Rule};
 use super::responses::fitted_values;
 use super::uncertainty_band::BodeBand;
 
-/// Range of the errors at the optima.
+/// Shaded range between the smallest and the largest error at the optima.
 const OPTIMA: Color = Color::new(Hue::Corrected).tint(22);
-/// Line without an error.
+/// Line at zero error.
 const NO_ERROR: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;
-/// Minimum height of the error range \[dB\] and \[deg\].
+/// Minimum height that the error axes show \[dB\] and \[deg\].
 const LEAST_ERROR_DB: f64 = 1.0;
 const LEAST_ERROR_DEG: f64 = 5.0;
-/// Ratio of frame height to width of two plots side by side.
+/// Ratio of frame height to width for two plots side by side.
 const ASPECT: f64 = 1.2;
 
-/// Plots the responses `pairs` of the models with these roles in the `conditions`, magnitude above
-/// phase; with a single response, also the error of the schedule beside it. `None` if no condition
-/// has such a model.
+/// Plots the responses `pairs` for models in these roles in the `conditions`, magnitude above
+/// phase; with a single response, also the schedule's error beside it. `None` if no condition has
+/// such a model.
 pub fn airspeeds_figure(
     analysis: &Analysis,
     pairs: &[Pair],
@@ -113,7 +113,7 @@ pub fn airspeeds_figure(
     Some(figure.caption(caption))
 }
 
-/// Both plots of a response.
+/// Both plots for one response.
 struct AirspeedPlots<'a> {
     curves: AirspeedCurves,
     analysis: &'a Analysis,
@@ -121,7 +121,7 @@ struct AirspeedPlots<'a> {
 }
 
 impl AirspeedPlots<'_> {
-    /// Builds the plot of the models, magnitude above phase.
+    /// Builds the plot of the models' responses, magnitude above phase.
     fn response_plot(&self, title: &str) -> Plot {
         let contents = ResponsePlot {
             curves: &self.curves.responses,
@@ -137,7 +137,7 @@ impl AirspeedPlots<'_> {
         }
     }
 
-    /// Builds the plot of the error of the schedule.
+    /// Builds the plot of the schedule's error.
     fn error_plot(&self) -> Plot {
         Plot::new("Error of the schedule")
             .panel(self.error_panel(
@@ -174,7 +174,7 @@ impl AirspeedPlots<'_> {
     }
 }
 
-/// Returns the shaded range of the errors at the optima.
+/// Shades the range between the errors at the optima.
 fn optima_envelope(optima: &BodeBand, pane: Pane, options: &BodeOptions) -> Envelope {
     let values = match pane {
         Pane::Magnitude => &optima.magnitude_db,

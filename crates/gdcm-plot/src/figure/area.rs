@@ -20,12 +20,12 @@ impl Area {
         }
     }
 
-    /// Returns the coordinate of the right edge, `left + width`.
+    /// Returns the right edge's coordinate, `left + width`.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Returns the coordinate of the lower edge, `top + height`.
+    /// Returns the lower edge's coordinate, `top + height`.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }

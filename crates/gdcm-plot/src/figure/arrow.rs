@@ -1,4 +1,4 @@
-//! Arrows from one point to another, as lines in the units of a panel.
+//! Arrows between two points, as lines in panel units.
 
 use super::axis::Range;
 
@@ -6,11 +6,11 @@ use super::axis::Range;
 const HEAD_LENGTH: f64 = 0.035;
 /// Half-width of an arrow head, relative to the spans.
 const HEAD_HALF_WIDTH: f64 = 0.012;
-/// Minimum span of an axis, relative to the largest coordinate on it.
+/// Minimum axis span, relative to the largest coordinate on it.
 const LEAST_SPAN: f64 = 1e-3;
 
-/// Returns the extents of the points along x and y, relative to which arrow heads are sized;
-/// positive even for a single point.
+/// Returns the points' extents along x and y, relative to which arrow heads are sized; positive
+/// even for a single point.
 pub(super) fn spans(points: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let range = Range::spanning(points.iter().map(|point| point[axis]));

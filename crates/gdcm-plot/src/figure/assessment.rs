@@ -1,4 +1,4 @@
-//! Effect of the correction: the change of J in each condition (M12, Figures 8 to 19).
+//! Change in J due to the correction in each condition (M12, Figures 8 to 19).
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
@@ -22,12 +22,12 @@ const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Bar width; neighbouring conditions are 1 apart on the axis.
 const BAR: f64 = 0.27;
 
-/// A part of ΔJ and the style of its bars; in print, parts differ in darkness.
+/// A part of ΔJ and its bar style; in print, parts differ in darkness.
 struct Part {
     name: &'static str,
     color: Color,
     value: fn(CostChange) -> f64,
-    /// Offset of the bars from the position of their condition on the axis.
+    /// Offset between a bar and its condition's position on the axis.
     beside: f64,
 }
 
@@ -89,7 +89,7 @@ pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     }
 }
 
-/// Draws ΔJ of a response as bars over the conditions; conditions without an available ΔJ are
+/// Draws a response's ΔJ as bars over the conditions; conditions without an available ΔJ are
 /// labelled "left out".
 fn change_panel(dataset: &Dataset, table: &AssessmentTable, pair: Pair) -> Panel {
     let conditions = dataset.conditions();

@@ -6,7 +6,7 @@ pub use super::ticks::{Scale, Tick, TickGaps, step_above, ticks_of};
 
 /// Margin at both ends of a fitted range, relative to its width.
 const MARGIN: f64 = 0.05;
-/// Range of an axis without values to show.
+/// Range shown if an axis has no values.
 const EMPTY: Range = Range {
     min: 1.0,
     max: 10.0,
@@ -25,7 +25,7 @@ pub struct Axis {
     pub range: Option<Range>,
     /// Values that a fitted range must contain.
     pub including: Vec<f64>,
-    /// Minimum width of a fitted linear range, in the unit of the axis.
+    /// Minimum width for a fitted linear range, in the axis unit.
     pub least: f64,
     /// Positions with names, which replace the numeric ticks.
     pub names: Option<Vec<(f64, String)>>,
@@ -91,7 +91,7 @@ impl Axis {
         self
     }
 
-    /// Returns the axis with a minimum width for a fitted linear range, in the unit of the axis.
+    /// Returns the axis with a minimum width for a fitted linear range, in the axis unit.
     pub fn at_least(self, least: f64) -> Self {
         Self { least, ..self }
     }
@@ -111,7 +111,8 @@ impl Axis {
             Scale::Logarithmic if range.min < range.max => range,
             Scale::Logarithmic => Range::new(range.min / 2.0, range.max * 2.0),
             Scale::Linear | Scale::Degrees => {
-                // By default, equal values are shown in a range of a thousandth of their size.
+                // By default, equal values are shown in a range as wide as a thousandth of their
+                // size.
                 let least = if self.least > 0.0 {
                     self.least
                 } else {

@@ -1,5 +1,5 @@
 //! Responses in a condition: magnitude above phase over frequency (Figures 2 and 5), with the
-//! measured coherence below; and an overview of all magnitudes in a condition.
+//! measured coherence below; and an overview with the magnitudes of all responses.
 
 use gdcm_model::dataset::{Band as BandOfComparison, Pair};
 use gdcm_model::units::db_to_ratio;
@@ -20,9 +20,9 @@ use super::reference_line::ReferenceLine;
 use super::responses::{BodeBand, ResponseCache, fitted_values, uncertainty_bands};
 use super::role::Role;
 
-/// Background of the band of comparison.
+/// Background of the comparison band.
 const BAND: Color = Color::new(Hue::Accent).tint(8);
-/// Background of the frequencies above the band at which a model with leads is invalid.
+/// Background above the band, at frequencies where a model with leads is invalid.
 const INVALID: Color = Color::new(Hue::Warning).tint(10);
 /// Line at a frequency at which a bandwidth is read.
 const CROSSING: Stroke = Stroke::dashed(Color::new(Hue::Text), 0.8, Dash::Short);
@@ -30,7 +30,7 @@ const CROSSING: Stroke = Stroke::dashed(Color::new(Hue::Text), 0.8, Dash::Short)
 const MAGNITUDE_WEIGHT: f64 = 1.35;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.04;
-/// Minimum height of the magnitude range \[dB\] and of the phase range \[deg\].
+/// Minimum height that the magnitude axis \[dB\] and the phase axis \[deg\] show.
 const LEAST_DB: f64 = 4.0;
 const LEAST_DEG: f64 = 20.0;
 
@@ -61,12 +61,12 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     }
 }
 
-/// Contents of the plot of a response, magnitude above phase.
+/// Contents of a response's plot, magnitude above phase.
 pub(super) struct ResponsePlot<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) bands: &'a [BodeBand],
     pub(super) references: &'a [ReferenceLine],
-    /// Unit of magnitudes drawn as ratios.
+    /// Unit for magnitudes drawn as ratios.
     pub(super) ratio_unit: &'a str,
     pub(super) band: BandOfComparison,
     pub(super) options: &'a BodeOptions,
@@ -150,9 +150,9 @@ impl ResponsePlot<'_> {
         Some(range.with_margin(MARGIN, least))
     }
 
-    /// Returns the upper end \[rad/s\] of the frequencies above the band at which a model with
-    /// leads is invalid (M15.6). This is the last frequency of the curve without leads; `None` if
-    /// that curve is missing or hidden.
+    /// Returns the upper end \[rad/s\] of the range above the band where a model with leads is
+    /// invalid (M15.6). This is the last frequency in the curve without leads; `None` if that curve
+    /// is missing or hidden.
     fn invalid_up_to(&self) -> Option<f64> {
         let without_leads = self
             .curves
@@ -180,7 +180,7 @@ impl ResponsePlot<'_> {
     }
 }
 
-/// Returns the shading of the band of comparison.
+/// Shades the comparison band.
 pub(super) fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
     Band {
         range: options.in_unit(band.min(), band.max()),
@@ -189,7 +189,7 @@ pub(super) fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band
     }
 }
 
-/// Plots the magnitude of every response in a condition: outputs in rows, inputs in columns, with J
+/// Plots every response's magnitude in a condition: outputs in rows, inputs in columns, with J
 /// before and after the correction.
 pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
     let dataset = source.dataset();
@@ -209,8 +209,7 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .aspect(0.55)
 }
 
-/// Plots the magnitude of a response, with its J; a star after the title marks a constrained
-/// response.
+/// Plots a response's magnitude, with its J; a star after the title marks a constrained response.
 fn overview_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let panels = FrequencyPanels {
         curves: &source.response_curves(pair, options, &mut ResponseCache::default()),

@@ -22,7 +22,7 @@ pub enum CurveId {
     Coupled,
     /// Representative physics model in a study variant, with the correction from that variant.
     Variant,
-    /// Model of one of several conditions.
+    /// A condition's model in a figure across several conditions.
     OfCondition(ConditionId, AcrossRole),
 }
 
@@ -36,7 +36,7 @@ pub enum Pane {
 }
 
 /// A frequency response with its name and role. Also used for the deviation from a reference; the
-/// phase then has the unit of phase errors.
+/// phase then has the phase-error unit.
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,
@@ -92,7 +92,7 @@ impl BodeCurve {
         }
     }
 
-    /// Returns the values of a panel, one at each frequency.
+    /// Returns a panel's values, one at each frequency.
     pub fn values(&self, pane: Pane) -> &[f64] {
         self.shared_values(pane)
     }
@@ -127,8 +127,8 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Returns the points of [`Self::points_on`] in a range of `log10 omega`, and the nearest point
-    /// beyond either end.
+    /// Returns those points from [`Self::points_on`] that lie in a range of `log10 omega`, and the
+    /// nearest point beyond either end.
     pub fn points_between<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -172,7 +172,7 @@ impl BodeCurve {
     }
 }
 
-/// Cache of the logarithms of the previous curve's frequencies; most curves of a plot share their
+/// Caches the previous curve's frequencies as logarithms; most curves in a plot share their
 /// frequencies.
 #[derive(Clone, Debug, Default)]
 pub struct LogFrequencies {

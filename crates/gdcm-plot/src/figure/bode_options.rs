@@ -1,4 +1,4 @@
-//! Options of figures over frequency: contents, units and ranges.
+//! Options for figures over frequency: contents, units and ranges.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit,
 use super::bode_curve::CurveId;
 use super::role::Role;
 
-/// Options of a figure over frequency.
+/// Options for a figure over frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeOptions {
     pub unit: FrequencyUnit,
@@ -19,14 +19,14 @@ pub struct BodeOptions {
     pub hidden_models: BTreeSet<ModelId>,
     /// Model to be shown alone, besides the representatives.
     pub isolated: Option<ModelId>,
-    /// Number of full turns (360°) by which the engineer shifts the phase of a curve.
+    /// Full turns (360°) by which the engineer shifts a curve's phase.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
-    /// Whether to show the envelopes of maximum unnoticeable added dynamics (MUAD), about the
+    /// Whether to show the envelopes for maximum unnoticeable added dynamics (MUAD), about the
     /// identified response and in the error plots.
     pub shows_muad: bool,
     /// Response whose zeros are shown in the pole plot.
     pub zeros_of: Option<Pair>,
-    /// Names and values of the frequencies \[rad/s\] at which a bandwidth is read, marked by
+    /// Names and values \[rad/s\] of the frequencies at which a bandwidth is read, marked by
     /// vertical lines.
     pub crossings: Vec<(&'static str, f64)>,
     /// Displayed frequency range \[rad/s\]; fitted to the curves if `None`.

@@ -6,7 +6,7 @@ use gdcm_model::units::signed;
 use gdcm_study::results::assessment_table::AssessmentTable;
 use gdcm_words::table::Table;
 
-/// Contents of a table of ΔJ: a row for each pair, a column for each condition.
+/// Contents for a table of ΔJ: a row for each pair, a column for each condition.
 #[derive(Clone, Copy, Debug)]
 pub struct ChangeTable<'a> {
     pub dataset: &'a Dataset,
@@ -17,7 +17,7 @@ pub struct ChangeTable<'a> {
     pub part: fn(CostChange) -> f64,
 }
 
-/// A column of a [`ChangeTable`].
+/// A column in a [`ChangeTable`].
 #[derive(Clone, Debug)]
 pub struct ChangeColumn {
     pub condition: ConditionId,

@@ -14,10 +14,10 @@ use super::role::Role;
 
 /// Height of the coherence panel; the phase panel has height 1.
 const WEIGHT: f64 = 0.45;
-/// Line at the minimum coherence of the frequencies that count.
+/// Line at the minimum coherence at which frequencies count.
 const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 
-/// Coherence of a measured response.
+/// A measured response's coherence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceCurve {
     pub label: String,
@@ -28,8 +28,8 @@ pub struct CoherenceCurve {
 }
 
 impl ConditionSource<'_> {
-    /// Returns the coherence of a response for every visible identified model that was measured
-    /// with coherence; the representative comes last.
+    /// Returns a response's coherence from every visible identified model that was measured with
+    /// coherence; the representative comes last.
     pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
         let mut curves: Vec<CoherenceCurve> = self
             .models(BundleKind::Identified, options)
@@ -41,8 +41,8 @@ impl ConditionSource<'_> {
         curves
     }
 
-    /// Returns the coherence of a response of an identified model; `None` if the model has no
-    /// measured coherence.
+    /// Returns a response's coherence from an identified model; `None` if the model has no measured
+    /// coherence.
     fn coherence_curve(&self, model: SourceModel, pair: Pair) -> Option<CoherenceCurve> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let Dynamics::Measured(response) = &identified[model.index].dynamics else {

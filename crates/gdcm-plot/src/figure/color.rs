@@ -1,6 +1,6 @@
 //! Colours by meaning and strength, and their values on paper.
 
-/// Meaning of a colour. Paper and each theme of the window assign a different colour to it.
+/// Meaning of a colour. Paper and each window theme assign a different colour to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
     /// Paper, and plot backgrounds in the window.
@@ -20,14 +20,14 @@ pub enum Hue {
     Corrected,
     /// Excluded models and conditions.
     Rejected,
-    /// The band of comparison, and highlights.
+    /// The comparison band, and highlights.
     Accent,
     /// Cautions and deteriorations.
     Warning,
-    /// Proofs of optimality, and improvements.
+    /// Proven optima, and improvements.
     Good,
-    /// Airspeed, from 0 at the lowest to 255 at the highest; the colours of `AIRSPEED_STOPS`
-    /// differ in lightness, and no role has them.
+    /// Airspeed, from 0 at the lowest to 255 at the highest; the colours in `AIRSPEED_STOPS` differ
+    /// in lightness, and no role has them.
     OfAirspeed(u8),
 }
 
@@ -60,21 +60,21 @@ impl Hue {
     }
 }
 
-/// Colours of airspeeds on paper and in the light theme, at equal distances from the lowest to the
+/// Airspeed colours on paper and in the light theme, at equal distances from the lowest to the
 /// highest airspeed.
 const AIRSPEED_STOPS: [u32; 5] = [0x3a1f7a, 0x7a2f95, 0xb04487, 0xcf6f8f, 0xdd9aa4];
 
-/// Place of an airspeed between two of the five colours of a ramp.
+/// An airspeed's place between two of the five colours in a ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AirspeedPlace {
     /// Index of the colour below, from 0 to 3.
     pub stop: usize,
-    /// Share of the colour above, from 0 to 1.
+    /// Share from the colour above, from 0 to 1.
     pub part: f64,
 }
 
 impl AirspeedPlace {
-    /// Returns the place of an airspeed from 0 at the lowest to 255 at the highest.
+    /// Returns the place for an airspeed from 0 at the lowest to 255 at the highest.
     pub fn new(step: u8) -> Self {
         let intervals = (AIRSPEED_STOPS.len() - 1) as f64;
         let place = f64::from(step) / 255.0 * intervals;
@@ -110,13 +110,13 @@ pub struct Color {
 }
 
 impl Color {
-    /// Background colour of paper.
+    /// Paper background.
     pub const WHITE: Self = Self::new(Hue::Background);
-    /// Colour of titles and primary text.
+    /// Titles and primary text.
     pub const INK: Self = Self::new(Hue::Text);
-    /// Colour of labels, frames and secondary text.
+    /// Labels, frames and secondary text.
     pub const DIM: Self = Self::new(Hue::DimText);
-    /// Colour of grid lines.
+    /// Grid lines.
     pub const GRID: Self = Self::new(Hue::Grid);
 
     /// Creates a colour at full strength.
@@ -124,12 +124,12 @@ impl Color {
         Self { hue, percent: 100 }
     }
 
-    /// Returns this colour blended with the background to a strength of `percent`.
+    /// Returns this colour blended with the background; at `percent` = 100 it is unchanged.
     pub const fn tint(self, percent: u8) -> Self {
         Self { percent, ..self }
     }
 
-    /// Returns red, green and blue on paper (sRGB), blended to the strength of this colour.
+    /// Returns red, green and blue on paper (sRGB), blended with white according to the strength.
     pub fn rgb(self) -> [u8; 3] {
         mixed(
             Hue::Background.on_paper(),

@@ -6,7 +6,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_study::decisions::choices::ConditionChoice;
 
-/// Names of the classes that precede all others.
+/// Class names that precede all others.
 const FIRST: [&str; 2] = ["low", "light"];
 
 /// Classes in a dataset. Conditions in the first altitude class are circles, others diamonds;

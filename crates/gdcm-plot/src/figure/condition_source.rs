@@ -1,5 +1,5 @@
-//! Data behind the figures of a condition: its models with their roles, the corrected versions of
-//! the representative physics model, and descriptions of both.
+//! Data behind a condition's figures: its models with their roles, the representative physics model
+//! after each correction, and descriptions.
 
 use std::sync::Arc;
 
@@ -22,21 +22,21 @@ pub use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
 use super::role::Role;
 
-/// Data from which the figures of a condition are drawn.
+/// Data from which a condition's figures are drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
     /// The dataset with the engineer's decisions.
     pub study: &'a Study,
-    /// Result of the condition; without it, responses are shown but no corrected models.
+    /// The condition's result; without it, responses are shown but no corrected models.
     pub analysis: Option<&'a ConditionAnalysis>,
     pub schedule: Option<&'a Schedule>,
-    /// Responses of the condition's models.
+    /// Responses from the condition's models.
     pub curves: &'a Arc<ConditionCurves>,
-    /// Name of an overlaid study variant, and its result for the condition.
+    /// Name of an overlaid study variant, and its result in the condition.
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// A model of the condition as drawn.
+/// A drawn model from the condition.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -53,14 +53,14 @@ pub(super) struct SourceModel {
 pub(super) struct CorrectedModel<'a> {
     /// Identity, style and legend text; the points are computed later.
     pub(super) curve: BodeCurve,
-    /// Result with the couplings of the model.
+    /// Result with the model's couplings.
     pub(super) result: &'a ConditionAnalysis,
     /// Index of the physics model in its bundle.
     pub(super) model: usize,
     pub(super) correction: GainDelay,
 }
 
-/// A corrected version of the representative physics model.
+/// A correction of the representative physics model, with the curve that it has in figures.
 struct Version<'c> {
     id: CurveId,
     role: Role,
@@ -78,7 +78,7 @@ impl<'a> ConditionSource<'a> {
         &self.study.dataset
     }
 
-    /// Returns the unit of a response, output unit over input unit: `(deg/s)/in`.
+    /// Returns a response's unit, output unit over input unit: `(deg/s)/in`.
     pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
         let output = &dataset.outputs()[pair.output].unit;
         let input = &dataset.inputs()[pair.input].unit;
@@ -128,7 +128,7 @@ impl<'a> ConditionSource<'a> {
         models
     }
 
-    /// Returns whether a model is not shown because another model of its condition is isolated;
+    /// Returns whether a model is not shown because another model in its condition is isolated;
     /// representatives are always shown.
     fn is_suppressed(&self, id: &ModelId, options: &BodeOptions) -> bool {
         match &options.isolated {
@@ -160,7 +160,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Creates the curve of a model, without points.
+    /// Creates a model's curve, without points.
     pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
         BodeCurve {
             label: model.id.name.clone(),
@@ -171,7 +171,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Returns the detail line of a model: `ratio 3.68, suggested as an outlier · from run 3`.
+    /// Returns a model's detail line: `ratio 3.68, suggested as an outlier · from run 3`.
     fn detail(&self, id: &ModelId, index: usize) -> String {
         let mut parts = Vec::new();
         if id.bundle == BundleKind::Physics
@@ -192,9 +192,9 @@ impl<'a> ConditionSource<'a> {
         parts.join(" · ")
     }
 
-    /// Returns the available corrected versions of the representative physics model: with the
-    /// condition's own correction, with the scheduled correction, without leads, with couplings
-    /// alone, and with the correction of an overlaid variant.
+    /// Returns the representative physics model after each available correction: the condition's
+    /// own, the scheduled, the own without leads, couplings alone, and that from an overlaid
+    /// variant.
     pub(super) fn corrected_models(
         &self,
         pair: Pair,
@@ -238,7 +238,7 @@ impl<'a> ConditionSource<'a> {
         models
     }
 
-    /// Returns a corrected version of the representative physics model of `result`; `None` if the
+    /// Returns the representative physics model in `result` after one correction; `None` if the
     /// condition does not have that model, or if the correction does not apply to the response.
     fn corrected_model(
         &self,
@@ -324,7 +324,7 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     }
 }
 
-/// Describes the dataset and the settings, for the captions of all figures.
+/// Describes the dataset and the settings, for the captions in all figures.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let low = compact(settings.band.min());
     let high = compact(settings.band.max());

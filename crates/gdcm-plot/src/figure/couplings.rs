@@ -1,6 +1,6 @@
-//! Effect of couplings on the loop `I - K H` that they close, and on the poles (M16.4). H is the
-//! response of the physics representative, K the feedback from outputs to inputs; near a singular
-//! `I - K H` the closed loop rings.
+//! Effect that couplings have on the loop `I - K H` that they close, and on the poles (M16.4). H is
+//! the response of the physics representative, K the feedback from outputs to inputs; near a
+//! singular `I - K H` the closed loop rings.
 
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::ConditionId;
@@ -13,18 +13,18 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Band, Curve, Rule};
 use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 
-/// Loop curves of the condition in focus and of the other conditions.
+/// Loop curves for the other conditions, and for the condition shown.
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.7);
 const SHOWN: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.6);
 /// Line at the singular value below which the loop is close to ringing.
 const RINGING: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 const BAND: Color = Color::new(Hue::Accent).tint(12);
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Maximum magnitude of the displayed poles, relative to the upper end of the band.
+/// Magnitude up to which poles are displayed, relative to the band's upper end.
 const SHOWN_POLES: f64 = 1.5;
 
-/// Plots the minimum singular value of `I - K H` over frequency for every condition, and the poles
-/// of the physics representative without and with couplings for the condition `shown`, whose curve
+/// Plots the minimum singular value of `I - K H` over frequency for every condition, and the
+/// physics representative's poles without and with couplings for the condition `shown`, whose curve
 /// is drawn on top. If `shown` is `None`, uses the condition with the smallest margin. Returns
 /// `None` if there are no conditions.
 pub fn couplings_figure(
@@ -60,7 +60,7 @@ fn least_margin(assessment: &CouplingsAssessment, id: ConditionId) -> f64 {
     }
 }
 
-/// Plots the minimum singular value of the loop over frequency, for every condition.
+/// Plots the loop's minimum singular value over frequency, for every condition.
 fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
     let frequencies: Vec<f64> = assessment
         .omega

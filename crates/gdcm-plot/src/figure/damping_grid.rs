@@ -7,9 +7,9 @@ use super::marks::Guide;
 use super::ticks::step_above;
 
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
-/// Length of the rays \[rad/s\]; they extend beyond every displayed pole.
+/// Ray length \[rad/s\]; beyond every displayed pole.
 const FAR: f64 = 1e3;
-/// Maximum number of arcs, and number of intervals of each arc.
+/// Maximum number of arcs, and intervals per arc.
 const ARCS: u32 = 8;
 const ARC_POINTS: usize = 60;
 /// Distances, as fractions of plot width and height, below which two labels overlap.
@@ -31,16 +31,15 @@ pub(super) fn rays() -> Vec<Guide> {
     rays
 }
 
-/// Returns the grid lines in the displayed ranges of the s-plane: rays at constant damping ratio
-/// and arcs at constant frequency. The upper rays are labelled where they leave the displayed
-/// ranges.
+/// Returns the grid lines in the displayed part of the s-plane: rays at constant damping ratio and
+/// arcs at constant frequency. The upper rays are labelled where they leave the displayed ranges.
 pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
     let mut reach = 0.0f64;
     for end in [real.min, real.max, imaginary.min, imaginary.max] {
         reach = reach.max(end.abs());
     }
     let mut guides = labelled_rays(real, imaginary, reach);
-    // At most four arcs up to the farthest end; corners of the plot may lie farther out.
+    // At most four arcs up to the farthest end; the plot's corners may lie farther out.
     let step = step_above(reach / 4.0);
     for k in 1..=ARCS {
         let radius = step * f64::from(k);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_model::number_format::three_digits;
 use gdcm_model::units::rad_s_to_hz;
 
-/// Display unit of frequencies; internally they are always in rad/s.
+/// Display unit for frequencies; internally they are always in rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrequencyUnit {
     #[default]
@@ -50,12 +50,12 @@ impl FrequencyUnit {
     }
 }
 
-/// Display unit of magnitudes of responses.
+/// Display unit for response magnitudes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MagnitudeUnit {
     #[default]
     Decibel,
-    /// Ratio of output to input, in their own units.
+    /// Output over input, in their own units.
     Ratio,
 }
 
@@ -69,7 +69,7 @@ pub enum PhaseUnit {
     Wrapped,
 }
 
-/// Display unit of phase errors.
+/// Display unit for phase errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseErrorUnit {
     /// Δφ \[deg\].

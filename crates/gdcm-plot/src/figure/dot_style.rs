@@ -1,11 +1,11 @@
-//! Appearance of dots, and their shapes on paper and on the screen.
+//! Dot styles and shapes on paper and on the screen.
 
 use super::drawing::{Color, Shape, Stroke};
 use super::marks::{DotShape, Dots};
 
 /// Radius of the usual dot \[pt\].
 pub(super) const DOT: f64 = 2.1;
-/// Line width of an open dot, a cross or a plus in the usual size \[pt\].
+/// Line width for an open dot, a cross or a plus in the usual size \[pt\].
 const DOT_LINE: f64 = 0.9;
 /// Corners and line ends, relative to the radius; y runs downwards.
 const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
@@ -26,7 +26,7 @@ pub struct DotStyle {
 }
 
 impl DotStyle {
-    /// Returns the style of the dots in a group.
+    /// Returns the style shared by the dots in a group.
     pub fn of_group(group: &Dots) -> Self {
         Self {
             shape: group.shape,
@@ -64,8 +64,8 @@ impl DotStyle {
                 stroke: None,
             }
         } else {
-            // The line is centred on its path: its outer edge then coincides with the edge of a
-            // filled dot.
+            // The line is centred on its path: its outer edge then coincides with a filled dot's
+            // edge.
             DotPen {
                 radius: self.radius() - 0.5 * DOT_LINE,
                 fill: Some(Color::WHITE),
@@ -108,7 +108,6 @@ impl DotStyle {
     }
 }
 
-/// Radius, fill and line of a dot.
 struct DotPen {
     radius: f64,
     fill: Option<Color>,

@@ -12,7 +12,7 @@ pub const PT_PER_MM: f64 = 72.0 / 25.4;
 /// A drawing on white paper, in points from the upper left corner, y downwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Title in the metadata of the file.
+    /// Title in the file's metadata.
     pub title: String,
     /// Width and height \[pt\].
     pub size: [f64; 2],
@@ -20,7 +20,7 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
 }
 
-/// A shape of a drawing: a path, a text, or a clipped group of shapes.
+/// A path, a text, or a clipped group of shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     Path {
@@ -52,14 +52,14 @@ pub struct Text {
     pub words: String,
     /// Font size \[pt\].
     pub size_pt: f64,
-    /// Part of the text that is placed at `at`.
+    /// Part of the text that lies at `at`.
     pub anchor: Anchor,
     /// Whether the text runs upwards.
     pub upright: bool,
     pub color: Color,
 }
 
-/// Part of a text that is placed at its position.
+/// Part of a text that lies at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,

@@ -1,11 +1,11 @@
-//! Deviation of a response from its reference at each frequency, as used by the fit (M6).
+//! Deviation between a response and its reference at each frequency, as used by the fit (M6).
 //!
 //! ```text
 //! magnitude  20 log10 |H_ref| / |H_sim|  [dB]
 //! phase      Delta phi  [deg], or Delta phi / omega  [ms]: phase of H_sim minus phase of H_ref
 //! ```
 //!
-//! H_sim is the response of a physics model, H_ref of the identified reference. Both deviations are
+//! H_sim is a physics model's response, H_ref that of the identified reference. Both deviations are
 //! zero for a perfect model; G and D are the gain and the delay that the model lacks.
 
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! Deviations of a response from its reference at each frequency, computed once and kept until their
-//! sources change. H_sim and H_ref as in the file of the figure.
+//! Deviations between a response and its reference at each frequency, computed once and kept until
+//! their sources change. H_sim and H_ref are defined in `error.rs`.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use gdcm_study::stages::condition_curves::ConditionCurves;
 use super::axis::PhaseErrorUnit;
 use super::bode_curve::BodeCurve;
 
-/// Deviation of a response from the reference, with the phase on the branch of M6b.
+/// Deviation between a response and the reference, with the phase on the branch chosen in M6b.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorShape {
     /// `20 log10 |H_sim| / |H_ref|`.
@@ -83,7 +83,7 @@ impl ErrorShape {
     }
 }
 
-/// Choices that determine the deviations of a response.
+/// Choices that determine a response's deviations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ErrorKey {
     pub(super) pair: Pair,
@@ -91,7 +91,7 @@ pub(super) struct ErrorKey {
     pub(super) reference: usize,
     /// Band ends \[rad/s\].
     pub(super) band: [f64; 2],
-    /// Minimum coherence of the frequencies that count; `None` if coherence is ignored.
+    /// Minimum coherence at which a frequency counts; `None` if coherence is ignored.
     pub(super) least_coherence: Option<f64>,
     pub(super) unit: PhaseErrorUnit,
 }
@@ -108,8 +108,8 @@ impl ErrorSource {
         Arc::ptr_eq(&self.curves, &other.curves) && self.key == other.key
     }
 
-    /// Computes the deviation of a response over `omega`, the frequencies in the band. `None` if
-    /// the response or the reference is zero or not finite at any of them.
+    /// Computes a response's deviation over `omega`, the frequencies in the band. `None` if the
+    /// response or the reference is zero or not finite at any of them.
     pub(super) fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
         ErrorShape::new(
@@ -125,8 +125,8 @@ impl ErrorSource {
         PolarCurve::from_values(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
-    /// Returns the weights of the frequencies `omega`, derived from the coherence of the reference;
-    /// `None` without coherence.
+    /// Returns weights for the frequencies `omega`, derived from the reference's coherence; `None`
+    /// without coherence.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let flight = &identified.get(self.key.reference)?.dynamics;
@@ -144,20 +144,19 @@ impl ErrorSource {
     }
 }
 
-/// Deviation of an uncorrected physics model.
+/// Deviation before correction, for one physics model.
 #[derive(Debug)]
 pub(super) struct ModelError {
     shape: ErrorShape,
     pub(super) drawn: DrawnError,
 }
 
-/// Deviations of a response for every physics model of a condition, kept until their source
-/// changes.
+/// A response's deviations for every physics model in a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ErrorCache {
     source: Option<ErrorSource>,
     pub(super) omega: Arc<[f64]>,
-    /// Zero at each frequency: the deviation of the reference from itself.
+    /// Zero at each frequency: the reference's deviation from itself.
     pub(super) zero: Arc<[f64]>,
     /// In model order; `None` for a model without a deviation.
     pub(super) errors: Vec<Option<ModelError>>,
@@ -183,13 +182,13 @@ impl ErrorCache {
         self.source = Some(source);
     }
 
-    /// Returns the deviation of an uncorrected physics model.
+    /// Returns a physics model's deviation before correction.
     pub(super) fn model_shape(&self, model: usize) -> Option<ErrorShape> {
         let error = self.errors[model].as_ref()?;
         Some(error.shape.clone())
     }
 
-    /// Computes the deviation of a response that is not in the cache.
+    /// Computes a deviation that is not in the cache.
     pub(super) fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.source.as_ref()?.shape(response, &self.omega)
     }

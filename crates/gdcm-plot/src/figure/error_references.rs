@@ -1,4 +1,4 @@
-//! Reference lines in the plots of deviations (`error` in names): targets, bounds, quantiles and MUAD
+//! Reference lines in plots of deviations (`error` in names): targets, bounds, quantiles and MUAD
 //! envelopes. A positive delay is a delay that the physics model lacks.
 
 use gdcm_model::dataset::{BundleKind, Pair};
@@ -17,7 +17,7 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 impl ConditionSource<'_> {
     /// Returns lines at G and D, at the channel bounds, and at quantiles of the representative's
     /// deviation (M6, M7); where requested, also the MUAD envelopes. The lines do not depend on
-    /// whether the curve of the representative in `drawn` is hidden.
+    /// whether the representative's curve in `drawn` is hidden.
     pub fn error_references(
         &self,
         pair: Pair,
@@ -85,8 +85,8 @@ fn bound_lines(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Refere
     ]
 }
 
-/// Returns lines at the quantiles `q` and `1 - q` of a response's deviation: the quantiles of M7,
-/// for this response alone.
+/// Returns lines at the quantiles `q` and `1 - q` of a response's deviation, as in M7 but for this
+/// response alone.
 fn quantile_lines(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut ratios_db = curve.magnitude_db.to_vec();
     let mut delays_s = Vec::new();

@@ -16,16 +16,16 @@ use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
 const BAR: f64 = 0.56;
 /// Offset between dots at the same axis position.
 const APART: f64 = 0.24;
-/// Confidence interval of the unexplained part.
+/// Confidence interval for the unexplained part.
 const INTERVAL: Stroke = Stroke::solid(Color::new(Hue::Nominal).tint(50), 2.4);
 /// Interval ends are shown up to this multiple of the largest scatter.
 const MOST_SEEN: f64 = 4.0;
-/// Range of the variance axis \[%\]: the shares end at 100, and the ratios are written above.
+/// Range shown on the variance axis \[%\]: the shares end at 100, and the ratios are written above.
 const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Positions \[%\] of the ratios above the shares, and of the note on a missing decomposition.
+/// Positions \[%\] for the ratios above the shares, and for the note on a missing decomposition.
 const ABOVE: f64 = 109.0;
 const MIDDLE: f64 = 50.0;
 
@@ -83,7 +83,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     Some(figure)
 }
 
-/// Decomposition of a variance, at its position on the axis.
+/// A decomposed variance, at its position on the axis.
 struct PlacedSplit<'a> {
     x: f64,
     split: Option<&'a VarianceDecomposition>,
@@ -107,7 +107,7 @@ fn axis() -> Axis {
 }
 
 /// Stacks the variance shares due to trim, identification and unexplained causes; above, the ratio
-/// of the scatter to its expected value.
+/// between scatter and expected value.
 fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut stack = STACK.map(|share| Bars {
         name: share.name.to_owned(),

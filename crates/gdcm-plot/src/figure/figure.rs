@@ -1,5 +1,5 @@
-//! Description of a figure: plots side by side, each with panels below one another; a panel has two
-//! axes and marks. Nothing here depends on paper or screen.
+//! Figures: plots side by side, each with panels below one another; a panel has two axes and marks.
+//! Nothing here depends on paper or screen.
 
 use super::axis::{Axis, Range};
 use super::legend::{Entry, entries};
@@ -22,13 +22,13 @@ pub struct Figure {
     /// Maximum number of plots in a row.
     pub columns: usize,
     pub shared: Shared,
-    /// Total height of the frames of a plot, relative to the frame width.
+    /// Total height of a plot's frames, relative to the frame width.
     pub aspect: f64,
     /// Whether plots may shrink to the limit of readability, as in large tables of plots.
     pub dense: bool,
 }
 
-/// Which axes have the same range in all plots; only the outer plots then show tick labels.
+/// Axes with the same range in all plots; only the outer plots then show tick labels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shared {
     pub x: bool,
@@ -66,7 +66,7 @@ impl Figure {
         self
     }
 
-    /// Sets the maximum number of plots side by side; 0 counts as 1.
+    /// Limits how many plots are side by side; 0 counts as 1.
     pub fn columns(self, columns: usize) -> Self {
         Self {
             columns: columns.max(1),
@@ -117,7 +117,7 @@ impl Figure {
         self
     }
 
-    /// Returns the smallest range that contains the ranges of all panels; `None` without panels.
+    /// Returns the smallest range that contains all panels' ranges; `None` without panels.
     fn common_range(&self, along: Along) -> Option<Range> {
         self.panels()
             .map(|(_, panel)| panel.shown(along))
@@ -177,7 +177,7 @@ impl Panel {
         self
     }
 
-    /// Sets the height relative to the other panels of the plot.
+    /// Sets the height relative to the plot's other panels.
     pub fn weight(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
@@ -190,8 +190,8 @@ impl Panel {
         })
     }
 
-    /// Returns the range of an axis: the fixed range if there is one, otherwise the range fitted to
-    /// the marks of this panel.
+    /// Returns the range of an axis: the fixed range if there is one, otherwise a range fitted to
+    /// this panel's marks.
     pub fn shown(&self, along: Along) -> Range {
         let axis = match along {
             Along::X => &self.x,

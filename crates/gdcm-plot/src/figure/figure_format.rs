@@ -1,6 +1,6 @@
 //! Printed widths and file formats.
 
-/// Printed width of a figure.
+/// Figure width in print.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ColumnWidth {
     /// A single column in a two-column journal, 84 mm.
@@ -38,7 +38,7 @@ impl ColumnWidth {
     }
 }
 
-/// File format of a figure.
+/// File format in which a figure is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FigureFormat {
     /// Vector graphics, for documents and drawing programs.
@@ -47,7 +47,7 @@ pub enum FigureFormat {
     Png,
     /// A page as large as the figure, with embedded fonts.
     Pdf,
-    /// The values of all marks.
+    /// The values behind all marks.
     Csv,
 }
 
@@ -64,7 +64,7 @@ impl FigureFormat {
         }
     }
 
-    /// Returns the name of the format with its purpose, for a tooltip.
+    /// Returns the format's name with its purpose, for a tooltip.
     pub fn words(self) -> &'static str {
         match self {
             Self::Svg => "SVG, for documents and drawing programs",

@@ -15,7 +15,7 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::responses::BodeBand;
 use super::role::Role;
 
-/// Background of the frequencies at which a pilot would notice the remaining mismatch (MUAD).
+/// Background at frequencies where a pilot would notice the remaining mismatch (MUAD).
 const NOTICED: Color = Color::new(Hue::Warning).tint(20);
 /// Confidence band about an identified model.
 const UNCERTAIN: Color = Color::new(Hue::Identified).tint(22);
@@ -23,7 +23,7 @@ const UNCERTAIN: Color = Color::new(Hue::Identified).tint(22);
 const SINGLE_ASPECT: f64 = 0.72;
 const SHARED_ASPECT: f64 = 1.9;
 
-/// Contents of the panels of a response.
+/// Contents of a response's panels.
 pub(super) struct FrequencyPanels<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) references: &'a [ReferenceLine],
@@ -39,7 +39,7 @@ impl FrequencyPanels<'_> {
         self.converted_panel(pane, axis, |value| value)
     }
 
-    /// Builds a panel; `convert` converts its values to the unit of its vertical axis.
+    /// Builds a panel; `convert` converts its values to the unit of the vertical axis.
     pub(super) fn converted_panel(&self, pane: Pane, axis: Axis, convert: fn(f64) -> f64) -> Panel {
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
@@ -81,8 +81,8 @@ impl FrequencyPanels<'_> {
         drawn
     }
 
-    /// Returns the reference lines of a panel. A line without its own frequencies uses the
-    /// frequencies of the first curve.
+    /// Returns a panel's reference lines. A line without its own frequencies uses those of the
+    /// first curve.
     fn reference_marks(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Mark> {
         let omega: &[f64] = match self.curves.first() {
             Some(curve) => &curve.omega,
@@ -114,8 +114,8 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// Returns the legend of a curve labelled "condition 3 · 45 kt, scheduled": without the condition,
-/// so that conditions at the same airspeed share an entry.
+/// Returns the legend text for a curve labelled "condition 3 · 45 kt, scheduled": without the
+/// condition, so that conditions at the same airspeed share an entry.
 fn airspeed_key(label: &str) -> &str {
     match label.split_once(" · ") {
         Some((_, key)) => key,
@@ -123,7 +123,7 @@ fn airspeed_key(label: &str) -> &str {
     }
 }
 
-/// Cache of the previous curve's frequencies in the displayed unit; curves that share their
+/// Caches the previous curve's frequencies in the displayed unit; curves that share their
 /// frequencies also share the converted values.
 #[derive(Default)]
 struct SharedFrequencies {
@@ -173,7 +173,7 @@ fn reference_mark(
         .into()
 }
 
-/// Builds the figure of a condition with a plot for each pair, side by side. The title consists of
+/// Builds a condition's figure with a plot for each pair, side by side. The title consists of
 /// `subject` (if any), the pair (if there is only one), and the condition.
 pub(super) fn figure_of_pairs(
     source: &ConditionSource<'_>,

@@ -1,4 +1,4 @@
-//! Panel of a gain or a delay: the optima of all conditions with their bounds, error bars and
+//! Panel for a gain or a delay: the optima in all conditions with their bounds, error bars and
 //! differences, and the schedule with its bands.
 
 use gdcm_method::schedule::Schedule;
@@ -20,22 +20,22 @@ use super::role::Role;
 
 /// Line at the value without correction.
 const UNCORRECTED: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
-/// Lines of an error bar, and of its part due to identification alone.
+/// Error bar, and its part due to identification alone.
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.6);
 const INNER_BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(50), 2.4);
-/// Maximum extension of the axis to show error bars, relative to the range of the dots.
+/// How far the axis may extend to show error bars, relative to the range of the dots.
 const BARS_EXTENSION: f64 = 0.5;
 /// Brackets between net gains at the same airspeed.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::new(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
-/// Names of both kinds of bracket, in the legend and in the tables.
+/// Names for both kinds of bracket, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background that marks the bounds.
 const BOUNDS: Color = Color::new(Hue::Accent).tint(16);
-/// Width of the background on an airspeed axis \[kt\].
+/// Background width on an airspeed axis \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
-/// Width of the background on an axis of conditions.
+/// Background width on an axis that counts conditions.
 const BOUNDS_WIDTH: f64 = 0.7;
 
 /// A gain or a delay from an analysis, with its uncertainty if available.
@@ -47,7 +47,7 @@ pub(super) struct GainPanel<'a> {
 }
 
 impl GainPanel<'_> {
-    /// Builds the panel; `label` is the label of the vertical axis.
+    /// Builds the panel, with `label` on the vertical axis.
     pub(super) fn panel(&self, label: &str) -> Panel {
         let measure = self.quantity.measure();
         let bars = self.bars();
@@ -129,8 +129,8 @@ impl GainPanel<'_> {
         bars
     }
 
-    /// Returns `[x, lower end, upper end]` for each condition with an error bar, in the unit of the
-    /// measure.
+    /// Returns `[x, lower end, upper end]` for each condition with an error bar, in the measure's
+    /// unit.
     fn bar_ends(
         &self,
         uncertainty: &Uncertainty,
@@ -157,7 +157,7 @@ impl GainPanel<'_> {
     }
 
     /// Returns a bracket for each airspeed, between the two net gains whose difference is largest
-    /// relative to its expected value (M13.4); brackets of significant differences come first.
+    /// relative to its expected value (M13.4); brackets at significant differences come first.
     fn brackets(&self) -> Vec<Brackets> {
         let (Some(uncertainty), GainQuantity::NetGain(pair), Across::Airspeed) =
             (self.uncertainty, self.quantity, self.across)
@@ -179,7 +179,7 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns the brackets of either the significant or the other differences.
+    /// Returns the brackets at either the significant or the other differences.
     fn brackets_of(
         &self,
         uncertainty: &Uncertainty,
@@ -194,7 +194,7 @@ impl GainPanel<'_> {
             .collect()
     }
 
-    /// Returns the bracket of a difference, labelled with its ratio if significant; `None` if a
+    /// Returns a bracket at a difference, labelled with its ratio if significant; `None` if a
     /// condition has no result.
     fn bracket(&self, found: &AirspeedDifference, is_significant: bool) -> Option<Bracket> {
         let [first, second] = found.conditions;
@@ -214,7 +214,7 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns the confidence band and the scatter band about samples `[airspeed, value]` of the
+    /// Returns the confidence band and the scatter band about samples `[airspeed, value]` from the
     /// schedule; empty without an uncertainty, and for a delay, which has no bands.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
@@ -290,8 +290,8 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns the optimum of a condition as a dot, labelled with the condition's number unless the
-    /// axis shows it.
+    /// Returns a condition's optimum as a dot, labelled with the condition number unless the axis
+    /// shows it.
     fn dot(&self, placed: &PlacedResult<'_>) -> Dot {
         let id = placed.state.id;
         let label = match self.across {
@@ -306,7 +306,7 @@ impl GainPanel<'_> {
         }
     }
 
-    /// Returns an empty group of dots in the style of a condition's class.
+    /// Returns an empty group in the dot style for a condition's class.
     fn empty_group(&self, placed: &PlacedResult<'_>, classes: &Classes, name: &str) -> Dots {
         let choice = self.analysis.study.choice(placed.state.id);
         let shape = if classes.is_first_altitude(placed.state) {
@@ -325,11 +325,11 @@ impl GainPanel<'_> {
     }
 }
 
-/// Sample of the schedule, with the half-widths of its bands.
+/// Sample from the schedule, with its bands' half-widths.
 struct BandSample {
     x: f64,
     value: f64,
-    /// Half-widths of the logarithm of the value.
+    /// Half-widths in the logarithm of the value.
     widths: BandWidths,
 }
 

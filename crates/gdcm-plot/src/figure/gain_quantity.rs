@@ -9,10 +9,10 @@ use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::analysis::{Analysis, ConditionAnalysis};
 
-/// Number of intervals between the samples of a schedule.
+/// Number of intervals into which samples divide a schedule.
 const SAMPLES: usize = 120;
 
-/// Kind of a scheduled or fitted quantity.
+/// Whether a quantity is a gain or a delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
     /// Ratio; 1 without correction.
@@ -39,7 +39,7 @@ impl Measure {
         }
     }
 
-    /// Returns the minimum height of the displayed range, in the unit of the measure.
+    /// Returns the minimum height that an axis shows, in the measure's unit.
     pub fn least_height(self) -> f64 {
         match self {
             Self::Gain => 0.1,
@@ -78,14 +78,14 @@ pub enum Across {
     Conditions,
 }
 
-/// Quantities on the vertical and the horizontal axis of a figure of channels.
+/// Quantities on both axes in a figure over channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GainAxes {
     pub measure: Measure,
     pub across: Across,
 }
 
-/// A quantity defined by the correction of each condition and by the schedule.
+/// A quantity defined by each condition's correction and by the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
     /// Net gain of a response.
@@ -95,7 +95,7 @@ pub enum GainQuantity {
 }
 
 impl GainQuantity {
-    /// Returns the gain or the delay of a channel, as `measure` requires.
+    /// Returns the channel's gain or delay, as `measure` requires.
     pub fn of_channel(channel: Channel, measure: Measure) -> Self {
         match measure {
             Measure::Gain => Self::Gain(channel),
@@ -111,7 +111,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the value of the quantity in a correction, in the unit of the measure.
+    /// Returns the quantity's value in a correction, in the measure's unit.
     pub fn value_in(self, correction: &ChannelCorrection) -> f64 {
         match self {
             Self::NetGain(pair) => correction.net_gain(pair),
@@ -129,8 +129,8 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the search bounds of a condition's optimum, in the unit of the measure; `None` for a
-    /// net gain, which has no bounds.
+    /// Returns the search bounds for a condition's optimum, in the measure's unit; `None` for a net
+    /// gain, which has no bounds.
     pub fn bounds(self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
         match self {
             Self::NetGain(_) => None,
@@ -156,7 +156,7 @@ impl GainQuantity {
     }
 }
 
-/// Result of a condition, with its position on the horizontal axis.
+/// A condition's result, with its position on the horizontal axis.
 pub(super) struct PlacedResult<'a> {
     pub(super) x: f64,
     pub(super) state: &'a FlightState,

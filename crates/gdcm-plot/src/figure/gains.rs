@@ -20,14 +20,14 @@ use super::role::Role;
 /// Ratio of plot height to width, without and with error bars.
 const ASPECT: f64 = 0.95;
 const ASPECT_WITH_BARS: f64 = 1.3;
-/// Size of the dots of an overlaid variant, relative to the usual dot.
+/// Dot size for an overlaid variant, relative to the usual dot.
 const VARIANT_DOT: f64 = 0.7;
-/// Optima and schedule before a change of settings.
+/// Optima and schedule from before the settings changed.
 const PREVIOUS: Color = Color::new(Hue::Rejected);
 const PREVIOUS_DOT: f64 = 0.5;
 
-/// Plots the net gain of each pair at the optimum of each condition, and the schedule (Figures 6
-/// and 7); with error bars and bands if `uncertainty` contains them.
+/// Plots each pair's net gain at every condition's optimum, and the schedule (Figures 6 and 7);
+/// with error bars and bands if `uncertainty` contains them.
 pub fn net_gain_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
@@ -54,8 +54,8 @@ pub fn net_gain_figure(
         .aspect(aspect(uncertainty))
 }
 
-/// Plots gain or delay of each channel at the optimum of each condition, and the schedule (Figures
-/// 3 and 4); with error bars and bands if `uncertainty` contains them.
+/// Plots each channel's gain or delay at every condition's optimum, and the schedule (Figures 3 and
+/// 4); with error bars and bands if `uncertainty` contains them.
 pub fn channels_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
@@ -116,9 +116,8 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     inputs.chain(outputs).collect()
 }
 
-/// Overlays the optima and the schedule of a variant on plots against airspeed: small open dots
-/// behind the existing dots, and a dotted line. `quantities` lists the quantity of each plot, in
-/// order.
+/// Overlays a variant's optima and schedule on plots against airspeed: small open dots behind the
+/// existing dots, and a dotted line. `quantities` lists what each plot shows, in order.
 pub fn add_variant(
     figure: &mut Figure,
     quantities: &[GainQuantity],
@@ -134,8 +133,8 @@ pub fn add_variant(
     }
 }
 
-/// Adds the optima and the schedule before a change of settings to plots against airspeed, in grey
-/// behind the existing schedule and dots. `quantities` lists the quantity of each plot, in order.
+/// Adds the optima and the schedule from before the settings changed to plots against airspeed, in
+/// grey behind the existing schedule and dots. `quantities` lists what each plot shows, in order.
 pub fn add_previous(figure: &mut Figure, quantities: &[GainQuantity], analysis: &Analysis) {
     let panels = figure
         .plots
@@ -152,7 +151,7 @@ pub fn add_previous(figure: &mut Figure, quantities: &[GainQuantity], analysis: 
     }
 }
 
-/// Inserts marks before the first dots of a panel, so that the dots cover them.
+/// Inserts marks before a panel's first dots, so that the dots cover them.
 fn put_behind_dots(panel: &mut Panel, marks: Vec<Mark>) {
     let first_dots = panel
         .marks
@@ -162,7 +161,7 @@ fn put_behind_dots(panel: &mut Panel, marks: Vec<Mark>) {
     panel.marks.splice(first_dots..first_dots, marks);
 }
 
-/// Returns the schedule before a change of settings, if any, and the optima, as marks.
+/// Returns the optima and the schedule, if any, from before the settings changed, as marks.
 fn previous_marks(quantity: GainQuantity, analysis: &Analysis) -> Vec<Mark> {
     let across = Across::Airspeed;
     let mut marks = Vec::new();
@@ -180,7 +179,7 @@ fn previous_marks(quantity: GainQuantity, analysis: &Analysis) -> Vec<Mark> {
     marks
 }
 
-/// Returns the schedule of a variant, if any, and its optima, as marks.
+/// Returns a variant's schedule, if any, and its optima, as marks.
 fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec<Mark> {
     let across = Across::Airspeed;
     let stroke = Role::Variant.stroke(false);
@@ -203,7 +202,7 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
     marks
 }
 
-/// Part of the range of the dots that is reserved for error bars above and below it.
+/// Share of the dots' range that is reserved for error bars above and below it.
 const ROOM_FOR_BARS: f64 = 0.3;
 
 /// Sets value ranges that do not depend on the error bars, for the screen, where the bars appear
@@ -216,7 +215,7 @@ pub fn reserve_room_for_bars(figure: &mut Figure) {
                 values.extend(mark.values(Along::Y));
             }
         }
-        // The first value to be included is that without correction; the others are ends of bars.
+        // The first value to be included is that without correction; the others are bar ends.
         values.extend(panel.y.including.first());
         if let Some(range) = Range::spanning(values) {
             panel.y.range = Some(range.with_margin(ROOM_FOR_BARS, panel.y.least));
@@ -225,9 +224,9 @@ pub fn reserve_room_for_bars(figure: &mut Figure) {
 }
 
 /// Removes labels and brackets from net-gain plots for the screen, where labels appear under the
-/// pointer. Kept are the label of the condition `selected`, whose dot has a ring, and, if
-/// `shows_differences` is set, the brackets of significant differences with the labels of the dots
-/// at their ends.
+/// pointer. The label for the condition `selected`, whose dot has a ring, remains; if
+/// `shows_differences` is set, so do the brackets at significant differences with the labels on the
+/// dots at their ends.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
         panel.marks.retain(|mark| match mark {

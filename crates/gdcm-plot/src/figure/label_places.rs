@@ -15,16 +15,16 @@
 
 use super::drawing::Area;
 
-/// Direction of a label from its dot.
+/// Direction in which a label lies from its dot.
 #[derive(Clone, Copy)]
 struct Direction {
     /// Fractions of the label's width and height that lie to the left of its anchor and above it.
     before: [f64; 2],
-    /// Offset of the anchor from the centre of the dot, relative to the distance between them.
+    /// Offset between anchor and dot centre, relative to the distance between them.
     offset: [f64; 2],
 }
 
-/// Directions of a label from its dot, in order of preference.
+/// Directions in which a label may lie from its dot, the preferred first.
 const DIRECTIONS: [Direction; 8] = [
     Direction {
         before: [0.0, 1.0],
@@ -59,23 +59,24 @@ const DIRECTIONS: [Direction; 8] = [
         offset: [0.0, 1.0],
     },
 ];
-/// Tried distances from the edge of the dot \[pt\]; at all but the first, a leader connects the dot
-/// to its label.
+/// Tried distances from the dot's edge \[pt\]; at all but the first, a leader connects the dot to
+/// its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
 /// Number of passes; each pass places every label again, given the other labels.
 const SWEEPS: usize = 3;
-/// Maximum number of labels; if there are more, no label is placed, because they would be
-/// unreadable and slow to place.
+/// With more labels than this, no label is placed, because they would be unreadable and slow to
+/// place.
 const MOST_LABELS: usize = 300;
 
-/// Cost per square point of a label over another label, a dot, a bar, or outside the bounds.
+/// Costs per square point that a label covers on another label, on a dot, on a bar, or outside the
+/// bounds.
 const ON_LABEL: f64 = 40.0;
 const ON_DOT: f64 = 40.0;
 const ON_BAR: f64 = 8.0;
 const OUTSIDE: f64 = 30.0;
-/// Cost per point of the length of the path under a label.
+/// Cost per point of a path's length under a label.
 const ON_PATH: f64 = 1.0;
-/// Cost per point of the length of a leader across a label.
+/// Cost per point of a leader's length across a label.
 const LEADER_ON_LABEL: f64 = 20.0;
 /// Cost of each other dot that is nearer to a label than the labelled dot.
 const AMBIGUOUS: f64 = 6.0;
@@ -86,7 +87,7 @@ const FARTHER: f64 = 0.6;
 /// Maximum fraction of a label's area over other labels, over dots, or outside the bounds. A label
 /// that covers more is removed as unreadable.
 const MOST_COVERED: f64 = 0.12;
-/// Side of the square that approximates a dot, relative to the radius of the dot.
+/// Side of the square that approximates a dot, relative to the dot's radius.
 const DOT_SIDE: f64 = 1.9;
 /// Margin around other labels \[pt\].
 const LABEL_MARGIN: f64 = 1.0;
@@ -96,10 +97,10 @@ const STEP: f64 = 2.0;
 /// the labelled dot.
 const SLACK: f64 = 0.5;
 
-/// Area of a label, and the end of its leader.
+/// Place for a label, and for the end of its leader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPlace {
-    /// Area of the text.
+    /// Area that the text covers.
     pub area: Area,
     /// Point of `area` at which the leader ends; `None` for a label without a leader.
     pub leader: Option<[f64; 2]>,
@@ -109,9 +110,9 @@ pub struct LabelPlace {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelledDot {
     pub center: [f64; 2],
-    /// Minimum distance of labels from the centre \[pt\].
+    /// Minimum distance between labels and the centre \[pt\].
     pub radius: f64,
-    /// Width and height of its label; no label is placed if its width is zero.
+    /// Label width and height; no label is placed if its width is zero.
     pub size: [f64; 2],
 }
 
@@ -127,7 +128,7 @@ impl LabelledDot {
         )
     }
 
-    /// Returns the distance from the edge of the dot to a label; negative if they overlap.
+    /// Returns the distance from the dot's edge to a label; negative if they overlap.
     fn distance_to(&self, label: &Area) -> f64 {
         label.distance(self.center) - self.radius
     }
@@ -143,7 +144,8 @@ pub struct Surroundings {
     pub bars: Vec<Area>,
 }
 
-/// Returns the places of the labels of `dots`, in the same order; `None` for a label without room.
+/// Places labels for `dots`, and returns the places in the same order; `None` for a label without
+/// room.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
     let mut placing = Placing {
         dots,
@@ -172,18 +174,18 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
 struct Placing<'a> {
     dots: &'a [LabelledDot],
     around: &'a Surroundings,
-    /// In the order of `dots`.
+    /// In the same order as `dots`.
     places: Vec<Option<LabelPlace>>,
 }
 
-/// Label of another dot, at its present place.
+/// Another dot's label, at its present place.
 struct OtherLabel {
     place: LabelPlace,
     /// Centre of the dot that it labels.
     center: [f64; 2],
 }
 
-/// A possible place of a label, and its cost.
+/// A possible place for a label, and its cost.
 struct Candidate {
     place: LabelPlace,
     cost: f64,
@@ -195,8 +197,8 @@ impl Placing<'_> {
         let others = self.other_labels(index);
         let mut best: Option<Candidate> = None;
         for candidate in candidates(self.dots[index]) {
-            // `candidate.cost` is the cost of direction and distance alone; it already rules out
-            // most places.
+            // `candidate.cost` covers direction and distance alone; it already rules out most
+            // places.
             if !is_better(candidate.cost, &best) {
                 continue;
             }
@@ -224,7 +226,7 @@ impl Placing<'_> {
         others
     }
 
-    /// Returns the full cost of a candidate for a dot's label.
+    /// Returns a candidate's full cost for a dot's label.
     fn cost(&self, candidate: &Candidate, index: usize, others: &[OtherLabel]) -> f64 {
         let place = &candidate.place;
         let ambiguity = AMBIGUOUS * self.nearer_dots(&place.area, index) as f64;
@@ -232,7 +234,7 @@ impl Placing<'_> {
         candidate.cost + ambiguity + leaders + self.obstruction(&place.area, others)
     }
 
-    /// Returns the cost of everything that a label covers, and of its part outside the bounds.
+    /// Returns the cost for everything that a label covers, and for its part outside the bounds.
     fn obstruction(&self, area: &Area, others: &[OtherLabel]) -> f64 {
         let on_labels: f64 = others
             .iter()
@@ -252,12 +254,12 @@ impl Placing<'_> {
             + ON_PATH * on_path
     }
 
-    /// Returns the area \[pt²\] of a label over dots.
+    /// Returns the area \[pt²\] that a label shares with dots.
     fn on_dots(&self, label: &Area) -> f64 {
         self.dots.iter().map(|dot| label.overlap(&dot.area())).sum()
     }
 
-    /// Returns the area \[pt²\] of a label outside the bounds.
+    /// Returns how much of a label's area \[pt²\] lies outside the bounds.
     fn outside(&self, label: &Area) -> f64 {
         label.size() - label.overlap(&self.around.bounds)
     }
@@ -311,7 +313,7 @@ fn is_better(cost: f64, best: &Option<Candidate>) -> bool {
     }
 }
 
-/// Returns the possible places of a dot's label, each with the cost of its direction and distance.
+/// Returns the possible places for a dot's label, each with the cost of its direction and distance.
 fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (ring, gap) in GAPS.into_iter().enumerate() {
@@ -331,7 +333,7 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     candidates
 }
 
-/// Returns the cost of leaders across labels: this leader across other labels, and other leaders
+/// Returns what leaders across labels cost: this leader across other labels, and other leaders
 /// across this label.
 fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
     let mut length = 0.0;

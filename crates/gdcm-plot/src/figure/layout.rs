@@ -1,4 +1,4 @@
-//! Places the panels of a figure on paper, with room for tick labels and axis labels.
+//! Places a figure's panels on paper, with room for tick labels and axis labels.
 
 pub use super::letters::width;
 
@@ -8,14 +8,14 @@ use super::figure::{Figure, Plot};
 use super::marks::Along;
 use super::placed::{Placed, Side};
 
-/// Font size of tick labels, legend, caption and texts at dots \[pt\]: the minimum that journals
+/// Font size for tick labels, legend, caption and texts at dots \[pt\]: the minimum that journals
 /// accept.
 pub(super) const SMALL_PT: f64 = 7.0;
-/// Font size of axis labels and plot titles \[pt\].
+/// Font size for axis labels and plot titles \[pt\].
 pub(super) const LABEL_PT: f64 = 7.5;
-/// Line height of labels \[pt\].
+/// Line height for labels \[pt\].
 pub(super) const LABEL_LINE: f64 = 10.0;
-/// Line height of small text \[pt\].
+/// Line height for small text \[pt\].
 pub(super) const SMALL_LINE: f64 = 9.0;
 /// Tick length \[pt\].
 pub(super) const TICK: f64 = 2.2;
@@ -24,7 +24,7 @@ pub(super) const TICK: f64 = 2.2;
 const COLUMN_GAP: f64 = 9.0;
 /// Space between plots below one another \[pt\].
 const ROW_GAP: f64 = 5.0;
-/// Space between the panels of a plot \[pt\].
+/// Space between a plot's panels \[pt\].
 const PANEL_GAP: f64 = 4.0;
 /// Space to the right of the frames, for half a tick label \[pt\].
 const RIGHT: f64 = 6.0;
@@ -32,9 +32,9 @@ const RIGHT: f64 = 6.0;
 const LEAST_WIDTH: f64 = 88.0;
 /// Minimum plot width, including tick labels, in a dense figure \[pt\].
 const LEAST_DENSE_WIDTH: f64 = 40.0;
-/// Minimum width, and minimum total height, of the frames of a plot \[pt\].
+/// Minimum width and minimum total height of a plot's frames \[pt\].
 const LEAST_FRAME: f64 = 22.0;
-/// Maximum total height of the plots, which leaves room for a caption on an A4 page \[pt\].
+/// Maximum total plot height, which leaves room for a caption on an A4 page \[pt\].
 const MOST_HEIGHT: f64 = 640.0;
 /// Minimum distance between tick labels on a vertical axis \[pt\].
 const VERTICAL_GAP: f64 = 11.0;
@@ -42,7 +42,7 @@ const VERTICAL_GAP: f64 = 11.0;
 const HORIZONTAL_GAP: f64 = 12.0;
 /// Minimum space between neighbouring tick labels on a horizontal axis \[pt\].
 const NUMBER_SPACE: f64 = 5.0;
-/// Frames' share of the paper width, before the room beside them is known.
+/// Share of the paper width assumed for the frames before the room beside them is known.
 const FIRST_GUESS: f64 = 0.8;
 /// Axis range used if a figure has no panels.
 const EMPTY: Range = Range { min: 0.0, max: 1.0 };
@@ -56,7 +56,7 @@ pub(super) struct Layout<'f> {
 }
 
 impl<'f> Layout<'f> {
-    /// Places the panels of `figure` on paper `width_pt` wide, from `top` down.
+    /// Places the panels in `figure` on paper `width_pt` wide, from `top` down.
     ///
     /// ```text
     /// guess the frame width
@@ -81,7 +81,7 @@ impl<'f> Layout<'f> {
 }
 
 /// The plots in rows and columns. In its methods, `index` numbers the plots in reading order, and
-/// `panel` the panels of a plot from the top.
+/// `panel` counts a plot's panels from the top.
 struct PlotTable<'f> {
     figure: &'f Figure,
     columns: usize,
@@ -108,7 +108,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the total height of the frames of a plot \[pt\].
+    /// Returns the total height of a plot's frames \[pt\].
     fn plot_height(&self, frame_width: f64) -> f64 {
         let rows = self.rows as f64;
         let around: f64 = (0..self.rows)
@@ -120,7 +120,7 @@ impl<'f> PlotTable<'f> {
             .max(LEAST_FRAME)
     }
 
-    /// Returns the height \[pt\] of the titles above the frames of a row.
+    /// Returns the height \[pt\] that the titles above a row's frames need.
     fn above(&self, row: usize) -> f64 {
         let has_title = self
             .row(row)
@@ -128,7 +128,7 @@ impl<'f> PlotTable<'f> {
         if has_title { LABEL_LINE + 2.0 } else { 3.0 }
     }
 
-    /// Returns the height \[pt\] of the tick labels and axis labels below the frames of a row.
+    /// Returns the height \[pt\] that tick labels and axis labels below a row's frames need.
     fn below(&self, row: usize) -> f64 {
         let has_numbers = self.row(row).any(|index| self.has_x_numbers(index));
         if has_numbers {
@@ -138,26 +138,26 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the indices of the plots in a row.
+    /// Returns the plot indices in a row.
     fn row(&self, row: usize) -> std::ops::Range<usize> {
         let from = row * self.columns;
         from..(from + self.columns).min(self.figure.plots.len())
     }
 
-    /// Returns whether the horizontal axis of a plot has tick labels: always if it is not shared,
+    /// Returns whether a plot's horizontal axis has tick labels: always if it is not shared,
     /// otherwise only at the bottom of each column.
     fn has_x_numbers(&self, index: usize) -> bool {
         !self.figure.shared.x || index + self.columns >= self.figure.plots.len()
     }
 
-    /// Returns whether the vertical axis of a plot has tick labels: always if it is not shared,
+    /// Returns whether a plot's vertical axis has tick labels: always if it is not shared,
     /// otherwise only at the left of each row.
     fn has_y_numbers(&self, index: usize) -> bool {
         !self.figure.shared.y || index.is_multiple_of(self.columns)
     }
 
-    /// Returns whether the vertical axis of a panel has a label: in the first plot of each row, and
-    /// in each plot whose label differs from the label of the first plot.
+    /// Returns whether a panel's vertical axis has a label: in the first plot of each row, and in
+    /// each plot whose label differs from that in the first plot.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
         index == first || self.y_label(index, panel) != self.y_label(first, panel)
@@ -177,7 +177,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the horizontal range of all panels of a plot.
+    /// Returns the horizontal range shared by a plot's panels.
     fn x_range(&self, index: usize) -> Range {
         self.sharing(index, self.figure.shared.x)
             .iter()
@@ -187,7 +187,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the vertical range of a panel; `panel` counts from the top of the plot.
+    /// Returns a panel's vertical range; `panel` counts from the top of the plot.
     fn y_range(&self, index: usize, panel: usize) -> Range {
         self.sharing(index, self.figure.shared.y)
             .iter()
@@ -197,7 +197,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the height of each frame of a plot \[pt\].
+    /// Returns the height of each frame in a plot \[pt\].
     fn heights(&self, index: usize, plot_height: f64) -> Vec<f64> {
         let panels = &self.figure.plots[index].panels;
         let room = plot_height - PANEL_GAP * panels.len().saturating_sub(1) as f64;
@@ -233,7 +233,7 @@ impl<'f> PlotTable<'f> {
         let is_lowest = panel + 1 == plot.panels.len();
         let range = self.x_range(index);
         let has_numbers = is_lowest && self.has_x_numbers(index);
-        // If the frames are too narrow for the label, only the first plot of a row shows it.
+        // If the frames are too narrow for the label, only the row's first plot shows it.
         let has_room = LABEL_PT * width(&axis.label) <= frame_width + COLUMN_GAP;
         Side {
             range,
@@ -244,8 +244,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the width \[pt\] of the space to the left of each column, for tick labels and axis
-    /// labels.
+    /// Returns the width \[pt\] to the left of each column that tick labels and axis labels need.
     fn gutters(&self, frame_width: f64) -> Vec<f64> {
         let plot_height = self.plot_height(frame_width);
         (0..self.columns)
@@ -288,7 +287,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Places the panels of a plot below one another within `frames`.
+    /// Places a plot's panels below one another within `frames`.
     fn place_plot(&self, index: usize, frames: Area) -> Vec<Placed<'f>> {
         let plot = &self.figure.plots[index];
         let heights = self.heights(index, frames.height);
@@ -318,13 +317,13 @@ fn widest(ticks: &[Tick]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Returns ticks whose labels do not touch. The number of ticks depends on the label widths, which
-/// in turn depend on the number of ticks: two iterations suffice.
+/// Returns ticks whose labels do not touch. How many ticks fit depends on the label widths, which
+/// in turn depend on the ticks: two iterations suffice.
 fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let close = axis.ticks(range, length_pt, HORIZONTAL_GAP);
     let ticks = axis.ticks(range, length_pt, label_gap(&close));
     match &axis.names {
-        // The texts of named ticks do not depend on their spacing: a single iteration suffices.
+        // Named ticks have the same text at any spacing: a single iteration suffices.
         Some(_) => ticks,
         None => axis.ticks(range, length_pt, label_gap(&ticks)),
     }

@@ -1,5 +1,5 @@
-//! Delay and lead of each channel in a condition, up to ten times the upper end of the band, with
-//! the validity limit of the model and the cost of the leads.
+//! Each channel's delay and lead in a condition, up to ten times the band's upper end, with the
+//! model's validity limit and the leads' price, the gain that they add above the band.
 
 use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
@@ -15,7 +15,7 @@ use super::gains::all_channels;
 use super::marks::{Band, Curve, Rule};
 use super::role::Role;
 
-/// Number of points of a curve.
+/// Points in each curve.
 const POINTS: usize = 240;
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.8);
 const OUTPUT: Stroke = Stroke::dashed(Color::new(Hue::Accent), 1.6, Dash::Long);
@@ -25,8 +25,8 @@ const LIMIT: Stroke = Stroke::solid(Color::new(Hue::Warning), 1.2);
 const BEYOND: Color = Color::new(Hue::Warning).tint(14);
 
 /// Plots gain and phase of the delay or lead in each channel, without the channel gains k, up to
-/// ten times the upper end of the band: a row of two plots for each of `pairs`. The two channels of
-/// the pair, and their product, are emphasised.
+/// ten times the band's upper end: two plots in a row for each of `pairs`. The pair's two channels,
+/// and their product, are emphasised.
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     let title = format!("Leads · {}", source.condition_words());
     let caption = format!(
@@ -44,10 +44,10 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     figure
 }
 
-/// Delay or lead of a channel, or of two channels in series, as drawn.
+/// Delay or lead in a channel, or in two channels in series, as drawn.
 struct LeadCurve {
     name: String,
-    /// Text of its entry in the legend.
+    /// Text in the legend.
     key: String,
     stroke: Stroke,
     dynamics: GainDelay,
@@ -59,10 +59,9 @@ struct PairLeads {
     pair_name: String,
     /// Frequencies \[rad/s\].
     omega: Vec<f64>,
-    /// Curves of the other channels, of the input and the output, and of input and output in
-    /// series.
+    /// Curves for the other channels, for input and output, and for both in series.
     curves: Vec<LeadCurve>,
-    /// Cost of the leads; `None` without leads.
+    /// Gain that the leads add above the band; `None` without leads.
     price: Option<LeadPrice>,
 }
 
@@ -108,7 +107,7 @@ impl PairLeads {
         }
     }
 
-    /// Plots the gain and the phase of each curve.
+    /// Plots each curve's gain and phase.
     fn plots(&self) -> [Plot; 2] {
         let zeros = vec![0.0; self.omega.len()];
         let gain_axis = Axis::linear("Gain [dB]").including(0.0).at_least(3.0);
@@ -129,7 +128,7 @@ impl PairLeads {
         ]
     }
 
-    /// Returns `: ` and the cost of the leads in the response; empty without leads.
+    /// Returns `: ` and the leads' price in the response; empty without leads.
     fn price_words(&self) -> String {
         let price = self.price.as_ref();
         match price.and_then(|price| pair_price_text(price, self.pair)) {
@@ -153,7 +152,7 @@ impl PairLeads {
     }
 }
 
-/// Returns the delay and the leads of one channel, or of two channels in series.
+/// Returns the delay and the leads in one channel, or in two channels in series.
 fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     let delay_s: f64 = channels
         .iter()

@@ -1,4 +1,4 @@
-//! Legend of a figure: an entry for each distinct key among its marks.
+//! Legend: an entry for each distinct key among a figure's marks.
 
 use gdcm_study::results::requirement_role::RequirementRole;
 
@@ -6,7 +6,7 @@ use super::drawing::{Color, Stroke};
 use super::marks::{DotShape, Mark};
 use super::role::Role;
 
-/// An entry of a legend: a sample and a text.
+/// A legend entry: a sample and a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     pub text: String,
@@ -26,8 +26,8 @@ pub enum Sample {
     Ground(Color),
 }
 
-/// Returns an entry for each distinct key among `marks`: roles in the order of [`Role::ALL`], then
-/// the other keys in order of appearance.
+/// Returns an entry for each distinct key among `marks`: roles as ordered in [`Role::ALL`], then
+/// the other keys as they appear.
 pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for entry in marks.filter_map(entry) {
@@ -40,7 +40,7 @@ pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entry of a mark; `None` for a mark without a key.
+/// Returns a mark's entry; `None` for a mark without a key.
 fn entry(mark: &Mark) -> Option<Entry> {
     match mark {
         Mark::Curve(curve) => Some(Entry {
@@ -86,9 +86,9 @@ fn entry(mark: &Mark) -> Option<Entry> {
     }
 }
 
-/// Returns the rank of an entry in the legend; texts that do not name a role come after all roles.
+/// Returns an entry's rank in the legend; texts that do not name a role come after all roles.
 fn rank(text: &str) -> usize {
-    // The single physics model of a requirement figure has the rank of the nominal model.
+    // The single physics model in a requirement figure has the nominal model's rank.
     let text = if text == RequirementRole::Physics.name() {
         Role::Nominal.key(false)
     } else {
@@ -100,8 +100,8 @@ fn rank(text: &str) -> usize {
         .unwrap_or(Role::ALL.len())
 }
 
-/// Returns whether a text names a role. A rejected nominal model has a separate entry with the rank
-/// of the nominal role; all other rejected models share the entry of the rejected role.
+/// Returns whether a text names a role. A rejected nominal model has a separate entry, ranked as
+/// the nominal role; all other rejected models share the entry of the rejected role.
 fn names_role(text: &str, role: Role) -> bool {
     text == role.key(false) || (role == Role::Nominal && text == role.key(true))
 }

@@ -1,4 +1,4 @@
-//! Glyphs of the fonts with their widths, and the division of text into lines.
+//! Glyphs with their widths, and breaking text into lines.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -27,7 +27,7 @@ pub struct Letter {
     pub advance: f64,
 }
 
-/// Returns the letters of a text line; control characters are shown as escape sequences.
+/// Returns the letters in a text line; control characters are shown as escape sequences.
 pub fn letters(words: &str) -> Vec<Letter> {
     let fonts: Vec<FontRef<'_>> = FONTS
         .iter()
@@ -39,8 +39,8 @@ pub fn letters(words: &str) -> Vec<Letter> {
         .collect()
 }
 
-/// Returns the glyph of a character in the first font that contains it, otherwise the empty box of
-/// the first font.
+/// Returns a character's glyph in the first font that contains it, otherwise the first font's empty
+/// box.
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     let found = fonts
         .iter()
@@ -59,7 +59,7 @@ fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     })
 }
 
-/// Returns the width of a text line, relative to the font size.
+/// Returns a text line's width, relative to the font size.
 pub fn width(words: &str) -> f64 {
     letters(words).iter().map(|letter| letter.advance).sum()
 }

@@ -64,11 +64,11 @@ pub struct Dots {
     pub color: Color,
     /// Whether the dots are filled; otherwise they are outlines.
     pub filled: bool,
-    /// Diameter relative to a dot of usual size.
+    /// Diameter relative to the usual dot.
     pub size: f64,
     pub dots: Vec<Dot>,
-    /// Object around whose dots the screen draws rings of radius [`RING_PT`]. Labels lie outside
-    /// the rings.
+    /// Object whose dots have rings with radius [`RING_PT`] on the screen. Labels lie outside the
+    /// rings.
     pub ringed: Option<MarkId>,
 }
 
@@ -132,7 +132,7 @@ pub struct Band {
     pub key: String,
 }
 
-/// Shaded vertical ranges, each at an x, such as the search bounds of values.
+/// Shaded vertical ranges, each at an x, such as search bounds for values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
     /// Heading in the tables, and entry in the legend.
@@ -150,8 +150,8 @@ pub struct Envelope {
     /// Heading in the tables, and entry in the legend.
     pub name: String,
     pub color: Color,
-    /// Style of both lines; `None` for a shaded area without lines. On paper, an area with lines is
-    /// not shaded.
+    /// Style for both lines; `None` for a shaded area without lines. On paper, an area with lines
+    /// is not shaded.
     pub edge: Option<Stroke>,
     /// `[x, lower end, upper end]`, ascending in x; a non-finite end leaves a gap.
     pub points: Vec<[f64; 3]>,
@@ -294,8 +294,8 @@ impl Curve {
 }
 
 impl Dots {
-    /// Creates an empty group with this style: filled dots of usual size, without an entry in the
-    /// legend.
+    /// Creates an empty group with this style: filled dots in the usual size, without an entry in
+    /// the legend.
     pub fn new(name: impl Into<String>, shape: DotShape, color: Color) -> Self {
         Self {
             name: name.into(),
@@ -351,7 +351,7 @@ impl Envelope {
 }
 
 impl Bars {
-    /// Iterates over the lower and upper ends of the bars, taking the stacking into account.
+    /// Iterates over the bars' lower and upper ends; a stacked bar starts at its foot.
     pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
         self.bars
@@ -392,7 +392,7 @@ impl Rule {
 }
 
 impl Along {
-    /// Returns the coordinate of a point along this axis.
+    /// Returns a point's coordinate along this axis.
     fn coordinate(self, [x, y]: [f64; 2]) -> f64 {
         match self {
             Self::X => x,

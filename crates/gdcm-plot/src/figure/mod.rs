@@ -1,8 +1,8 @@
-//! Figures: their description, independent of any screen, and their layout for print.
+//! Figures: described independently of any screen, and laid out for print.
 //!
 //! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot)
 //! has panels below one another; a [`Panel`] has two axes and [marks]. [`Figure::drawing`] lays it
-//! out at the width of a journal column, in sizes that are readable in print, and in lines that are
+//! out as wide as a journal column, in sizes that are readable in print, and in lines that are
 //! distinguishable without colours; [`Figure::tables`] returns its numbers.
 //!
 //! | files | contents |

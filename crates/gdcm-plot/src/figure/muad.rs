@@ -1,4 +1,4 @@
-//! Envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A), drawn about a response
+//! Envelopes for maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A), drawn about a response
 //! or in an error plot, and the frequencies at which a deviation leaves them.
 //!
 //! The envelopes are defined for the ratio of model to reference.
@@ -16,7 +16,7 @@ use super::role::Role;
 /// Indices of the lower and the upper envelope in [`Muad`].
 const LOWER: usize = 0;
 const UPPER: usize = 1;
-/// Labels of an envelope that limits the unnoticeable deviations from below, and from above.
+/// Labels for the envelopes that limit the unnoticeable deviations from below, and from above.
 const ABOVE: &str = "unnoticeable above (MUAD)";
 const BELOW: &str = "unnoticeable below (MUAD)";
 
@@ -49,8 +49,8 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
 }
 
 /// Returns the envelopes for an error plot at the frequencies `omega` \[rad/s\]. Magnitude errors
-/// are drawn as the ratio of reference to model, so that the magnitude envelopes are mirrored;
-/// phase errors are drawn as model minus reference.
+/// are drawn as reference over model, so that the magnitude envelopes are mirrored; phase errors
+/// are drawn as model minus reference.
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
     for (end, magnitude_label, phase_label) in [(LOWER, BELOW, ABOVE), (UPPER, ABOVE, BELOW)] {

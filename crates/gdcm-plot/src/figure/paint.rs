@@ -44,7 +44,7 @@ const CAPTION: TextStyle = TextStyle {
     color: Color::DIM,
 };
 
-/// Font size, line height and colour of a text block.
+/// Font size, line height and colour for a text block.
 struct TextStyle {
     size_pt: f64,
     /// Line height \[pt\].
@@ -107,7 +107,7 @@ impl Page {
         }
     }
 
-    /// Paints the panels of a figure; returns the number of labels omitted for lack of room.
+    /// Paints a figure's panels; returns how many labels were omitted for lack of room.
     fn paint_panels(&mut self, figure: &Figure) -> usize {
         let layout = Layout::new(figure, self.inner_pt, self.bottom);
         let mut labels_left_out = 0;
@@ -183,7 +183,7 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
 #[derive(Clone, Debug)]
 pub struct PaintedPanel {
     pub shapes: Vec<Shape>,
-    /// Number of labels omitted for lack of room.
+    /// Labels omitted for lack of room.
     pub labels_left_out: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Paints the axes of a panel: grid, ticks, tick labels and axis labels.
+//! Paints a panel's axes: grid, ticks, tick labels and axis labels.
 
 use super::axis::Axis;
 use super::drawing::{Anchor, Area, Color, Shape, Stroke, Text};
@@ -53,7 +53,7 @@ pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shap
         }
     }
     if side.has_label {
-        // A label wider than the frame begins at the left edge of the frame.
+        // A label wider than the frame begins at the frame's left edge.
         let is_wide = LABEL_PT * width(&axis.label) > frame.width;
         let (part, anchor) = if is_wide {
             (0.0, Anchor::Start)

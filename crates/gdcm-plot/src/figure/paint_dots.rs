@@ -9,15 +9,15 @@ use super::placed::{HOOK, Placed};
 
 /// Line between a dot and a label that is not next to it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
-/// Half of the line width of a ring, which a label must not touch \[pt\].
+/// Half of a ring's line width, which a label must not touch \[pt\].
 const RING_MARGIN: f64 = 0.5;
-/// Height of digits, which have no descenders, relative to the font size.
+/// Digit height, relative to the font size; digits have no descenders.
 const DIGIT_HEIGHT: f64 = 0.74;
 
 /// Painted dots and labels.
 pub(super) struct PaintedDots {
     pub(super) shapes: Vec<Shape>,
-    /// Number of labels omitted for lack of room.
+    /// Labels omitted for lack of room.
     pub(super) labels_left_out: usize,
 }
 

@@ -5,8 +5,8 @@ use super::marks::{Along, Bars, Brackets, Curve, Envelope, Guide, Intervals, Mar
 use super::placed::Placed;
 use super::thinning::{Pixel, thinned};
 
-/// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the width of
-/// the thinnest line.
+/// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the thinnest
+/// line's width.
 const TOLERANCE: f64 = 0.04;
 const FINEST: Pixel = Pixel {
     width: TOLERANCE,
@@ -59,8 +59,8 @@ fn span_areas(placed: &Placed<'_>, spans: &Spans) -> Vec<Shape> {
     shapes
 }
 
-/// Paints the area of an envelope between gaps: a polygon along the lower line and back along the
-/// upper line.
+/// Paints an envelope's area between gaps: a polygon along the lower line and back along the upper
+/// line.
 pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Shape> {
     let ends: Vec<Option<[[f64; 2]; 2]>> = envelope
         .points
@@ -81,7 +81,7 @@ pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Sh
     areas
 }
 
-/// Returns the runs of at least two values between gaps.
+/// Splits values at gaps into runs of at least two.
 fn runs<T: Copy>(values: &[Option<T>]) -> Vec<Vec<T>> {
     values
         .split(Option::is_none)
@@ -100,7 +100,7 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
     }
 }
 
-/// Paints the lines of a mark, which lie above the grid.
+/// Paints a mark's lines, which lie above the grid.
 pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),
@@ -121,7 +121,7 @@ pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     }
 }
 
-/// Paints the parts of a curve between gaps, thinned for print.
+/// Paints a curve's parts between gaps, thinned for print.
 fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
     let mut positions = Vec::new();
     for point in curve.points() {

@@ -1,4 +1,4 @@
-//! Paints the texts in a panel: labels of rules and guides, and notes.
+//! Paints the texts in a panel: labels on rules and guides, and notes.
 
 use super::drawing::{Anchor, Area, Color, Shape, Text};
 use super::layout::{SMALL_LINE, SMALL_PT};
@@ -6,8 +6,8 @@ use super::letters::{HALF_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
-/// Paints the label of a rule at its upper or right end, on a white background that hides curves
-/// behind it.
+/// Paints a rule's label at its upper or right end, on a white background that hides curves behind
+/// it.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     if rule.label.is_empty() {
         return Vec::new();
@@ -38,7 +38,7 @@ pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     ]
 }
 
-/// Paints the label of a guide, or a note; `None` for other marks, and for a text without room.
+/// Paints a guide's label, or a note; `None` for other marks, and for a text without room.
 pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let text = match mark {
         Mark::Guide(guide) => guide_label(placed, guide)?,
@@ -48,7 +48,7 @@ pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     Some(Shape::Text(text.colored(Color::DIM)))
 }
 
-/// Returns the label of a guide, below its last visible point.
+/// Returns a guide's label, below its last visible point.
 fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
     if guide.label.is_empty() {
         return None;

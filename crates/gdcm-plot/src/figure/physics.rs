@@ -1,5 +1,5 @@
-//! Named physics parameters: the value of a parameter in each condition over airspeed, and the
-//! misfit that remains as parameters are added (M18.3, M18.4).
+//! Named physics parameters: a parameter's value in each condition over airspeed, and the misfit
+//! that remains as parameters are added (M18.3, M18.4).
 
 use gdcm_method::physics::OfferedParameter;
 use gdcm_method::physics::diagnosis::{ConditionDiagnosis, ParameterDiagnosis};
@@ -17,21 +17,21 @@ use super::marks::{Band, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId
 
 /// Value found for all conditions together.
 const JOINT: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.4);
-/// Interval of that value.
+/// Interval about that value.
 const JOINT_INTERVAL: Color = Color::new(Hue::Perturbed).tint(22);
 /// One plausible standard deviation on both sides of the nominal value.
 const PLAUSIBLE: Color = Color::DIM.tint(12);
 const NOMINAL: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.7);
 const LEFT_OUT: Stroke = Stroke::solid(Color::INK, 1.4);
-/// Steps that hardly lower the misfit of conditions left out.
+/// Background at steps that hardly lower the misfit in conditions left out.
 const NO_IMPROVEMENT: Color = Color::DIM.tint(10);
 /// Margin beyond the slowest and the fastest condition \[kt\].
 const AIRSPEED_MARGIN_KT: f64 = 4.0;
 /// Ratio in percent.
 const PERCENT: f64 = 100.0;
 
-/// Builds the figure of the parameter at index `shown` among those that are on; `None` if there is
+/// Builds the figure for the parameter at index `shown` among those that are on; `None` if there is
 /// no such parameter.
 pub fn physics_figure(
     findings: &PhysicsFindings,
@@ -71,7 +71,7 @@ struct ShownParameter<'a> {
     diagnosis: &'a ParameterDiagnosis,
     conditions: &'a [ConditionDiagnosis],
     dataset: &'a Dataset,
-    /// Confidence level of the intervals.
+    /// Confidence level for the intervals.
     level: f64,
 }
 
@@ -114,8 +114,8 @@ impl ShownParameter<'_> {
         Plot::new(format!("{name}, by condition")).panel(panel.with_all(self.dots()))
     }
 
-    /// Returns the values of single conditions: condition, airspeed, change and its half-width, in
-    /// the unit of the parameter.
+    /// Returns the values from single conditions: condition, airspeed, change and its half-width,
+    /// in the parameter's unit.
     fn values(&self) -> Vec<PlacedValue<'_>> {
         let mut values = Vec::new();
         let degrees = self.conditions.len().saturating_sub(1).max(1) as f64;
@@ -186,7 +186,7 @@ impl ShownParameter<'_> {
     }
 }
 
-/// Value of the parameter in a single condition, in the unit of the parameter.
+/// The parameter's value in a single condition, in the parameter's unit.
 struct PlacedValue<'a> {
     condition: &'a Condition,
     change: f64,
@@ -199,8 +199,8 @@ impl PlacedValue<'_> {
     }
 }
 
-/// Plots the misfit of conditions left out as parameters are added, in percent of the misfit without
-/// parameters; the steps that do not lower it noticeably are shaded.
+/// Plots the misfit in conditions left out as parameters are added, in percent of the misfit
+/// without parameters; the steps that do not lower it noticeably are shaded.
 fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
     let mut names = Vec::new();
     let mut points = Vec::new();
@@ -232,8 +232,8 @@ fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
     Plot::new("Remaining misfit").panel(panel.with(curve).with(dots))
 }
 
-/// Returns the first step from which no step lowers the ratio by as much as naming requires; `None`
-/// if the last step does.
+/// Returns the first step from which the ratio falls, at every step, by less than a parameter must
+/// bring to be named; `None` if the last step brings more.
 fn first_idle_step(scores: &Scores) -> Option<usize> {
     let steps = &scores.stepwise;
     let mut first_idle = steps.len();

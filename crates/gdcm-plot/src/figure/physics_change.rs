@@ -19,16 +19,16 @@ use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 const IDENTIFIED: Stroke = Stroke::solid(Color::new(Hue::Identified), 2.4);
 const BEFORE: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.2, Dash::Short);
 const AFTER: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.6);
-/// Maximum magnitude of the displayed poles, relative to the upper end of the band.
+/// Magnitude up to which poles are displayed, relative to the band's upper end.
 const SHOWN_POLES: f64 = 1.5;
-/// Minimum height of the ranges of magnitude \[dB\] and phase \[deg\].
+/// Minimum height that the magnitude axis \[dB\] and the phase axis \[deg\] show.
 const LEAST_DB: f64 = 4.0;
 const LEAST_DEG: f64 = 20.0;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;
 
-/// Plots the `most` most improved responses of a condition, and its poles; `None` if the physics
-/// models of the condition are not moved.
+/// Plots a condition's `most` most improved responses, and its poles; `None` if the condition's
+/// physics models are not moved.
 pub fn physics_change_figure(
     assessment: &PhysicsAssessment,
     dataset: &Dataset,
@@ -64,7 +64,7 @@ pub fn physics_change_figure(
     Some(figure.plot(pole_plot(effect, near)))
 }
 
-/// Axis and names common to the plots of the responses.
+/// Axis and names common to the response plots.
 struct ResponsePlots<'a> {
     dataset: &'a Dataset,
     frequencies: Arc<[f64]>,
@@ -107,7 +107,7 @@ impl ResponsePlots<'_> {
     }
 }
 
-/// Magnitudes or phases of a response.
+/// Magnitudes or phases for a response: identified, and without and with the parameters.
 struct Traces<'a> {
     identified: &'a [f64],
     before: &'a [f64],
@@ -123,8 +123,7 @@ impl Traces<'_> {
     }
 }
 
-/// Plots the poles of the physics representative up to the magnitude `near` \[rad/s\], before and
-/// after.
+/// Plots the physics representative's poles up to the magnitude `near` \[rad/s\], before and after.
 fn pole_plot(effect: &ConditionPhysics, near: f64) -> Plot {
     let mut shown: Vec<PoleShift> = Vec::new();
     for shift in effect.poles.iter().flatten() {

@@ -1,4 +1,4 @@
-//! A panel at its position on paper or on the screen, and the positions of values in the panel.
+//! A panel at its position on paper or on the screen, and where values lie in it.
 
 use super::axis::{Range, Tick};
 use super::drawing::Area;
@@ -20,7 +20,7 @@ pub(super) struct Placed<'f> {
     pub(super) frame: Area,
     pub(super) x: Side,
     pub(super) y: Side,
-    /// Font size of the texts in the panel \[pt\].
+    /// Font size for the texts in the panel \[pt\].
     pub(super) letters_pt: f64,
 }
 
@@ -48,7 +48,7 @@ impl Side {
     }
 }
 
-/// Ends of a bracket's lines \[pt\], in the order of the bracket's values.
+/// Line ends in a bracket \[pt\], in the same order as the bracket's values.
 pub(super) struct PlacedBracket {
     /// Ends of the line beside the values.
     pub(super) spine: [[f64; 2]; 2],
@@ -57,8 +57,8 @@ pub(super) struct PlacedBracket {
 }
 
 impl Placed<'_> {
-    /// Returns the position of a point, which lies outside the frame if the point is outside the
-    /// ranges; `None` if an axis cannot show the point.
+    /// Returns a point's position, which lies outside the frame if the point is outside the ranges;
+    /// `None` if an axis cannot show the point.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let x = self.panel.x.fraction(x, self.x.range)?;
         let y = self.panel.y.fraction(y, self.y.range)?;
@@ -79,13 +79,13 @@ impl Placed<'_> {
         }
     }
 
-    /// Returns the positions of both ends of a vertical range `[x, lower end, upper end]`.
+    /// Returns the positions of both ends in a vertical range `[x, lower end, upper end]`.
     pub(super) fn vertical(&self, [x, low, high]: [f64; 3]) -> Option<[[f64; 2]; 2]> {
         Some([self.at([x, low])?, self.at([x, high])?])
     }
 
-    /// Returns the lines of a bracket: to the left of its values, or to their right if there is no
-    /// room on the left.
+    /// Returns a bracket's lines: to the left of its values, or to their right if there is no room
+    /// on the left.
     pub(super) fn bracket(&self, bracket: &Bracket) -> Option<PlacedBracket> {
         let [from, to] = bracket.ends;
         let from = self.at([bracket.x, from])?;
@@ -102,8 +102,7 @@ impl Placed<'_> {
         })
     }
 
-    /// Returns whether a position is in the frame, including its edge with a tolerance of half a
-    /// point.
+    /// Returns whether a position is in the frame, edge included, with a tolerance of half a point.
     pub(super) fn shows(&self, position: [f64; 2]) -> bool {
         self.frame.expanded(0.5).contains(position)
     }

@@ -1,4 +1,4 @@
-//! Poles before and after a change of the physics model, with an arrow from each pole to its new
+//! Poles before and after a physics model changes, with an arrow from each pole to its new
 //! position.
 
 use nalgebra::Complex;
@@ -10,10 +10,10 @@ use super::drawing::{Color, Hue, Stroke};
 use super::marks::{Curve, DotShape, Dots, Mark};
 use super::role::Role;
 
-/// Width of the arrows \[pt\].
+/// Arrow width \[pt\].
 const ARROW: f64 = 1.0;
 
-/// Legend of the poles before and after, and the colour of those after.
+/// Legend for the poles before and after, and the colour of those after.
 pub(super) struct PoleShiftNames {
     pub(super) before: &'static str,
     pub(super) after: &'static str,

@@ -1,4 +1,4 @@
-//! Poles of every model of a condition in the s-plane, and the zeros of a response.
+//! Every model's poles in the s-plane, for one condition, and the zeros of a response.
 
 use nalgebra::Complex;
 
@@ -20,8 +20,7 @@ use super::marks::{Dot, DotShape, Dots, Mark, MarkId, Rule};
 use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 use super::role::Role;
 
-/// Real and imaginary ranges \[rad/s\] of the plot of slow modes: the rigid-body modes of a
-/// helicopter.
+/// Real and imaginary ranges \[rad/s\] in the plot of slow modes: a helicopter's rigid-body modes.
 const SLOW: [Range; 2] = [
     Range {
         min: -1.2,
@@ -32,26 +31,26 @@ const SLOW: [Range; 2] = [
         max: 2.2,
     },
 ];
-/// Margins of the plot of all poles, along the real and the imaginary axis, relative to the range.
+/// Margins in the plot of all poles, along the real and the imaginary axis, relative to the range.
 const MARGINS: [f64; 2] = [0.06, 0.08];
-/// Minimum width and height of the plot of all poles \[rad/s\].
+/// Minimum width and height in the plot of all poles \[rad/s\].
 const LEAST: f64 = 1.0;
 
-/// Function that returns the zeros of a model.
+/// Function that returns a model's zeros.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
-/// Computed contents of the pole figure.
+/// Computed contents for the pole figure.
 #[derive(Clone, Copy)]
 pub struct PoleContents<'a> {
     pub modes: &'a ConditionModes,
-    /// Returns the zeros of a model in the response [`BodeOptions::zeros_of`]; called only if such
-    /// a response is selected.
+    /// Returns a model's zeros in the response [`BodeOptions::zeros_of`]; called only if such a
+    /// response is selected.
     pub zeros_of: ZerosOf<'a>,
-    /// Pole shifts of the physics representative due to couplings.
+    /// Shifts that couplings cause in the physics representative's poles.
     pub shifts: &'a [PoleShift],
 }
 
-/// Plots the poles of every model of a condition, in the whole s-plane and in the region of the
+/// Plots the poles of every model in a condition, in the whole s-plane and in the region of the
 /// slow modes; × marks physics models, + identified models. Zeros are drawn if the options select a
 /// response.
 pub fn poles_figure(
@@ -125,7 +124,7 @@ fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<Sour
     shown
 }
 
-/// Returns the poles of a model as dots; empty if they could not be computed.
+/// Returns a model's poles as dots; empty if they could not be computed.
 fn pole_dots(model: &SourceModel, modes: &ConditionModes) -> Dots {
     let shape = match model.id.bundle {
         BundleKind::Physics => DotShape::Cross,
@@ -149,7 +148,7 @@ fn model_dot(model: &SourceModel, value: Complex<f64>) -> Dot {
     }
 }
 
-/// Returns the finite transmission zeros of a response of a model in the condition; empty if the
+/// Returns the finite transmission zeros of a model's response in the condition; empty if the
 /// condition does not have the model.
 pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) -> Vec<Complex<f64>> {
     match source.curves.condition.model(id.bundle, &id.name) {
@@ -158,8 +157,7 @@ pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) ->
     }
 }
 
-/// Returns whether the zeros of a model are shown: only for the nominal model and both
-/// representatives.
+/// Returns whether a model's zeros are shown: only for the nominal model and both representatives.
 fn has_zeros(role: Role) -> bool {
     matches!(
         role,
@@ -167,7 +165,7 @@ fn has_zeros(role: Role) -> bool {
     )
 }
 
-/// Returns the zeros of a model as circles; they may lie outside the displayed ranges.
+/// Returns a model's zeros as circles; they may lie outside the displayed ranges.
 fn zero_dots(model: &SourceModel, pair_name: &str, zeros_of: ZerosOf<'_>) -> Dots {
     let key = format!("zeros of {pair_name}, {}", model.role.key(model.rejected));
     let color = model.role.stroke(model.rejected).color;

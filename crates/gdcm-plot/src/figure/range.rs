@@ -1,6 +1,6 @@
-//! Displayed range of an axis.
+//! The part of an axis that a panel displays.
 
-/// Displayed range of an axis: finite ends, `min < max`.
+/// The part of an axis that a panel displays: finite ends, `min < max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     pub min: f64,
@@ -64,7 +64,7 @@ impl Range {
         self.including(other.min).including(other.max)
     }
 
-    /// Returns this range, extended by `fraction` of its width at both ends and to a width of at
+    /// Returns this range, extended by `fraction` of its width at both ends, and to a width of at
     /// least `least`; the middle is unchanged.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);

@@ -3,7 +3,7 @@
 use super::bode_curve::Pane;
 use super::drawing::{Color, Dash, Hue, Stroke};
 
-/// Number of intervals between the points of a line that is not straight over `log10 omega`.
+/// Number of intervals that divide a line which is not straight over `log10 omega`.
 const POINTS: usize = 80;
 
 /// Frequency dependence of a reference line.
@@ -11,7 +11,7 @@ const POINTS: usize = 80;
 pub enum Level {
     /// The same value at every frequency.
     Constant(f64),
-    /// Slope times omega \[rad/s\]; for example, the phase of a delay.
+    /// Slope times omega \[rad/s\]; for example, a delay's phase.
     PerOmega(f64),
     /// `[omega, value]` with omega \[rad/s\] ascending.
     Sampled(Vec<[f64; 2]>),
@@ -48,7 +48,7 @@ impl Level {
     }
 }
 
-/// Meaning of a reference line, in the order in which the labels are placed.
+/// Meaning of a reference line; labels are placed in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReferenceKind {
     /// Delta gain G or delta delay D, the targets of the fit.
@@ -57,7 +57,7 @@ pub enum ReferenceKind {
     Bound,
     /// Quantile of the deviation over the band.
     Quantile,
-    /// Envelope of maximum unnoticeable added dynamics.
+    /// Envelope for maximum unnoticeable added dynamics.
     Envelope,
 }
 
@@ -90,7 +90,7 @@ pub struct ReferenceLine {
     pub kind: ReferenceKind,
     /// Meaning and value: `G 0.83 (−1.7 dB)`.
     pub label: String,
-    /// Continuation of the label, shown if there is room: `, median over the band`. May be empty.
+    /// Appended to the label if there is room: `, median over the band`. May be empty.
     pub note: String,
     pub level: Level,
 }

@@ -28,7 +28,7 @@ use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model}
 use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
 use super::schedule_cost::schedule_cost_figure;
 
-/// Number of responses in [`FigureKind::PhysicsChange`].
+/// Number of responses that [`FigureKind::PhysicsChange`] shows.
 const CHANGED_RESPONSES: usize = 5;
 
 /// Kinds of figure.
@@ -37,9 +37,9 @@ pub enum FigureKind {
     /// Responses in a condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// Deviations of these responses from the reference, as used by the fit.
+    /// Deviations between these responses and the reference, as used by the fit.
     Error,
-    /// Overview of all responses in a condition.
+    /// All responses in a condition, in a table.
     Overview,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
@@ -49,22 +49,22 @@ pub enum FigureKind {
     Evidence,
     /// Change in J due to the correction (Figures 8 to 19).
     Assessment,
-    /// Poles of all models in a condition.
+    /// Every model's poles in a condition.
     Poles,
-    /// Delay or lead of each channel in a condition, up to ten times the upper end of the band.
+    /// Each channel's delay or lead in a condition, up to ten times the band's upper end.
     Leads,
-    /// Effect of couplings on the loop that they close, and on the poles in a condition.
+    /// Effect that couplings have on the loop that they close, and on the poles in a condition.
     Couplings,
     /// A physics parameter in every condition, and the misfit that remains as parameters are added.
     Physics,
     /// Most improved responses and poles in a condition, before and after the physics parameters.
     PhysicsChange,
-    /// Phase delay over bandwidth of attitude responses, or model responses over time.
+    /// Phase delay over bandwidth for attitude responses, or model responses over time.
     Requirements,
-    /// A response in every condition, coloured by airspeed, with the error of the schedule.
+    /// One response in every condition, coloured by airspeed, with the schedule's error.
     Airspeeds,
-    /// Net gain of a response over airspeed, and its J before and after the correction and under
-    /// the schedule.
+    /// A response's net gain over airspeed, and its J before and after the correction and under the
+    /// schedule.
     ScheduleCost,
 }
 
@@ -137,7 +137,7 @@ impl FigureKind {
 pub enum OverTime {
     /// Responses to a test input.
     Test(Arc<TestAnswers>),
-    /// Responses to the inputs of a flight record; the index selects the drawn input.
+    /// Responses to the inputs in a flight record; the index selects the drawn input.
     Record(Arc<RecordHistory>, usize),
 }
 
@@ -150,7 +150,7 @@ pub struct FigureRequest {
     pub channels: Vec<Channel>,
     /// Quantity drawn for each channel: gain or delay.
     pub measure: Measure,
-    /// Quantity on the horizontal axis of a figure of channels.
+    /// Quantity on the horizontal axis when channels are plotted.
     pub across: Across,
     /// Choice for [`FigureKind::Assessment`]; [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
@@ -162,10 +162,10 @@ pub struct FigureRequest {
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
     pub physics: Option<Arc<PhysicsAssessment>>,
-    /// Name of the parameter in [`FigureKind::Physics`]; the first of the ranking if `None`.
+    /// Parameter name in [`FigureKind::Physics`]; the first parameter in the ranking if `None`.
     pub parameter: Option<String>,
     pub requirements: Option<Arc<Requirements>>,
-    /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
+    /// Model responses that [`FigureKind::Requirements`] shows in place of bandwidths.
     pub over_time: Option<OverTime>,
 }
 
@@ -263,7 +263,7 @@ impl FigureRequest {
         physics_figure(findings, &analysis.study.dataset, assessment.level, shown)
     }
 
-    /// Computes and plots modes and zeros of all models.
+    /// Computes and plots every model's modes and zeros.
     fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
         let modes = ConditionModes::compute(&source.curves.condition, &Unobserved).ok()?;
         let zeros = |id: &ModelId| match self.bode.zeros_of {

@@ -1,5 +1,5 @@
-//! Requirements: phase delay over bandwidth of every attitude response (M17.1), with the engineer's
-//! level boundaries.
+//! Requirements: phase delay over bandwidth for every attitude response (M17.1), with the
+//! engineer's level boundaries.
 
 use gdcm_method::requirements::LevelBoundaries;
 use gdcm_method::requirements::level_boundary::LevelBoundary;
@@ -17,29 +17,29 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId};
 
-/// Arrow from the physics model to the corrected model of a condition.
+/// Arrow from a condition's physics model to its corrected model.
 const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
 const LEVEL: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
-/// Strength \[%\] of the widest shaded area, by which each narrower area is stronger, and the
+/// Strength \[%\] in the widest shaded area, by which each narrower area is stronger, and the
 /// maximum strength.
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
-/// Strength \[%\] of a dot whose bandwidth or phase delay depends on the model above the band.
+/// Strength \[%\] for a dot whose bandwidth or phase delay depends on the model above the band.
 const DEPENDENT_TINT: u8 = 45;
-/// Strength \[%\] of the dots of the conditions that are not selected.
+/// Strength \[%\] for dots in conditions that are not selected.
 const OTHER_TINT: u8 = 60;
-/// Strength \[%\] of a shaded tolerance.
+/// Strength \[%\] in a shaded tolerance.
 const TOLERANCE_TINT: u8 = 9;
 
-/// Names of bandwidth and phase delay in a finding.
+/// Keys for bandwidth and phase delay in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
 const PHASE_DELAY: &str = "phase_delay_s";
 
-/// Returns the position of a response in the plot: bandwidth \[rad/s\] and phase delay \[ms\];
-/// `None` unless both are defined.
+/// Returns a response's position in the plot: bandwidth \[rad/s\] and phase delay \[ms\]; `None`
+/// unless both are defined.
 pub fn bandwidth_place(finding: &BandwidthFinding) -> Option<[f64; 2]> {
     let omega_bw_rad_s = finding.omega_bw_rad_s?;
     let phase_delay_s = finding.phase_delay_s?;
@@ -57,7 +57,7 @@ pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     pairs
 }
 
-/// Plots phase delay over bandwidth of each attitude response: a dot for each condition and model,
+/// Plots phase delay over bandwidth for each attitude response: a dot for each condition and model,
 /// an arrow from the physics model to the corrected model, available intervals, and the engineer's
 /// levels. Dots are pale if the bandwidth or the phase delay depends on the model above the band.
 pub fn requirements_figure(
@@ -91,7 +91,7 @@ pub fn requirements_figure(
         .plots(plots)
 }
 
-/// A response in the plot of a single requirement.
+/// A response in the plot for a single requirement.
 #[derive(Clone, Copy)]
 pub struct BandwidthDetail<'a> {
     pub requirements: &'a Requirements,
@@ -99,16 +99,16 @@ pub struct BandwidthDetail<'a> {
     pub pair: Pair,
     /// The condition with full colours, intervals and tolerances.
     pub condition: ConditionId,
-    /// Role of the corrected model.
+    /// Role of the corrected model, which says whether its own or the scheduled correction applies.
     pub role: RequirementRole,
-    /// Maximum relative difference of the bandwidth from that of the identified model.
+    /// Maximum relative difference between a bandwidth and the identified model's.
     pub bandwidth: f64,
-    /// Maximum difference of the phase delay from that of the identified model \[s\].
+    /// Maximum difference between a phase delay and the identified model's \[s\].
     pub phase_delay_s: f64,
 }
 
-/// Plots phase delay over bandwidth of a response in all conditions: physics, corrected and
-/// identified model of each; the tolerances about the identified model of one condition are shaded.
+/// Plots a response's phase delay over bandwidth in all conditions, for the physics, corrected and
+/// identified model in each; the tolerances about one condition's identified model are shaded.
 pub fn bandwidth_detail_figure(detail: &BandwidthDetail<'_>, dataset: &Dataset) -> Figure {
     let axis = &dataset.outputs()[detail.pair.output].name;
     let x = Axis::linear("bandwidth [rad/s]");
@@ -124,8 +124,8 @@ pub fn bandwidth_detail_figure(detail: &BandwidthDetail<'_>, dataset: &Dataset) 
 }
 
 impl BandwidthDetail<'_> {
-    /// Shades the range of bandwidths within the tolerance, and more strongly the part of it in which
-    /// the phase delay is within its tolerance too.
+    /// Shades the bandwidths within the tolerance, and more strongly the part in which the phase
+    /// delay is within its tolerance too.
     fn tolerances(&self) -> Vec<Envelope> {
         let flown =
             self.requirements
@@ -191,7 +191,7 @@ impl BandwidthDetail<'_> {
         marks
     }
 
-    /// Draws a line from the physics model to the corrected model of each condition.
+    /// Draws a line from the physics model to the corrected model in each condition.
     fn arrows(&self) -> Vec<Curve> {
         let mut lines = Vec::new();
         for physics in &self.requirements.bandwidth {
@@ -258,7 +258,7 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
     }
 }
 
-/// Draws the boundaries of an attitude axis as lines.
+/// Draws the boundaries for an attitude axis as lines.
 fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     let mut lines = Vec::new();
     for boundary in levels.of_axis(axis) {
@@ -271,7 +271,7 @@ fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     lines
 }
 
-/// Bandwidths and phase delays of a response in all conditions.
+/// A response's bandwidths and phase delays in all conditions.
 struct PairFindings<'a> {
     requirements: &'a Requirements,
     pair: Pair,
@@ -327,7 +327,7 @@ impl<'a> PairFindings<'a> {
         arrows
     }
 
-    /// Draws the intervals of phase delays as vertical lines.
+    /// Draws the phase delays' intervals as vertical lines.
     fn delay_intervals(&self) -> Option<Intervals> {
         let mut ends = Vec::new();
         for finding in self.iter() {
@@ -347,7 +347,7 @@ impl<'a> PairFindings<'a> {
         })
     }
 
-    /// Draws the intervals of bandwidths as horizontal lines.
+    /// Draws the bandwidths' intervals as horizontal lines.
     fn bandwidth_intervals(&self) -> Vec<Curve> {
         let mut lines = Vec::new();
         for finding in self.iter() {
@@ -376,8 +376,7 @@ impl<'a> PairFindings<'a> {
             if depends == depends_beyond_band
                 && let Some([x, y]) = bandwidth_place(finding)
             {
-                // To avoid clutter, only the dot of the corrected model shows the condition's
-                // number.
+                // To avoid clutter, only the corrected model's dot shows the condition number.
                 let label = if role == RequirementRole::Corrected {
                     finding.condition.to_string()
                 } else {

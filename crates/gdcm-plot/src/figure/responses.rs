@@ -1,5 +1,5 @@
-//! Curves of a response for every model of a condition, and the range that fits them. Cached from
-//! one frame of the window to the next.
+//! A response's curves for every model in a condition, and the range that fits them. Cached from
+//! one window frame to the next.
 
 use std::sync::Arc;
 
@@ -18,12 +18,12 @@ use super::axis::{PhaseUnit, Range};
 use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
 
-/// Maximum extension of a fitted range at either end for values outside the band, relative to the
+/// How far a fitted range may extend at either end for values outside the band, relative to the
 /// range within the band.
 const OUTSIDE_PART: f64 = 0.4;
 
 impl ConditionSource<'_> {
-    /// Returns every curve of a response, including hidden curves; phases are aligned with the
+    /// Returns every curve for a response, including hidden curves; phases are aligned with the
     /// reference. `cache` keeps the computed slices, at the same address, until their sources
     /// change.
     pub fn response_curves(
@@ -67,18 +67,18 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Settings for the display of a response in a condition.
+/// Settings that affect how a condition's response is displayed.
 struct Presentation<'a> {
     condition: ConditionId,
     pair: Pair,
     options: &'a BodeOptions,
-    /// Frequencies of all shapes \[rad/s\].
+    /// Frequencies common to all shapes \[rad/s\].
     omega: &'a Arc<[f64]>,
 }
 
 impl Presentation<'_> {
-    /// Returns a curve with the values of a shape; its phase is displayed as chosen, and shifted by
-    /// whole turns.
+    /// Returns a curve with the values from a shape; its phase is displayed as chosen, and shifted
+    /// by whole turns.
     fn curve(&self, curve: BodeCurve, shape: &ResponseShape) -> BodeCurve {
         let key = (self.condition, self.pair, curve.id.clone());
         let turns = self.options.turns.get(&key).copied().unwrap_or(0);
@@ -100,7 +100,7 @@ fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[
     }
 }
 
-/// Adds a note on the phase shift by `turns` to the detail of a curve.
+/// Appends the phase shift by `turns` to a curve's detail.
 fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
@@ -113,7 +113,7 @@ fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     curve
 }
 
-/// Data from which the shapes of a response are computed.
+/// Data from which a response's shapes are computed.
 #[derive(Debug)]
 struct ResponseSource {
     curves: Arc<ConditionCurves>,
@@ -134,11 +134,11 @@ impl ResponseSource {
 #[derive(Debug)]
 struct PhaseReference {
     shape: ResponseShape,
-    /// Number of leading frequencies over which phases are compared.
+    /// Leading frequencies over which phases are compared.
     points: usize,
 }
 
-/// Shapes of a response for every model of a condition, kept until their source changes.
+/// A response's shapes for every model in a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ResponseCache {
     source: Option<ResponseSource>,
@@ -158,9 +158,9 @@ impl ResponseCache {
         }
     }
 
-    /// Computes the shapes of a response. Phases are aligned with the reference up to the limit of
-    /// the displayed band. The curves of identified models end there, because they carry no
-    /// information beyond.
+    /// Computes a response's shapes. Phases are aligned with the reference up to the limit of the
+    /// displayed band. The identified models' curves end there, because they carry no information
+    /// beyond.
     fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
         if let Some(known) = &self.source
             && known.is_same(&source)
@@ -168,7 +168,7 @@ impl ResponseCache {
             return;
         }
         let curves = &source.curves;
-        // The last frequency of a grid may exceed its limit by a rounding error.
+        // A grid's last frequency may exceed its limit by a rounding error.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
         self.reference = curves
@@ -197,7 +197,7 @@ impl ResponseCache {
             .collect()
     }
 
-    /// Returns the shape of a response, with its phase aligned with the reference.
+    /// Returns a response's shape, with its phase aligned with the reference.
     fn aligned_shape(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
         let shape = ResponseShape::new(response.curve(pair));
         match &self.reference {

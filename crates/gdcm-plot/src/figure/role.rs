@@ -6,7 +6,7 @@ use gdcm_model::dataset::BundleKind;
 
 use super::drawing::{Color, Dash, Hue, Stroke};
 
-/// Role of a curve in a figure; it determines the style.
+/// Meaning of a curve in a figure; it determines the style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// Physics model at the unperturbed trim.
@@ -35,7 +35,7 @@ pub enum Role {
     OfAirspeed(u8, AirspeedLine),
 }
 
-/// Model that is drawn in the colour of its airspeed; it determines width and pattern.
+/// Model that is drawn in its airspeed's colour; it determines width and pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum AirspeedLine {
     Identified,
@@ -46,7 +46,7 @@ pub enum AirspeedLine {
 }
 
 impl AirspeedLine {
-    /// Returns the line in a colour.
+    /// Returns the line style in this colour.
     fn stroke(self, color: Color) -> Stroke {
         match self {
             Self::Identified => Stroke::solid(color, 1.5),
@@ -74,7 +74,8 @@ impl Role {
         Self::Rejected,
     ];
 
-    /// Returns the place of an airspeed \[kt\] in the range of airspeeds, from 0 to 255.
+    /// Returns where an airspeed \[kt\] lies in the range, from 0 at the lowest airspeed to 255 at
+    /// the highest.
     pub fn airspeed_step(airspeed_kt: f64, range_kt: (f64, f64)) -> u8 {
         let (slowest_kt, fastest_kt) = range_kt;
         let part = if fastest_kt > slowest_kt {
@@ -85,8 +86,7 @@ impl Role {
         (255.0 * part.clamp(0.0, 1.0)).round() as u8
     }
 
-    /// Returns the role of an uncorrected model; `represents` states whether it represents its
-    /// bundle.
+    /// Returns an uncorrected model's role; `represents` states whether it represents its bundle.
     pub fn of_model(kind: BundleKind, is_nominal: bool, represents: bool) -> Self {
         match (kind, is_nominal, represents) {
             (BundleKind::Physics, true, _) => Self::Nominal,
@@ -166,7 +166,7 @@ impl Role {
         self.line(rejected).printed()
     }
 
-    /// Returns the text in the legend of a figure.
+    /// Returns the text in a figure's legend.
     pub fn key(self, rejected: bool) -> &'static str {
         match self.shown(rejected) {
             Self::Nominal if rejected => "nominal (rejected)",

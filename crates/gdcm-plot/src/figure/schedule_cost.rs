@@ -1,5 +1,5 @@
-//! What the schedule costs in a response: its net gain over airspeed, and J before the correction,
-//! at the optimum of each condition and under the schedule.
+//! Cost of the schedule in a response: the net gain over airspeed, and J before the correction, at
+//! each condition's optimum and under the schedule.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::Pair;
@@ -20,13 +20,13 @@ use super::role::Role;
 const CHANGE: Stroke = Stroke::solid(Color::DIM, 0.6);
 const BEFORE: Color = Color::DIM;
 const OPTIMUM: Color = Color::new(Hue::Corrected);
-/// Distance between conditions at the same airspeed, as a share of the range of airspeeds.
+/// Distance between conditions at the same airspeed, as a share of the airspeed range.
 const APART: f64 = 0.034;
-/// Size of the marks of J before the correction, relative to the usual dot.
+/// Size of the marks at J before the correction, relative to the usual dot.
 const BEFORE_SIZE: f64 = 0.55;
 const ASPECT: f64 = 0.62;
 
-/// Plots net gain and J of a response over airspeed; both are coloured by airspeed. `None` if the
+/// Plots a response's net gain and J over airspeed; both are coloured by airspeed. `None` if the
 /// response cannot be compared in any condition.
 pub fn schedule_cost_figure(
     analysis: &Analysis,
@@ -65,7 +65,7 @@ pub fn schedule_cost_figure(
     Some(figure)
 }
 
-/// Splits the dots of a panel into groups in the colour of their airspeed; shape and filling stay.
+/// Splits a panel's dots into groups coloured by airspeed; shape and filling stay.
 fn color_by_airspeed(panel: &mut Panel, analysis: &Analysis) {
     let range_kt = analysis.study.dataset.airspeed_range_kt();
     let mut marks = Vec::new();
@@ -86,7 +86,7 @@ fn color_by_airspeed(panel: &mut Panel, analysis: &Analysis) {
     panel.marks = marks;
 }
 
-/// Builds the panel of J: for each condition a line from J before the correction to J under the
+/// Builds the panel for J: in each condition a line from J before the correction to J under the
 /// schedule, and J at the optimum.
 fn cost_panel(analysis: &Analysis, costs: &[ResponseCosts]) -> Panel {
     let range_kt = analysis.study.dataset.airspeed_range_kt();
@@ -128,7 +128,7 @@ fn cost_panel(analysis: &Analysis, costs: &[ResponseCosts]) -> Panel {
     panel.with(before).with(optimum).with_all(scheduled)
 }
 
-/// Returns a dot without a label at a J of a condition.
+/// Returns a dot without a label at a condition's J.
 fn cost_dot(costs: &ResponseCosts, x: f64, cost: Cost) -> Dot {
     Dot {
         x,
@@ -138,7 +138,7 @@ fn cost_dot(costs: &ResponseCosts, x: f64, cost: Cost) -> Dot {
     }
 }
 
-/// Returns the horizontal place \[kt\] of each condition: its airspeed, with conditions at the same
+/// Returns each condition's horizontal place \[kt\]: its airspeed, with conditions at the same
 /// airspeed beside one another.
 fn places(costs: &[ResponseCosts], range_kt: (f64, f64)) -> Vec<f64> {
     let apart_kt = APART * (range_kt.1 - range_kt.0).max(10.0);
@@ -151,7 +151,7 @@ fn places(costs: &[ResponseCosts], range_kt: (f64, f64)) -> Vec<f64> {
     places
 }
 
-/// Returns the number of conditions at an airspeed.
+/// Counts the conditions at an airspeed.
 fn count_at(costs: &[ResponseCosts], airspeed_kt: f64) -> f64 {
     let same = costs.iter().filter(|cost| cost.airspeed_kt == airspeed_kt);
     same.count() as f64

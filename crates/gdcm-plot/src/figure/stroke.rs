@@ -39,7 +39,7 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Creates the style of a solid line.
+    /// Creates a solid line.
     pub const fn solid(color: Color, width_pt: f64) -> Self {
         Self {
             color,
@@ -48,7 +48,7 @@ impl Stroke {
         }
     }
 
-    /// Creates the style of a dashed line.
+    /// Creates a dashed line.
     pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
         Self {
             color,

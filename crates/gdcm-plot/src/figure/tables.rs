@@ -1,5 +1,5 @@
-//! Values of a figure at full precision: a single long table for programs, or a table per panel for
-//! readers.
+//! Values behind a figure at full precision: a single long table for programs, or a table per panel
+//! for readers.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::axis::Axis;
 use super::figure::{Figure, Panel};
 use super::marks::{Along, Brackets, Curve, Dots, Mark};
 
-/// Columns of a figure's long table.
+/// Columns in a figure's long table.
 pub const LONG_COLUMNS: [&str; 8] = [
     "figure",
     "panel",
@@ -24,9 +24,9 @@ pub const LONG_COLUMNS: [&str; 8] = [
 ];
 
 impl Figure {
-    /// Returns all values as rows under [`LONG_COLUMNS`], a row for each point: title of the
-    /// figure, panel (plot title, quantity), curve, text beside the point, and both coordinates,
-    /// each preceded by its axis label. A labelled horizontal line has no x.
+    /// Returns all values as rows under [`LONG_COLUMNS`], a row for each point: figure title, panel
+    /// (plot title, quantity), curve, text beside the point, and both coordinates, each preceded by
+    /// its axis label. A labelled horizontal line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
             .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
@@ -61,7 +61,7 @@ fn without_control_codes(mut table: Table) -> Table {
     table
 }
 
-/// The points of a mark, with the texts beside them.
+/// The points in a mark, with the texts beside them.
 struct Series {
     name: String,
     x: Arc<[f64]>,
@@ -113,7 +113,7 @@ impl Series {
         }
     }
 
-    /// Creates a series of the lower ends and a series of the upper ends of vertical ranges.
+    /// Creates two series from vertical ranges: lower ends and upper ends.
     fn from_ends(name: &str, ends: &[[f64; 3]]) -> Vec<Self> {
         let mut lower = Vec::new();
         let mut upper = Vec::new();
@@ -127,7 +127,7 @@ impl Series {
         ]
     }
 
-    /// Returns the series of a mark; empty for a mark without values.
+    /// Returns a mark's series; empty for a mark without values.
     fn from_mark(mark: &Mark) -> Vec<Self> {
         match mark {
             Mark::Curve(curve) => vec![Self::from_curve(curve)],
@@ -174,7 +174,7 @@ impl<'m> Constant<'m> {
 }
 
 impl Panel {
-    /// Returns the name of the panel in the tables: plot title, if any, and quantity.
+    /// Returns the panel's name in the tables: plot title, if any, and quantity.
     fn name(&self, plot_title: &str) -> String {
         if plot_title.is_empty() {
             self.y.label.clone()
@@ -183,7 +183,7 @@ impl Panel {
         }
     }
 
-    /// Returns the rows of the panel in the long table.
+    /// Returns the panel's rows in the long table.
     fn long_rows(&self, figure_title: &str, plot_title: &str) -> Vec<[String; 8]> {
         let name = self.name(plot_title);
         let mut rows = Vec::new();
@@ -241,7 +241,7 @@ fn rows_of_points(
     rows
 }
 
-/// The tables of a panel.
+/// The tables for one panel.
 struct PanelTables {
     main: Table,
     /// Areas that are sampled at other x than the first curve; `None` if there are none.

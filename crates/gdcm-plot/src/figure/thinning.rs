@@ -28,7 +28,7 @@ impl Pixel {
     }
 }
 
-/// Returns the points of `run` that must be drawn: the extremes in each pixel column, reduced to
+/// Returns the points in `run` that must be drawn: the extremes in each pixel column, reduced to
 /// the points that keep the connecting lines within tolerance of every omitted point. Both ends
 /// remain; a `run` that does not ascend in x is returned unchanged.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
@@ -79,8 +79,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
     indices.into_iter()
 }
 
-/// Range of slopes for which a line from the last kept point passes all later points within
-/// tolerance.
+/// The slopes with which a line from the last kept point passes all later points within tolerance.
 struct Wedge {
     apex: [f64; 2],
     least_slope: f64,
@@ -114,7 +113,7 @@ impl Wedge {
     }
 }
 
-/// Returns the points of `run` that are needed to keep the straight lines between them within
+/// Returns the points in `run` that are needed to keep the straight lines between them within
 /// `tolerance` of every omitted point.
 ///
 /// ```text
@@ -124,8 +123,8 @@ impl Wedge {
 ///     narrow the wedge to slopes that pass the point within tolerance
 /// keep the last point
 /// ```
-/// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear
-/// approximation of planar curves", Computer Graphics and Image Processing 8, 1978.
+/// Takes linear time in the number of points. Williams, "An efficient algorithm for the piecewise
+/// linear approximation of planar curves", Computer Graphics and Image Processing 8, 1978.
 fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((first, rest)) = run.split_first() else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Ticks of a numeric axis: round values, labelled as densely as the room permits.
+//! Ticks on a numeric axis: round values, labelled as densely as the room permits.
 
 use gdcm_model::number_format::compact;
 
@@ -43,7 +43,7 @@ pub struct TickGaps {
     pub lines: f64,
 }
 
-/// Maximum width \[decades\] of a logarithmic axis that may be labelled at equal steps.
+/// Maximum width \[decades\] at which a logarithmic axis may be labelled at equal steps.
 const LINEAR_BELOW: f64 = 0.9;
 /// Round steps for angles \[deg\].
 const DEGREE_STEPS: [f64; 13] = [
@@ -53,13 +53,13 @@ const DEGREE_STEPS: [f64; 13] = [
 const DECIMAL_DEGREES: f64 = 2.0;
 /// `log10(10 / 9)`: the smallest distance between lines in a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
-/// Minimum distance from 9 to 10 \[pt\] at which all nine lines of a decade are labelled; labels
+/// Minimum distance from 9 to 10 \[pt\] at which all nine lines in a decade are labelled; labels
 /// that are closer together are hard to read.
 const NINE_LABELS_GAP: f64 = 44.0;
 /// Tolerance for rounding: fraction of a step by which a tick may lie outside the range.
 const STEP_SLACK: f64 = 1e-6;
 
-/// Returns the ticks of `range` on an axis `length_pt` long, in ascending order.
+/// Returns the ticks within `range` on an axis `length_pt` long, in ascending order.
 pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let least = gaps.labels * range.width() / length_pt;
     match scale {
@@ -105,7 +105,7 @@ pub fn step_above(least: f64) -> f64 {
     10.0 * power
 }
 
-/// Returns ticks of a logarithmic axis: within decades, or at equal steps if the range is below
+/// Returns the ticks on a logarithmic axis: within decades, or at equal steps if the range is below
 /// [`LINEAR_BELOW`] and equal steps give more labels.
 fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let decades = range.max.log10() - range.min.log10();
@@ -127,7 +127,7 @@ fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> 
     }
 }
 
-/// Density of lines and labels within decades.
+/// Density of lines and labels within a decade.
 struct DecadeLabels {
     /// Whether there is room for labels at 2 and 5.
     has_two_and_five: bool,
@@ -135,12 +135,12 @@ struct DecadeLabels {
     has_nine: bool,
     /// Whether there is room for lines without labels.
     has_lines: bool,
-    /// Number of decades from each labelled power of ten to the next.
+    /// Decades from each labelled power of ten to the next.
     every: i64,
 }
 
 impl DecadeLabels {
-    /// Chooses the density of labels; a decade is `decade_pt` long.
+    /// Chooses how dense the labels are; a decade is `decade_pt` long.
     fn new(decade_pt: f64, gaps: TickGaps) -> Self {
         Self {
             has_two_and_five: decade_pt * 2f64.log10() >= gaps.labels,

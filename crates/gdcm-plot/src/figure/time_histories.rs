@@ -18,21 +18,21 @@ use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
 const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
-/// Styles of the flight data and of the corridor about them.
+/// Line styles for the flight data and for the corridor about them.
 const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
 const CORRIDOR: Color = Color::new(Hue::Text).tint(10);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
-/// Height of the panel with the input in the plot of a single quantity.
+/// Height of the panel with the input, above a single quantity.
 const INPUT_WEIGHT: f64 = 0.36;
-/// Width of a model's curve, and of its parts outside the corridor \[pt\]: thin, so that all models
-/// and the flight data can be told apart.
+/// Line width for a model's curve, and for its parts outside the corridor \[pt\]: thin, so that all
+/// models and the flight data can be told apart.
 const MODEL_PT: f64 = 1.2;
 const OUTSIDE_PT: f64 = 1.8;
 /// Ratio of plot height to width.
 const ASPECT: f64 = 0.4;
 
-/// Returns the line style of a model over time: as in a Bode plot, but thin.
+/// Returns a model's line style over time: as in a Bode plot, but thin.
 fn model_line(role: RequirementRole) -> Stroke {
     let role = match role {
         RequirementRole::Physics => Role::Representative,
@@ -99,7 +99,7 @@ fn answer_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
     Plot::new(label).panel(panel.with_all(curves))
 }
 
-/// Returns the curves of an output, one for each model, the first model on top.
+/// Returns an output's curves, one for each model, the first model on top.
 fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Curve> {
     let mut curves = Vec::new();
     for (role, answer) in answers.models.iter().rev() {
@@ -112,9 +112,9 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
     curves
 }
 
-/// Plots an input of a record, then each quantity with a tolerance: the flight data with their
-/// corridor and the response of each model; below, the difference between model and flight. Curves
-/// are thick where they are outside the corridor. The simulation restarts at each window.
+/// Plots one recorded input, then each quantity with a tolerance: the flight data with their
+/// corridor and each model's response; below, the difference between model and flight. Curves are
+/// thick where they are outside the corridor. The simulation restarts at each window.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let mut plots = vec![record_input_plot(history, dataset, input)];
     for quantity in &history.quantities {
@@ -145,7 +145,7 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .plots(plots)
 }
 
-/// Plots a single quantity of a record: the input that was moved, the quantity with its corridor,
+/// Plots a single quantity from a record: the input that was moved, the quantity with its corridor,
 /// and the difference from flight, above each other over the same time.
 pub fn quantity_figure(
     history: &RecordHistory,
@@ -192,7 +192,7 @@ fn quantity_plot(history: &QuantityHistory) -> Plot {
         .panel(difference.weight(DIFFERENCE_WEIGHT))
 }
 
-/// Value of a quantity that a panel shows.
+/// Values that a panel shows for a quantity.
 #[derive(Clone, Copy, PartialEq)]
 enum Shown {
     Recorded,
@@ -200,7 +200,7 @@ enum Shown {
     LessFlight,
 }
 
-/// A sample in a window of a record.
+/// A sample in a window of the record.
 #[derive(Clone, Copy)]
 struct Sample<'a> {
     window: &'a ToleranceCheck,
@@ -226,7 +226,7 @@ impl Sample<'_> {
         }
     }
 
-    /// Returns the half-width of the corridor at the sample.
+    /// Returns the corridor's half-width at the sample.
     fn width(self) -> f64 {
         self.window.width[self.index]
     }
@@ -266,7 +266,7 @@ fn instants(check: &RecordCheck) -> Vec<Instant<'_>> {
     instants
 }
 
-/// Returns the points `[time, value]` of all windows.
+/// Returns the points `[time, value]` in all windows.
 fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for instant in instants(check) {

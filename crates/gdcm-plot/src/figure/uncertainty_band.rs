@@ -1,4 +1,4 @@
-//! Uncertainty bands about the curves of identified models.
+//! Uncertainty bands about the identified models' curves.
 
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{BundleKind, Dataset, Pair};
@@ -17,8 +17,8 @@ pub struct BodeBand {
     pub phase_deg: Vec<[f64; 2]>,
 }
 
-/// Returns the 95 % band of every identified model among `curves` that is visible, kept, and has an
-/// uncertainty.
+/// Returns the 95 % band about every identified model among `curves` that is visible, kept, and has
+/// an uncertainty.
 pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
     let mut bands = Vec::new();
     for curve in curves {
@@ -35,7 +35,7 @@ pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) ->
     bands
 }
 
-/// Returns the band about a curve, at the frequencies within the grid of the deviations.
+/// Returns the band about a curve, at those frequencies that lie within the deviations' grid.
 fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBand {
     let sd_db = &deviations.sd_db()[pair];
     let sd_deg = &deviations.sd_deg()[pair];
@@ -65,7 +65,7 @@ struct GridPlace {
 }
 
 impl GridPlace {
-    /// Finds `omega` in a grid of ascending frequencies; `None` outside the grid.
+    /// Finds `omega` in an ascending frequency grid; `None` outside the grid.
     fn find(grid: &[f64], omega: f64) -> Option<Self> {
         let upper = grid.partition_point(|at| *at <= omega);
         let lower = upper.checked_sub(1)?;
@@ -74,7 +74,7 @@ impl GridPlace {
                 lower,
                 part: (omega / grid[lower]).ln() / (next / grid[lower]).ln(),
             }),
-            // The last frequency of the grid counts as the end of the last interval.
+            // The grid's last frequency counts as the end of the last interval.
             None if grid[lower] == omega && lower > 0 => Some(Self {
                 lower: lower - 1,
                 part: 1.0,

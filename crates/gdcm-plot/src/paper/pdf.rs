@@ -19,8 +19,8 @@ use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
 use crate::figure::letters::{FONTS, Letter, letters, width};
 
-/// Distance from the ends of a quarter circle to the control points of its cubic curve, relative to
-/// the radius.
+/// Distance from the ends of a quarter circle to its cubic curve's control points, relative to the
+/// radius.
 const QUARTER: f64 = 0.552_284_749_830_793_4;
 
 /// Returns the bytes of a PDF file.
@@ -157,7 +157,7 @@ impl Page {
         self.content.close_path();
     }
 
-    /// Sets the fill colour and the line style of the next path.
+    /// Sets fill colour and line style for the next path.
     fn take_paint(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         if let Some(color) = fill {
             let [red, green, blue] = parts(color);
@@ -236,10 +236,10 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
     supplement: 0,
 };
 
-/// The used letters, numbered in each font in the order of their first use.
+/// The used letters, numbered in each font by their first use.
 #[derive(Default)]
 struct UsedLetters {
-    /// Used letters of each font, in the order of [`FONTS`].
+    /// Each font's used letters, ordered as [`FONTS`].
     fonts: [Used; FONTS.len()],
 }
 
@@ -252,7 +252,7 @@ struct Used {
 }
 
 impl UsedLetters {
-    /// Returns the number of a letter in its font, assigned at its first use.
+    /// Returns a letter's number in its font, assigned at its first use.
     fn code(&mut self, letter: &Letter) -> u16 {
         let Used { numbers, letters } = &mut self.fonts[letter.font];
         let is_new = numbers.get(letter.glyph).is_none();
@@ -263,8 +263,8 @@ impl UsedLetters {
         code
     }
 
-    /// Writes the used fonts as PDF objects, numbered from `first` on; returns the name and the
-    /// object of each font.
+    /// Writes the used fonts as PDF objects, numbered from `first` on; returns each font's name and
+    /// object.
     fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
         let mut next = first;
         let mut written = Vec::new();
@@ -277,13 +277,14 @@ impl UsedLetters {
     }
 }
 
-/// PDF objects of a font: the composite font that texts select, and the objects to which it refers.
+/// PDF objects for a font: the composite font that texts select, and the objects to which it
+/// refers.
 struct FontObjects {
     /// The composite font.
     font: Ref,
-    /// Its only descendant, with the widths of the letters.
+    /// Its only descendant, with the letter widths.
     descendant: Ref,
-    /// Metrics of the descendant.
+    /// The descendant's metrics.
     descriptor: Ref,
     /// Map from letter numbers to characters.
     characters: Ref,
@@ -292,7 +293,7 @@ struct FontObjects {
 }
 
 impl Used {
-    /// Writes the used letters of the font with this index in [`FONTS`]; returns the font object.
+    /// Writes the used letters of the font at this index in [`FONTS`]; returns the font object.
     fn write(&self, pdf: &mut Pdf, index: usize, next: &mut Ref) -> io::Result<Ref> {
         let (name, bytes) = FONTS[index];
         let objects = FontObjects {
@@ -349,7 +350,7 @@ impl Used {
     }
 }
 
-/// Writes the descriptor of a font, which contains its metrics.
+/// Writes a font's descriptor, which contains its metrics.
 fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef<'_>) {
     let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
     let bounds = metrics.bounds.unwrap_or_default();

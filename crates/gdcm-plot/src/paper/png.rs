@@ -18,7 +18,7 @@ use crate::figure::letters::{FONTS, letters, width};
 
 /// Dots per inch, as journals require.
 const DOTS_PER_INCH: f64 = 300.0;
-/// Number of dots per point.
+/// Dots per point.
 const SCALE: f64 = DOTS_PER_INCH / 72.0;
 /// Inches per metre.
 const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
@@ -163,7 +163,7 @@ fn take_color(context: &mut RenderContext, color: Color) {
     context.set_paint(AlphaColor::from_rgb8(red, green, blue));
 }
 
-/// Draws a text by filling the outlines of its letters.
+/// Draws a text by filling its letters' outlines.
 fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     let turn = if text.upright {
         -std::f64::consts::FRAC_PI_2

@@ -8,7 +8,7 @@ use crate::figure::Color;
 use crate::figure::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Stroke, Text};
 use crate::figure::letters::{FONTS, width};
 
-/// Fallback fonts of similar width, for a viewer without the original fonts.
+/// Fallback fonts with similar widths, for a viewer without the original fonts.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
 /// Returns the contents of an SVG file.
@@ -20,8 +20,8 @@ pub fn svg(drawing: &Drawing) -> String {
     element(drawing, &head, "frame")
 }
 
-/// Returns the drawing as an element for an HTML page, where the namespace is not needed. `name` is
-/// the prefix of its internal references and must be unique on the page.
+/// Returns the drawing as an element for an HTML page, where the namespace is not needed. `name`
+/// prefixes its internal references and must be unique on the page.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
     let head = format!(
@@ -70,7 +70,7 @@ struct Svg<'a> {
     text: String,
     /// Prefix for the names of clip areas.
     name: &'a str,
-    /// Number of clip areas so far; each name ends with the number of the area.
+    /// Clip areas so far; each area's name ends with its number.
     clips: usize,
 }
 
@@ -151,7 +151,7 @@ impl Svg<'_> {
         } else {
             String::new()
         };
-        // `textLength` keeps the width of the layout, whatever font the viewer uses.
+        // `textLength` keeps the text as wide as the layout assumed, whatever font the viewer uses.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
         let color = hex(*color);
@@ -162,7 +162,7 @@ impl Svg<'_> {
     }
 }
 
-/// Returns the path data of a polyline.
+/// Returns a polyline's path data.
 fn path(points: &[[f64; 2]], closed: bool) -> String {
     let mut text = String::new();
     for (index, [x, y]) in points.iter().enumerate() {
@@ -180,7 +180,7 @@ fn path(points: &[[f64; 2]], closed: bool) -> String {
     text
 }
 
-/// Returns the attributes of fill and line.
+/// Returns the attributes for fill and line.
 fn paint(fill: Option<Color>, stroke: Option<Stroke>) -> String {
     let fill = match fill {
         Some(color) => hex(color),

@@ -1,4 +1,4 @@
-//! Job of the live analysis, which is repeated after every change to the study.
+//! Live-analysis job, which is repeated after every change to the study.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,8 +39,7 @@ pub(super) struct AnalysisJob {
     pub(super) condition: ConditionId,
     /// Optimality proofs found since the last analysis.
     pub(super) proofs: Vec<Proof>,
-    /// Channel to the window, which receives the result of the displayed condition before the
-    /// results of the other conditions.
+    /// Channel to the window, which receives the displayed condition's result before the others.
     pub(super) replies: ReplySender,
 }
 
@@ -52,7 +51,7 @@ impl AnalysisJob {
             .any(|proof| Arc::ptr_eq(problem, &proof.problem))
     }
 
-    /// Sends the result of the displayed condition before the whole analysis is complete.
+    /// Sends the displayed condition's result before the whole analysis is complete.
     fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let first = FirstResult {
             request: self.request,
@@ -110,8 +109,8 @@ impl Job for AnalysisJob {
         if self.request == newer.request {
             return true;
         }
-        // The models are compared once only the last step of each condition remains: its optimum,
-        // which depends on other settings too.
+        // The comparison is complete once each condition has only its last step left: the optimum,
+        // which also depends on other settings.
         let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
         !is_compared && self.compares_the_same(newer)
     }

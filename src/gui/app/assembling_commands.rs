@@ -1,5 +1,5 @@
-//! Commands of the import view, which assembles a dataset from models: rules, and the dataset to be
-//! made. The models are read by `model_reading.rs`.
+//! Commands from the import view, which assembles a dataset from models: rules, and the dataset to
+//! be made. The models are read by `model_reading.rs`.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ use crate::gui::state::forms::FormKind;
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Carries out a command of the import view.
+    /// Carries out a command from the import view.
     pub(super) fn carry_out_assembling(&mut self, command: AssemblingCommand) {
         let import = self
             .state
@@ -60,7 +60,7 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the rules of the import, if it is open.
+    /// Returns the import rules, if the import view is open.
     pub(super) fn import_rules(&self) -> Option<Rules> {
         let import = self.state.assembling.as_ref()?;
         Some(import.assembly().rules().clone())

@@ -39,7 +39,7 @@ pub struct Kept {
     pub at: SystemTime,
 }
 
-/// Fate of the unsaved decisions when the window ends.
+/// Where unsaved decisions are when the window ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remains {
     /// There are no unsaved decisions.
@@ -73,7 +73,7 @@ pub(super) enum Task {
     /// The lost decisions are open again: delete their old recovery file once they are kept in a
     /// new one or saved.
     Restored(LostStudy),
-    /// Delete the recovery file of these lost decisions.
+    /// Delete these lost decisions' recovery file.
     Discard(LostStudy),
     /// Finish pending work now and reply with the resulting state.
     Flush(Sender<Remains>),
@@ -92,7 +92,7 @@ pub struct Autosave {
 }
 
 impl Autosave {
-    /// Starts the thread, which first offers the unsaved decisions of windows that crashed.
+    /// Starts the thread, which first offers unsaved decisions from windows that crashed.
     pub(super) fn start(
         directory: Option<&Path>,
         keep_after: Duration,

@@ -1,4 +1,4 @@
-//! Background jobs of the window: the continuously updated analysis ("live analysis") and all
+//! The window's background jobs: the continuously updated analysis ("live analysis") and all
 //! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
 //! its trigger (in `wanted_jobs.rs`) and its destination.
 //!
@@ -41,7 +41,7 @@ use crate::gui::state::background::Background;
 use crate::gui::state::view::View;
 use crate::gui::views::need::Need;
 
-/// Creates an engine: at the start, and after a panic, which may leave the caches of the old engine
+/// Creates an engine: at the start, and after a panic, which may leave the old engine's caches
 /// inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
 
@@ -65,7 +65,7 @@ macro_rules! needed_jobs {
 /// All kinds of jobs and their thread pool. Dropping them cancels the running jobs and ends the
 /// threads without waiting.
 pub(super) struct BackgroundJobs {
-    /// In order of urgency, the most urgent first.
+    /// Job kinds, the most urgent first.
     kinds: Rc<Vec<Box<dyn AnyJobKind>>>,
     /// Not used, but dropping it would end the threads.
     _pool: JobPool,
@@ -97,7 +97,7 @@ impl BackgroundJobs {
         }
     }
 
-    /// Returns the progress of the running jobs.
+    /// Returns the running jobs' progress.
     pub(super) fn running_work(&self) -> Background {
         let mut background = Background::default();
         for kind in self.kinds.iter() {
@@ -115,7 +115,7 @@ struct Engines {
 
 impl Engines {
     /// Returns an engine maker for kinds of jobs that work on the current study; their engines
-    /// share the responses of each model.
+    /// share each model's responses.
     fn sharing(&self) -> impl Fn() -> Engine + Send + Sync + 'static + use<> {
         let make = Arc::clone(&self.make);
         let known = self.known.clone();
@@ -290,7 +290,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops every job, except those with a *Stop* of their own in a view in front.
+    /// Stops every job, except those with their own *Stop* in a view in front.
     pub(super) fn stop_jobs(&mut self) {
         let kinds = Rc::clone(&self.work.jobs.kinds);
         for kind in kinds.iter() {

@@ -1,5 +1,5 @@
-//! Background work of the window: what is requested, and the replies from threads. The live
-//! analysis is in `live_analysis.rs`, the list of all kinds of jobs in `background_jobs.rs`.
+//! The window's background work: requests, and replies from threads. The live analysis is in
+//! `live_analysis.rs`, the list of all kinds of jobs in `background_jobs.rs`.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -15,20 +15,19 @@ use super::threads::{Reply, ReplySender};
 use crate::gui::state::notices::MessageBar;
 use crate::gui::views::need::Need;
 
-/// Background work of the window, and the requests from which it follows.
+/// The window's background work, and the requests from which it follows.
 pub(super) struct BackgroundWork {
-    /// Job of the live analysis that is running, waiting or complete.
+    /// Live-analysis job that is running, waiting or complete.
     pub(super) live_job: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
     /// Proofs that are not yet part of the results; each live analysis receives all of them.
     pub(super) new_proofs: Vec<Proof>,
     /// Jobs needed by the visible views in addition to the live analysis.
     pub(super) needs: Vec<Need>,
-    /// Study and condition in the newest request.
     pub(super) newest_request: Option<(Study, ConditionId)>,
     /// Report that is being written.
     pub(super) report_job: Option<ReportJob>,
-    /// Number of reports that were started.
+    /// Number of reports started so far.
     pub(super) report_number: u64,
     pub(super) replies: ReplySender,
     /// Replies from threads.

@@ -9,7 +9,7 @@ use gdcm_io::user_paths::FileStamp;
 
 use super::threads::ReplySender;
 
-/// Changed content of the watched file.
+/// The watched file's changed content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ChangedFile {
     pub(super) path: PathBuf,

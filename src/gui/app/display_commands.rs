@@ -1,4 +1,4 @@
-//! Commands that change the content of views.
+//! Commands that change what views show.
 
 use super::GdcmApp;
 use crate::gui::commands::display::DisplayCommand;

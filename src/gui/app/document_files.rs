@@ -27,7 +27,7 @@ pub(super) enum ReadFor {
     Opening,
     /// The file replaces the open dataset, which was read from it earlier.
     Reloading,
-    /// The file continues unsaved decisions; holds the number of the offer.
+    /// The file continues unsaved decisions; holds the offer number.
     Restoring(usize),
 }
 
@@ -40,7 +40,7 @@ pub(super) struct DocumentFiles {
     pub(super) earlier: Vec<LoadedDataset>,
     /// Dataset most recently made from records.
     pub(super) made_of_records: Option<DatasetOfRecords>,
-    /// Folder of the last written files.
+    /// Folder with the last written files.
     pub(super) last_folder: Option<PathBuf>,
     pub(super) disk: DiskWatch,
     /// Directory for the recent-files list; without it the list is not kept.
@@ -55,8 +55,8 @@ impl DocumentFiles {
         at_home(&typed, self.home.as_deref())
     }
 
-    /// Returns the folder that save dialogs propose: that of the last written files, of the study,
-    /// or of the dataset; otherwise the home directory.
+    /// Returns the folder that save dialogs propose: the one with the last written files, the
+    /// study's, or the dataset's; otherwise the home directory.
     pub(super) fn proposed_folder(&self) -> Option<PathBuf> {
         let study = self.saved.path.as_deref().and_then(Path::parent);
         let dataset = self.loaded.path().and_then(Path::parent);
@@ -95,7 +95,7 @@ impl DocumentFiles {
         self.proposed_path("", &format!("{}.{STUDY_EXTENSION}", self.stem()))
     }
 
-    /// Returns the stem from which names of files with results are formed.
+    /// Returns the stem from which the names of result files are formed.
     pub(super) fn stem(&self) -> String {
         if let Some(example) = self.loaded.origin.example() {
             return example.file_stem().to_owned();

@@ -106,13 +106,13 @@ pub(super) fn export_command_line(
     Ok(lines.join("\n"))
 }
 
-/// Option of a command with its argument.
+/// Command-line option with its argument.
 struct GivenOption {
     option: &'static str,
     argument: String,
 }
 
-/// Returns the options of the export that differ from their defaults.
+/// Returns the export options that differ from their defaults.
 fn given_options(form: &ExportForm, breakpoints_kt: Option<&[f64]>) -> Vec<GivenOption> {
     let choices = &form.choices;
     let mut options = Vec::new();
@@ -245,7 +245,7 @@ fn shell_word(word: &str) -> String {
     }
 }
 
-/// Quotes a word as the command prompt and the PowerShell of Windows both read it.
+/// Quotes a word so that both the Windows command prompt and PowerShell read it correctly.
 #[cfg(windows)]
 fn shell_word(word: &str) -> String {
     if is_plain(word)

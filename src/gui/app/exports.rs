@@ -1,4 +1,4 @@
-//! Exports of the corrections: the dialog's dry run, the written files, and what follows.
+//! Exporting the corrections: the dialog's dry run, the written files, and what follows.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,11 +22,11 @@ use crate::gui::state::export_form::{ExportForm, ExportPlanJob};
 use crate::gui::state::notices::Activity;
 use crate::message::Message;
 
-/// Degree over airspeed that lets signed delays vary.
+/// Polynomial degree over airspeed with which the export remedy lets signed delays vary.
 const SIGNED_DELAY_DEGREE: usize = 1;
 
 impl GdcmApp {
-    /// Fills the export dialog with the choices of the last export.
+    /// Fills the export dialog with the choices from the last export.
     pub(super) fn open_export_form(&mut self) {
         let study = self.files.saved.path.as_deref();
         let file = study.or(self.files.loaded.path());
@@ -43,8 +43,7 @@ impl GdcmApp {
         self.state.forms.export = form;
     }
 
-    /// Stores the outcome of a dry run; writes the files if the engineer has asked for it
-    /// meanwhile.
+    /// Stores a dry run's outcome; writes the files if the engineer has asked for it meanwhile.
     pub(super) fn take_export_plan(&mut self, job: ExportPlanJob, plan: ExportPlan) {
         self.state.forms.export.plan = Some((job, plan));
         if std::mem::take(&mut self.state.forms.export.is_awaited) {
@@ -52,8 +51,8 @@ impl GdcmApp {
         }
     }
 
-    /// Writes the files of the export dialog, once its dry run has ended. Errors stay in the
-    /// dialog.
+    /// Writes the files that the export dialog lists, once its dry run has ended. Errors stay in
+    /// the dialog.
     pub(super) fn export(&mut self) {
         let form = &mut self.state.forms.export;
         form.error = None;
@@ -125,8 +124,8 @@ impl GdcmApp {
         }
     }
 
-    /// Carries out a remedy that the dialog offers; a change of the study starts a new analysis, and
-    /// a new dry run follows.
+    /// Carries out a remedy that the dialog offers; if it changes the study, a new analysis starts,
+    /// and a new dry run follows.
     pub(super) fn apply_export_remedy(&mut self, remedy: ExportRemedy) {
         if self.state.forms.export.apply_remedy(remedy) {
             return;
@@ -154,7 +153,7 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the command line that writes the files of the export dialog.
+    /// Returns the command line that writes the files that the export dialog lists.
     ///
     /// # Errors
     /// A message if the form is incomplete, or if the study must be saved first because options

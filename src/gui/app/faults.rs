@@ -1,8 +1,8 @@
-//! Panics as faults: the message and the place of a panic in one line, reported to the engineer
+//! Panics as faults: a panic's message and source location in one line, reported to the engineer
 //! instead of a raw trace.
 //!
-//! Only the panic hook knows the place, only the code that catches the panic can report it: the hook
-//! records each panic ([`record_panic`]), and `caught` looks it up by its message.
+//! Only the panic hook knows the location, and only the code that catches the panic can report it:
+//! the hook records each panic ([`record_panic`]), and `caught` looks it up by its message.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -18,7 +18,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// "index out of bounds at src/study/engine.rs:49".
+    /// Formats "index out of bounds at src/study/engine.rs:49".
     pub fn words(&self) -> String {
         match &self.place {
             Some(place) => format!("{} at {place}", self.message),
@@ -46,7 +46,7 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
 /// Recorded panics that have not been caught yet. Another thread may catch a panic, so the list is
 /// not thread-local.
 static RECORDED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Maximum number of recorded panics; the oldest is dropped.
+/// Maximum count of recorded panics; the oldest is dropped.
 const MOST_RECORDED: usize = 50;
 
 /// Records a panic's message and location; called by the process's panic hook.

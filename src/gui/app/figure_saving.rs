@@ -1,4 +1,4 @@
-//! Copies and saves the figures and the tables of the views.
+//! Copies and saves the views' figures and tables.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -82,7 +82,7 @@ impl GdcmApp {
         );
     }
 
-    /// Returns the figure of a view; reports an error if the view has none yet.
+    /// Returns a view's figure; reports an error if the view has none yet.
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {

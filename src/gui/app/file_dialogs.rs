@@ -1,4 +1,4 @@
-//! File dialogs of the desktop, each in a thread, and what follows the engineer's choice.
+//! The desktop's file dialogs, each in a thread, and what follows the engineer's choice.
 
 use std::path::{Path, PathBuf};
 

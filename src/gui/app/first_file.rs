@@ -1,4 +1,4 @@
-//! File with which the window opens: the requested file, the file of the last session, or the
+//! File with which the window opens: the requested file, the file from the last session, or the
 //! example.
 
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Commands of forms and messages.
+//! Commands from forms and messages.
 
 use super::GdcmApp;
 use crate::gui::commands::form::FormCommand;
@@ -36,7 +36,7 @@ impl GdcmApp {
     fn show_form(&mut self, form: Option<FormKind>) {
         match form {
             Some(FormKind::Export) => self.open_export_form(),
-            // The dry run holds the bytes of all files.
+            // Drop the dry run, because it holds all files' bytes.
             _ => self.state.forms.export.plan = None,
         }
         // Keep the postponed action if it is to continue after this form, which asks for a path to

@@ -1,4 +1,4 @@
-//! A kind of job: its trigger, the destination of its output, and its queue.
+//! Kind of job: its trigger, its output's destination, and its queue.
 
 use gdcm_study::jobs::job::Job;
 
@@ -8,7 +8,7 @@ use super::job_queue::{Ending, JobQueue};
 use super::threads::ReplySender;
 use crate::gui::state::background::Background;
 
-/// A kind of job, described by functions.
+/// Kind of job, described by functions.
 pub(super) struct JobKind<J: Job> {
     /// Returns the jobs that the current display needs, the most urgent first. Other jobs of this
     /// kind are cancelled.
@@ -20,8 +20,8 @@ pub(super) struct JobKind<J: Job> {
     /// Withdraws the request after a stop or a fault, if the kind has its own trigger; then only
     /// that trigger, not "Compute", starts it again.
     pub(super) withdraw: Option<fn(&mut GdcmApp)>,
-    /// Returns whether a view in front has a *Stop* of its own for this kind; the *Stop* in the
-    /// status bar then leaves it running.
+    /// Returns whether a view in front has its own *Stop* for this kind; the *Stop* in the status
+    /// bar then leaves it running.
     pub(super) has_own_stop: fn(&GdcmApp) -> bool,
 }
 
@@ -53,7 +53,7 @@ impl<J: Job> JobKind<J> {
         self
     }
 
-    /// Gives the kind a *Stop* of its own, beside its progress in a view.
+    /// Gives the kind its own *Stop*, beside its progress in a view.
     pub(super) fn with_own_stop(mut self, has_own_stop: fn(&GdcmApp) -> bool) -> Self {
         self.has_own_stop = has_own_stop;
         self
@@ -72,7 +72,6 @@ pub(super) trait AnyJobKind {
     fn report(&self, background: &mut Background);
 }
 
-/// A kind of job with its queue.
 struct QueuedKind<J: Job> {
     kind: JobKind<J>,
     queue: JobQueue<J>,
@@ -103,7 +102,7 @@ impl<J: Job> AnyJobKind for QueuedKind<J> {
     }
 }
 
-/// The kinds of jobs in a pool, added in order of urgency.
+/// Kinds of jobs in a pool, added in order of urgency.
 pub(super) struct JobKinds<'a> {
     pool: &'a JobPool,
     replies: &'a ReplySender,

@@ -1,5 +1,6 @@
 //! Thread pool for the window's background work. Each kind of job has its own queue (lane); a free
-//! thread runs the next job of the most urgent lane that has one and that the thread may serve.
+//! thread runs the next job in the most urgent lane that has a waiting job and that the thread may
+//! serve.
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -61,7 +62,7 @@ struct Schedule {
 }
 
 impl Schedule {
-    /// Starts the next job of the most urgent waiting lane that `server` serves; returns the lane.
+    /// Starts the next job in the most urgent waiting lane that `server` serves; returns the lane.
     fn begin_next(&self, server: Server) -> Option<Arc<dyn Lane>> {
         for pooled in &self.lanes {
             if server.serves(pooled.class) && pooled.lane.begin() {
@@ -79,7 +80,7 @@ pub(super) struct Waker {
 }
 
 impl Waker {
-    /// Lets the free threads look for waiting jobs. The caller must not hold the lock of a lane: a
+    /// Lets the free threads look for waiting jobs. The caller must not hold a lane's lock: a
     /// thread locks the schedule first and then a lane, so there would be a deadlock.
     pub(super) fn wake(&self) {
         self.schedule.change(|_| ());

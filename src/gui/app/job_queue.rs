@@ -1,11 +1,11 @@
-//! Queue of a kind of job: a lane in the job pool, whose jobs run in sequence. Jobs that compare
+//! Queue for a kind of job: a lane in the job pool, whose jobs run in sequence. Jobs that compare
 //! equal are treated as the same job; this is how running, finished and stopped jobs are
 //! recognised.
 //!
 //! The window calls [`JobQueue::want`] after each frame with the jobs that it needs now. A free
-//! thread of the pool takes the first of them that is unfinished ([`Lane::begin`]), runs it and
-//! delivers its ending ([`Lane::run`]). A running job that is no longer
-//! wanted is cancelled, unless it serves a wanted one ([`Job::serves`]).
+//! pool thread takes the first unfinished job ([`Lane::begin`]), runs it and delivers its ending
+//! ([`Lane::run`]). A running job that is no longer wanted is cancelled, unless it serves a wanted
+//! one ([`Job::serves`]).
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -111,7 +111,7 @@ impl<J: Job> Orders<J> {
             .filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
 
-    /// Returns the job to start next; `None` until the ending of the previous job is delivered.
+    /// Returns the job to start next; `None` until the previous job's ending is delivered.
     fn next_job(&self) -> Option<&J> {
         if self.closed || self.is_served {
             return None;
@@ -126,7 +126,7 @@ impl<J: Job> Orders<J> {
     }
 }
 
-/// Requests, tools and delivery function of a kind of job.
+/// Requests, tools and delivery function for a kind of job.
 struct JobLane<J: Job> {
     orders: Mutex<Orders<J>>,
     /// Tools kept between jobs; `None` before the first job and while a job runs.
@@ -205,15 +205,15 @@ where
     }
 }
 
-/// Queue of a kind of job. Dropping it cancels the running job without waiting.
+/// Queue for a kind of job. Dropping it cancels the running job without waiting.
 pub(super) struct JobQueue<J: Job> {
     lane: Arc<JobLane<J>>,
     waker: Waker,
 }
 
 impl<J: Job> JobQueue<J> {
-    /// Adds a lane to the pool, less urgent than the lanes before it. The ending of each job is
-    /// passed to `deliver`. `make_tools` is called again after a fault.
+    /// Adds a lane to the pool, less urgent than the lanes before it. Each job's ending is passed
+    /// to `deliver`. `make_tools` is called again after a fault.
     pub(super) fn open(
         pool: &JobPool,
         class: LaneClass,

@@ -1,4 +1,4 @@
-//! Order of typed text and changes of focus: text reaches the intended field even if frames are
+//! Order between typed text and focus changes: text reaches the intended field even if frames are
 //! slow.
 
 use egui::{Context, Event, Key, Plugin, RawInput};
@@ -8,8 +8,8 @@ use egui::{Context, Event, Key, Plugin, RawInput};
 /// If a frame takes long, "3", Tab and "4" arrive in the same frame, in which a single field has
 /// the focus. Events that move the focus therefore get their own frame, and text typed after them
 /// goes to a later frame. After Tab another frame passes: a widget that receives the focus by
-/// Shift+Tab is informed only in the next frame, and selects its text, to be replaced, at the end
-/// of that frame.
+/// Shift+Tab is informed only in the next frame, and selects its text, to be replaced, when that
+/// frame ends.
 #[derive(Default)]
 pub(super) struct KeyOrder {
     /// Events for later frames.
@@ -51,7 +51,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Returns the kind of an event; `None` for events that may be handled in any frame.
+    /// Returns an event's kind; `None` for events that may be handled in any frame.
     fn from_event(event: &Event) -> Option<Self> {
         match event {
             Event::Key {
@@ -66,7 +66,7 @@ impl Kind {
     }
 
     /// Returns whether `next` may be in the same frame. Clicks may, because a double click is
-    /// recognised by the times of its events.
+    /// recognised by its event times.
     fn goes_with(self, next: Self) -> bool {
         self == next && self != Self::Moving
     }
@@ -89,7 +89,7 @@ fn is_tab(event: &Event) -> bool {
     )
 }
 
-/// Returns the number of leading events that belong in the same frame.
+/// Counts the leading events that belong in the same frame.
 fn count_of_frame(events: &[Event]) -> usize {
     let mut before: Option<Kind> = None;
     for (count, event) in events.iter().enumerate() {

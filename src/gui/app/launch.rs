@@ -3,8 +3,8 @@
 //!
 //! The requested file is read in a thread while the window library starts (`first_file.rs`).
 //! Whether an error means "no window" or "the window has ended" depends on whether a frame was
-//! drawn: the first frame hands over the autosave, which then tells what became of the unsaved
-//! decisions.
+//! drawn: the first frame hands over the autosave, which then knows where the unsaved decisions
+//! are.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -37,8 +37,8 @@ const NO_WINDOW: u8 = 1;
 const WRONG_FILE: u8 = 2;
 
 /// Opens the window on a dataset or a study, or on the embedded example, and returns once the
-/// window is closed. A folder, or a file from another program, opens the import of models. Returns
-/// the exit status.
+/// window is closed. A folder, or a file from another program, opens the model import. Returns the
+/// exit status.
 ///
 /// Without a display, or if the window cannot be created, prints one line on standard error, which
 /// names the command that works without a window.
@@ -178,10 +178,10 @@ fn run(
     )
 }
 
-/// Returns the program's icon, for the window's frame and the list of windows.
+/// Returns the program's icon, for the window frame and the desktop's window list.
 fn icon() -> Arc<IconData> {
     let icon = from_png_bytes(include_bytes!("../../../assets/icon/gdcm-256.png"));
-    // Without pixels, the window has no icon of its own.
+    // Without pixels, the window gets the desktop's default icon.
     Arc::new(icon.unwrap_or_default())
 }
 

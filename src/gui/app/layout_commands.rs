@@ -8,7 +8,7 @@ use crate::gui::widgets::number_field::focus_field;
 use crate::gui::widgets::page_switch::neighbouring_page;
 use crate::gui::widgets::window_regions::leave_region;
 
-/// Target of a requested change of focus.
+/// Target of a requested focus change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextFocus {
     /// The field with this name.
@@ -60,7 +60,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the page after or before the shown page of the view in front, if the view has pages.
+    /// Shows the page after or before the shown page in the front view, if the view has pages.
     fn turn_page(&mut self, forward: bool) {
         let view = self.state.display.layout.arrangement.view();
         let pages = (view_content(view).pages)(&self.state);
@@ -78,7 +78,7 @@ impl GdcmApp {
         self.ctx.request_repaint();
     }
 
-    /// Moves the focus to the requested target, unless a form is open in front of it.
+    /// Moves the focus to the requested target, unless a form covers it.
     pub(super) fn move_focus(&mut self) {
         if self.state.forms.shown.is_some()
             || self.ctx.memory(|memory| memory.top_modal_layer().is_some())

@@ -1,11 +1,10 @@
-//! Live analysis: the results follow every change of the study and of the displayed condition.
+//! Live analysis: the results follow every change to the study or the displayed condition.
 //!
 //! 1. After each frame, `request_results` compares both with the newest request. If they differ, it
 //!    gives the new request a number (`Results::requested`).
 //! 2. `start_live_analysis` makes an [`AnalysisJob`] for the request. `want_jobs`
 //!    (`background_jobs.rs`) passes it to its queue, also after each frame.
-//! 3. The job sends the result of the displayed condition (`Results::first`) before the results of
-//!    the others.
+//! 3. The job sends the displayed condition's result (`Results::first`) before the others.
 //! 4. `show_analysis` stores the whole analysis and its request number (`Results::received`), and
 //!    wants the jobs that complete it: curves, error bars, proofs.
 //! 5. `take_proof` receives a proof and starts the job again, with the same request number.
@@ -44,8 +43,8 @@ impl GdcmApp {
         self.start_live_analysis();
     }
 
-    /// Begins and ends the session of the settings panel as the panel is opened and closed, by
-    /// whichever command.
+    /// Begins and ends the settings session when the panel is opened and closed, by whichever
+    /// command.
     fn follow_settings_panel(&mut self) {
         let is_open = self.state.display.layout.settings_open;
         match (is_open, self.state.settings_session.is_some()) {
@@ -87,7 +86,7 @@ impl GdcmApp {
     pub(super) fn show_analysis(&mut self, job: AnalysisJob, timed: TimedAnalysis) {
         let now = self.now();
         let results = &mut self.state.results;
-        // A rerun after an optimality proof has the request number of the original job; its short
+        // A rerun after an optimality proof has the original job's request number; its short
         // computing time must not replace the original one.
         if results.received != job.request {
             results.elapsed_ms = timed.elapsed_ms;

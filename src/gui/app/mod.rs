@@ -1,6 +1,6 @@
-//! The window: the only module of the window that uses eframe, file dialogs and threads.
+//! The window itself: the only module in `gui` that uses eframe, file dialogs and threads.
 //!
-//! Begin with `window.rs`: [`GdcmApp`] and the course of a frame. `update.rs` hands each command to
+//! Begin with `window.rs`: [`GdcmApp`] and the steps in a frame. `update.rs` hands each command to
 //! its group (`…_commands.rs`), `live_analysis.rs` describes how results follow every change,
 //! `background_jobs.rs` lists all kinds of jobs, and `launch.rs` leads from the command line to the
 //! window.

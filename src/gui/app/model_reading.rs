@@ -112,7 +112,7 @@ impl GdcmApp {
     }
 }
 
-/// Number of bytes read between two progress reports.
+/// Bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;
 
 /// Informs the window which file is being read.

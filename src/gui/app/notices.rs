@@ -137,7 +137,7 @@ fn show_in_desktop(folder: &Path) -> io::Result<()> {
         "xdg-open"
     };
     let status = Process::new(program).arg(folder).status()?;
-    // The file manager of Windows reports a failure even if it has shown the folder.
+    // The Windows file manager reports a failure even if it has shown the folder.
     if status.success() || cfg!(target_os = "windows") {
         Ok(())
     } else {

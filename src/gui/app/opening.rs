@@ -1,4 +1,4 @@
-//! Opening of datasets and studies. Files are read in threads, so the window never blocks.
+//! Opening datasets and studies. Files are read in threads, so the window never blocks.
 //!
 //! 1. `open` chooses the purpose: to show the file, or to restore lost decisions. `recovery.rs` and
 //!    `reload.rs` start with their own purposes.
@@ -88,7 +88,7 @@ impl GdcmApp {
     }
 
     /// Opens a dataset or a study; the open study remains until the file is read. `moved` is the
-    /// new path of a study's dataset.
+    /// new path for a study's dataset.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.files.at_home(path);
         let moved = moved.map(|dataset| self.files.at_home(dataset));
@@ -114,7 +114,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reads a file in a separate thread, within the size limit of a file. Replaces a reading in
+    /// Reads a file in a separate thread, within the file size limit. Replaces a reading in
     /// progress.
     pub(super) fn read(
         &mut self,
@@ -137,7 +137,6 @@ impl GdcmApp {
         });
     }
 
-    /// Opens an embedded example.
     pub(super) fn open_example(&mut self, example: Example) {
         self.answer_opened(ReadFor::Opening, load_example(example).map(Opened::Dataset));
     }
@@ -174,8 +173,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reports why a file was not opened, or asks for the dataset of a study; the open study
-    /// remains.
+    /// Reports why a file was not opened, or asks for a study's dataset; the open study remains.
     fn open_failed(&mut self, error: FileError) {
         self.read_recent(None);
         match error {

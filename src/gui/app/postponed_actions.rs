@@ -3,8 +3,8 @@
 //! An action that would lose unsaved decisions waits for the form `Unsaved`
 //! ([`GdcmApp::ask_to_lose`]), which saves first, goes on, or cancels. A command that would
 //! overwrite files waits for the question in its own form ([`GdcmApp::ask_to_overwrite`]); if
-//! confirmed, the command is repeated with leave to replace them. Opening another form forgets
-//! both, except that the form Save keeps an action that continues after the saving.
+//! confirmed, the command is repeated with permission to replace them. Opening another form forgets
+//! both, except that the form Save keeps an action that continues after saving.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub(super) enum PendingAction {
     Quit,
 }
 
-/// Actions and commands that wait for an answer of the engineer.
+/// Actions and commands that wait for the engineer's answer.
 pub(super) struct PostponedActions {
     /// Action that waits until the engineer confirms that unsaved decisions may be lost.
     pub(super) losing: Option<PendingAction>,

@@ -1,5 +1,5 @@
-//! Readings of files in threads: a newer reading may replace an older one, whose result is then
-//! ignored, and the engineer may stop it.
+//! File reading in threads: a newer reading may replace an older one, whose result is then ignored,
+//! and the engineer may stop a reading.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,7 +17,7 @@ pub(super) struct Reader {
 
 /// A reading in progress.
 pub(super) struct Reading {
-    /// Number of the reading; its result is used only while no newer reading has begun.
+    /// Reading number; the result is used only while no newer reading has begun.
     pub(super) number: u64,
     /// Set when the reading should stop.
     pub(super) stop: Arc<AtomicBool>,
@@ -47,7 +47,7 @@ impl Reader {
         }
     }
 
-    /// Returns whether the result of the reading `number` is still used.
+    /// Returns whether the result from reading `number` is still used.
     pub(super) fn is_newest(&self, number: u64) -> bool {
         self.newest == number
     }
@@ -75,7 +75,7 @@ impl Drop for Reader {
     }
 }
 
-/// Progress of a reading that can be stopped but shows no progress.
+/// Progress handle for a reading that can be stopped but shows no progress.
 pub(super) struct SilentProgress(pub(super) Arc<AtomicBool>);
 
 impl FolderProgress for SilentProgress {

@@ -1,4 +1,4 @@
-//! Channels expected in the flight records of a condition, and the sample rate of their topics.
+//! Channels expected in a condition's flight records, and the topics' sample rate.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::names::ChannelRule;
@@ -7,9 +7,9 @@ use gdcm_sysid::records::RecordChannels;
 use super::GdcmApp;
 
 impl GdcmApp {
-    /// Returns the channels expected in the records of a condition: the channels of the dataset, at
-    /// the locations that were given if the dataset was made from records. Topics are resampled as
-    /// the identification band requires.
+    /// Returns the channels expected in a condition's records: the dataset's channels, at the given
+    /// locations if the dataset was made from records. Topics are resampled as the identification
+    /// band requires.
     pub(super) fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
         let [_, end] = self.state.identified_band(condition);
@@ -28,8 +28,8 @@ impl GdcmApp {
         channels
     }
 
-    /// Resamples the topics of a condition if its identification band has changed and requires
-    /// another sample rate.
+    /// Resamples a condition's topics if its identification band has changed and requires another
+    /// sample rate.
     pub(super) fn follow_band(&mut self, condition: ConditionId) {
         let [_, end] = self.state.identified_band(condition);
         let Some(records) = self.state.records.conditions.get(&condition) else {

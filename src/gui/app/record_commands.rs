@@ -1,4 +1,4 @@
-//! Commands of the Records view. Edits are in `record_edits.rs` and `record_layout_edits.rs`.
+//! Commands from the Records view. Edits are in `record_edits.rs` and `record_layout_edits.rs`.
 
 use gdcm_study::Edit;
 
@@ -66,12 +66,12 @@ impl GdcmApp {
                 }
             }
             RecordsCommand::ShowColumns(place) => self.show_columns(place),
-            // Every other command changes the records of the displayed condition; see `apply_edit`.
+            // Every other command changes the displayed condition's records; see `apply_edit`.
             edit => self.edit_records(condition, edit),
         }
     }
 
-    /// Shows the columns of a record.
+    /// Displays a record on the page with its column assignment.
     fn show_columns(&mut self, place: RecordPlace) {
         if let Some(records) = self.state.records.conditions.get_mut(&place.condition) {
             records.choose(place.row);

@@ -17,7 +17,7 @@ use crate::gui::state::wanted_dataset::WantedDataset;
 use crate::message::Message;
 use crate::message_codes::layout_problem_code;
 
-/// Maximum number of problems reported individually.
+/// Maximum count of problems reported individually.
 const MOST_PROBLEMS: usize = 6;
 
 /// Sources and settings of a dataset that is to be made from records.
@@ -25,7 +25,7 @@ struct DatasetRequest {
     sources: Vec<PathBuf>,
     channels: RecordChannels,
     band: Band,
-    /// Path of the dataset file to be written.
+    /// Path to the dataset file to be written.
     path: PathBuf,
 }
 
@@ -44,14 +44,13 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Opens the form for the channels of a new dataset, with a proposal based on the records
-    /// without a condition, and on those of the displayed condition that do not fit the open
-    /// dataset.
+    /// Opens the form for a new dataset's channels, with a proposal based on the records without a
+    /// condition, and on the displayed condition's records that do not fit the open dataset.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let mut rows: Vec<&LaidOutRecord> = self.state.records.unassigned.iter().collect();
         if let Some(records) = self.state.records.conditions.get(&condition) {
-            // Records of a condition that fit the open dataset need no other.
+            // Records that fit the open dataset need no other dataset.
             rows.extend(records.rows.iter().filter(|row| row.flight.is_none()));
         }
         let path = match self.state.records.sources.first() {
@@ -118,8 +117,8 @@ impl GdcmApp {
 }
 
 impl DatasetRequest {
-    /// Builds a dataset from the records that contain the requested channels; completes the units
-    /// of the channels.
+    /// Builds a dataset from the records that contain the requested channels; completes the
+    /// channels' units.
     ///
     /// # Errors
     /// The problems in the records, if no record is suitable, or the fault in the dataset.

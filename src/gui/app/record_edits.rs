@@ -1,5 +1,5 @@
-//! Undoable edits of the records of a condition: which records are used, their parts, manoeuvres,
-//! remedies, and the settings of the identification.
+//! Undoable edits to a condition's records: which records are used, their parts, manoeuvres,
+//! remedies, and the identification settings.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::ChannelRemedy;
@@ -14,7 +14,7 @@ use crate::gui::state::records::RecordsBefore;
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Applies an edit to the records of a condition; it can be undone.
+    /// Applies an edit to a condition's records; it can be undone.
     pub(super) fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
@@ -64,7 +64,7 @@ impl GdcmApp {
         }
         leave_out_copies(&mut records.rows);
         records.changed = true;
-        // The common clock of topics was chosen for another condition.
+        // The topics' common clock was chosen for another condition.
         records.clock_band_end = None;
         let change = RecordChange::Assign {
             records: count,
@@ -86,7 +86,7 @@ impl GdcmApp {
         self.record_edited(RecordChange::Discard { record }, before);
     }
 
-    /// Adds an edit of records to the undo history.
+    /// Adds a record edit to the undo history.
     pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsBefore) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, change, before);
@@ -141,7 +141,7 @@ fn record_name(records: &ConditionRecords, index: usize) -> String {
     }
 }
 
-/// Applies an edit to the records of a condition; returns false if the command is no such edit.
+/// Applies an edit to a condition's records; returns false if the command is no such edit.
 ///
 /// # Errors
 /// A message, if the edit is impossible.
@@ -188,7 +188,7 @@ fn apply_edit(
     Ok(true)
 }
 
-/// Sets the delays and factors of channels in a single record.
+/// Sets channel delays and factors in a single record.
 fn set_remedies(
     row: &mut LaidOutRecord,
     remedies: &[(Signal, ChannelRemedy)],

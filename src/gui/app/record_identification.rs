@@ -1,5 +1,4 @@
-//! Identification of models from flight records: starts and stops the jobs, and adds the models to
-//! the study.
+//! Identification from flight records: starts and stops the jobs, and adds the models to the study.
 
 use std::sync::Arc;
 
@@ -52,7 +51,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores the outcome of an identification, unless it was stopped in the meantime.
+    /// Stores an identification's outcome, unless it was stopped in the meantime.
     pub(super) fn identified(
         &mut self,
         job: IdentifyJob,
@@ -73,7 +72,7 @@ impl GdcmApp {
         }
     }
 
-    /// Adds the identified models of these conditions to the study.
+    /// Adds these conditions' identified models to the study.
     pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {

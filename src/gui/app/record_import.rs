@@ -1,4 +1,4 @@
-//! Adds flight records to their conditions: starts a reading thread, which runs the functions of
+//! Adds flight records to their conditions: starts a reading thread, which runs the functions in
 //! `record_reading.rs`, and stores the records that it found.
 
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ use crate::gui::state::records::RecordsFold;
 use crate::gui::state::view::View;
 use crate::message::Message;
 
-/// State of the window when a reading began.
+/// Window state when a reading began.
 struct ReadingStart {
     /// Upper limit of the identification band \[rad/s\], from which the sample rate of topics is
     /// chosen.
@@ -31,8 +31,8 @@ struct ReadingStart {
 }
 
 impl GdcmApp {
-    /// Reads the records of the displayed condition once a view that needs them is shown, then
-    /// those of the other conditions.
+    /// Reads the displayed condition's records once a view that needs them is shown, then the other
+    /// conditions' records.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
@@ -167,7 +167,7 @@ impl GdcmApp {
         });
     }
 
-    /// Returns the records of a condition, initially none.
+    /// Returns a condition's records, initially none.
     pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         self.state
             .records
@@ -232,7 +232,7 @@ impl GdcmApp {
             .chain(&unassigned)
             .any(|row| !row.problems.is_empty());
         if has_problems {
-            // Columns are part of adding records: ask for them at once.
+            // Adding records includes assigning columns: ask for them at once.
             self.state.records.open_fold = Some(RecordsFold::Columns);
         }
         let mut before = self.state.records.before(added.keys().copied());

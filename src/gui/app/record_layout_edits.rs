@@ -1,5 +1,5 @@
-//! Edits of record layouts, the assignment of columns to channels. An edit of one record also
-//! changes similar records, in all conditions.
+//! Edits to record layouts, which assign columns to channels. An edit to one record also changes
+//! similar records, in all conditions.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::gui::state::record_change::RecordChange;
 use crate::gui::state::records::RecordsBefore;
 
 impl GdcmApp {
-    /// Sets the layout of a record, and changes similar records in the same way.
+    /// Sets a record's layout, and changes similar records in the same way.
     pub(super) fn set_layout(
         &mut self,
         condition: ConditionId,
@@ -40,7 +40,7 @@ impl GdcmApp {
         self.edit_layouts(columns, |row| change.layout_for(row));
     }
 
-    /// Confirms the assumed units, in the records of all conditions.
+    /// Confirms the assumed units in all conditions' records.
     pub(super) fn confirm_units(&mut self) {
         self.edit_layouts(RecordChange::DatasetUnits, |row| {
             Some(row.layout.in_units_of_channels())
@@ -79,7 +79,7 @@ impl GdcmApp {
     }
 }
 
-/// New layout of a record, also for similar records.
+/// New layout for a record and for similar records.
 struct LayoutChange {
     /// The edited record.
     table: Arc<RecordTable>,
@@ -91,9 +91,8 @@ struct LayoutChange {
 }
 
 impl LayoutChange {
-    /// Returns the new layout of a record; `None` if it keeps its layout. Records that the dataset
-    /// lists are in the dataset's units, so a change applies only to listed or only to unlisted
-    /// records.
+    /// Returns a record's new layout; `None` if it keeps its layout. Records that the dataset lists
+    /// are in the dataset's units, so a change applies only to listed or only to unlisted records.
     fn layout_for(&self, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());

@@ -1,5 +1,5 @@
-//! Reading of flight records from files: the part that runs in the reading thread, without access
-//! to the window.
+//! Reading flight records from files: the part that runs in the reading thread, without access to
+//! the window.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -63,8 +63,8 @@ impl OwnRecords {
         }
     }
 
-    /// Reads the own records of the conditions `ids`. Every condition gets an entry, even an empty
-    /// one.
+    /// Reads the conditions' own records; `ids` selects the conditions. Every condition gets an
+    /// entry, even an empty one.
     ///
     /// # Errors
     /// The fault in an embedded record; faults in files are collected in `found`.
@@ -158,10 +158,10 @@ pub(super) struct AddedFiles {
 }
 
 impl AddedFiles {
-    /// Reads the records in the files and assigns each to the condition in the name of its file or
-    /// folder; other records remain unassigned. Units that neither the files nor the samples
-    /// determine are assumed to be the dataset's. Also reads the own records of these conditions if
-    /// they are not yet loaded.
+    /// Reads the records in the files and assigns each to the condition that its file or folder
+    /// name states; other records remain unassigned. Units that neither the files nor the samples
+    /// determine are assumed to be the dataset's. Also reads these conditions' own records if they
+    /// are not yet loaded.
     ///
     /// # Errors
     /// The fault in a path; faults in single files are collected.
@@ -205,10 +205,9 @@ impl AddedFiles {
     }
 }
 
-/// Returns the condition of an added record: the only condition of the dataset; the condition whose
-/// entry in the dataset names the record; or the condition in the names of the record, of its file
-/// and of the folder of the file, given by its number or by an airspeed that no other condition
-/// has.
+/// Returns an added record's condition: the dataset's only condition; or the condition whose
+/// dataset entry names the record; or the condition stated in the name of the record, its file or
+/// its folder, by number or by an airspeed that no other condition has.
 fn condition_of(
     row: &LaidOutRecord,
     file: Option<&Path>,
@@ -245,7 +244,7 @@ fn condition_of(
     None
 }
 
-/// Returns the condition at an airspeed \[kt\]; `None` if there are several.
+/// Returns the only condition at an airspeed \[kt\]; `None` if there are none or several.
 fn only_condition_at(airspeed_kt: f64, dataset: &Dataset) -> Option<ConditionId> {
     let mut at_airspeed = dataset
         .conditions()
@@ -258,7 +257,7 @@ fn only_condition_at(airspeed_kt: f64, dataset: &Dataset) -> Option<ConditionId>
     Some(first.id())
 }
 
-/// Assigns the columns of a record to channels: as the dataset states, or by a proposal without a
+/// Assigns a record's columns to channels: as the dataset states, or by a proposal without a
 /// dataset.
 fn laid_out(
     table: RecordTable,
@@ -281,8 +280,7 @@ fn canonical_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// Finds the file of a record among the added paths: a path itself, or a file inside an added
-/// folder.
+/// Finds a record's file among the added paths: a path itself, or a file inside an added folder.
 fn find_file(name: &str, paths: &[PathBuf]) -> Option<PathBuf> {
     for path in paths {
         let own_name = path.file_name().map(|name| name.to_string_lossy());

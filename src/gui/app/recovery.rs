@@ -1,4 +1,4 @@
-//! Offers to recover unsaved decisions: at the next start, the window offers the decisions of a
+//! Offers to recover unsaved decisions: at the next start, the window offers the decisions from a
 //! window that ended without saving them. `autosave.rs` keeps them.
 
 use std::path::Path;

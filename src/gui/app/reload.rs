@@ -16,7 +16,7 @@ impl GdcmApp {
         self.files.disk.watch(self.files.loaded.path());
     }
 
-    /// Offers to reload the dataset if the content of its file has changed.
+    /// Offers to reload the dataset if its file's content has changed.
     pub(super) fn file_changed(&mut self, changed: &ChangedFile) {
         if self.files.loaded.path() != Some(&changed.path) {
             return;

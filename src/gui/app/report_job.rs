@@ -41,7 +41,7 @@ impl GdcmApp {
         self.start_report(path, self.postponed.existing);
     }
 
-    /// Starts writing the report to a path; `existing` is the treatment of an existing file.
+    /// Starts writing the report to a path; `existing` states how an existing file is treated.
     pub(super) fn start_report(&mut self, path: PathBuf, existing: Existing) {
         let Some(analysis) = self.value_or_notify(self.analysis_to_write()) else {
             return;
@@ -66,7 +66,7 @@ impl GdcmApp {
         });
     }
 
-    /// Shows a notice with the path of the written report, or handles the error.
+    /// Shows a notice with the written report's path, or handles the error.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.work.report_job = None;
         match outcome {
@@ -100,8 +100,8 @@ impl GdcmApp {
 /// Job that builds and writes a report; takes seconds, because it draws every plot.
 #[derive(Clone, Debug)]
 pub struct ReportJob {
-    /// Number of the report in the session, by which jobs are told apart: records may contain NaN,
-    /// and would then differ from themselves.
+    /// Report number in this session, which distinguishes jobs: records may contain NaN, and would
+    /// then differ from themselves.
     pub number: u64,
     pub analysis: Arc<Analysis>,
     /// Open flight records for the time-history comparison.
@@ -146,7 +146,7 @@ impl Job for ReportJob {
     }
 }
 
-/// Returns a file name for the report of a study or a dataset, `flight-7-report.html`; without a
+/// Returns a file name for the report about a study or a dataset, `flight-7-report.html`; without a
 /// file, from `stem`.
 fn report_name(file: Option<&Path>, stem: &str) -> String {
     let name = match file {

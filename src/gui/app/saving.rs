@@ -1,4 +1,4 @@
-//! Saving of the study.
+//! Saving the study.
 
 use std::path::{Path, PathBuf};
 

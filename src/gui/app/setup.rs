@@ -1,4 +1,4 @@
-//! Setup of the window: directories, waiting times and preferences. Tests use other values than the
+//! Window setup: directories, waiting times and preferences. Tests use other values than the
 //! program.
 
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use crate::message::Message;
 /// Application id on the desktop, and name of the data directory.
 pub(super) const APP_ID: &str = "gdcm";
 
-/// Setup of the window; tests use other values than the program.
+/// Window setup; tests use other values than the program.
 #[derive(Clone)]
 pub struct Setup {
     pub engine: EngineMaker,
@@ -28,7 +28,7 @@ pub struct Setup {
     pub offers_tour: bool,
     /// Maximum time between a decision and its storage in the recovery file.
     pub keep_after: Duration,
-    /// Interval between checks of the dataset file for changes.
+    /// Interval between checks for changes in the dataset file.
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.

@@ -19,7 +19,7 @@ impl GdcmApp {
                 self.set_setting_dragged(false);
                 self.state.history.seal();
             }
-            // A step may also contain an edit of flight records, which are not part of the study:
+            // A step may also contain an edit to flight records, which are not part of the study:
             // `exchange` restores them.
             StudyCommand::Undo => self.restore_study(|history, study, records| {
                 history.undo(study, |before| records.exchange(before))
@@ -63,7 +63,7 @@ impl GdcmApp {
             ..
         } = &mut self.state;
         if let Some(mut restored) = find(history, study, records) {
-            // The choices of an export are no step of the history.
+            // Export choices are not part of the undo history.
             restored.exports = Arc::clone(&study.exports);
             self.state.study = restored;
             self.study_changed();
@@ -71,7 +71,8 @@ impl GdcmApp {
     }
 
     /// Updates everything that depends on the study: obsolete toasts, the responses that were ever
-    /// constrained, the mark for unsaved decisions, the selected dataset file and the recovery file.
+    /// constrained, the mark for unsaved decisions, the selected dataset file and the recovery
+    /// file.
     pub(super) fn study_changed(&mut self) {
         self.state.notices.follow_decision();
         self.state

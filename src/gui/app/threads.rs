@@ -1,4 +1,4 @@
-//! Threads of the window: a thread for a single task, and the replies with which threads change the
+//! The window's threads: a thread for a single task, and the replies with which threads change the
 //! window.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,7 +9,7 @@ use super::GdcmApp;
 use super::faults::caught;
 use crate::message::Message;
 
-/// Reply of a thread: a change that the window applies to itself.
+/// Reply from a thread: a change that the window applies to itself.
 pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
 
 /// Sender for replies from threads; each reply wakes the window.

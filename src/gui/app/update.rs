@@ -1,5 +1,5 @@
 //! Carries out commands. Views change the state only through commands, except for their own caches,
-//! zoom, sorting and typed texts. Each group of commands has a file of its own.
+//! zoom, sorting and typed texts. Each group of commands has its own file.
 
 use gdcm_model::dataset::{ConditionId, ModelId};
 
@@ -23,11 +23,11 @@ impl GdcmApp {
         self.ctx.request_repaint();
     }
 
-    /// Carries out the commands of a frame.
+    /// Carries out a frame's commands.
     ///
-    /// No repaint is requested for a command: it stems from a key, a click or a movement of the
-    /// pointer, after which egui draws another frame by itself. The elements under the pointer may
-    /// also change without input, when the content moves under a resting pointer.
+    /// No repaint is requested for a command: it stems from a key, a click or a pointer movement,
+    /// after which egui draws another frame by itself. The elements under the pointer may also
+    /// change without input, when the content moves under a resting pointer.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let before = self.take_pointed();
         for command in commands {
@@ -38,7 +38,7 @@ impl GdcmApp {
         }
     }
 
-    /// Takes the elements under the pointer; the commands of each frame set them again.
+    /// Takes the elements under the pointer; each frame's commands set them again.
     fn take_pointed(&mut self) -> Pointed {
         let display = &mut self.state.display;
         Pointed {

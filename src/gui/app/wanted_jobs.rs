@@ -1,5 +1,5 @@
-//! Jobs that the current display needs: those of the visible views, and those that complete the
-//! displayed results.
+//! Jobs that the current display needs: for the visible views, and to complete the displayed
+//! results.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ pub(super) fn needs(state: &State) -> Vec<Need> {
     needs
 }
 
-/// Returns the job that computes the frequency responses of the displayed condition.
+/// Returns the job that computes the displayed condition's frequency responses.
 pub(super) fn curves_job(state: &State) -> CurvesJob {
     CurvesJob {
         dataset: Arc::clone(&state.study.dataset).into(),
@@ -39,15 +39,15 @@ pub(super) fn curves_job(state: &State) -> CurvesJob {
     }
 }
 
-/// Returns the job that computes the trade-off of α in the displayed condition; `None` while the
+/// Returns the job that computes the trade-off over α in the displayed condition; `None` while the
 /// settings are closed.
 pub(super) fn trade_off_job(state: &State) -> Option<TradeOffJob> {
     state.settings_session.as_ref()?;
     TradeOffJob::new(state.analysis()?, state.condition().id())
 }
 
-/// Returns the job that computes the cost of constraining or releasing each entry, in the displayed
-/// condition.
+/// Returns the job that computes what constraining or releasing each entry would cost, in the
+/// displayed condition.
 pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
     if state.is_setting_dragged() {
         return None;
@@ -80,8 +80,8 @@ pub(super) fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// Returns the job that computes the error bars; `None` while a setting is dragged, and while the results are being recomputed or
-/// are not yet drawn, so that the live analysis can use all cores.
+/// Returns the job that computes the error bars; `None` while a setting is dragged, and while the
+/// results are being recomputed or are not yet drawn, so that the live analysis can use all cores.
 pub(super) fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis()?;

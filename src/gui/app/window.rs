@@ -1,4 +1,4 @@
-//! The window: its parts, how it begins and ends, and the course of a frame ([`eframe::App::ui`]).
+//! The window: its parts, how it begins and ends, and the steps in a frame ([`eframe::App::ui`]).
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ use crate::message::Message;
 
 /// Time after which the window is drawn again while results are being computed.
 const REPAINT_AFTER: Duration = Duration::from_millis(160);
-/// Key of the preferences in eframe's storage.
+/// Key for the preferences in eframe's storage.
 pub(super) const PREFERENCES: &str = "preferences";
 
 /// The program's window.
@@ -47,7 +47,7 @@ pub struct GdcmApp {
     pub(super) ctx: Context,
     pub(super) state: State,
     pub(super) files: DocumentFiles,
-    /// Whether a file dialog of the desktop is open; there is at most one.
+    /// Whether a desktop file dialog is open; there is at most one.
     pub(super) is_dialog_open: bool,
     pub(super) postponed: PostponedActions,
     pub(super) readers: Readers,
@@ -252,7 +252,7 @@ impl eframe::App for GdcmApp {
             ctx.request_repaint();
         }
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
-            // Repaint later without an event: the marks of stale results and of running work appear
+            // Repaint later without an event: the marks for stale results and running work appear
             // after a delay.
             ctx.request_repaint_after(REPAINT_AFTER);
         }

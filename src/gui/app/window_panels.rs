@@ -1,5 +1,5 @@
-//! Arrangement of the window: bars at the top and at the foot, side panels, views in the middle,
-//! and sheets over the views.
+//! Window arrangement: bars at the top and at the foot, side panels, views in the middle, and
+//! sheets over the views.
 
 use egui::{CentralPanel, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder};
 
@@ -68,8 +68,8 @@ pub(super) fn panels_ui(
     sheets_ui(ui, centre, state, palette, commands);
 }
 
-/// Maximum height of the conditions, as a share of the left panel's height. Their height depends on
-/// the dataset alone, so that they look the same beside every view.
+/// Maximum height of the condition list, as a share of the left panel's height. The list's height
+/// depends on the dataset alone, so that it looks the same beside every view.
 const CONDITIONS_PART: f32 = 0.365;
 
 /// Draws the left panel with conditions and models, or their records, in full or as a narrow rail.
@@ -142,8 +142,8 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
-/// Draws the settings beside the rail. They take their room from the views, which are laid out once
-/// when the settings are opened, so that no value is covered while a slider is dragged.
+/// Draws the settings beside the rail. They take their space from the views, which are laid out
+/// once when the settings are opened, so that no value is covered while a slider is dragged.
 fn settings_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let frame = Frame::new().fill(palette.panel).inner_margin(Margin {
         left: 12,
@@ -214,7 +214,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands)
         }
     });
-    // A click outside closes the sheet, unless it asks for the derivation of another value.
+    // A click outside closes the sheet, unless it asks for another value's derivation.
     let asks = commands
         .iter()
         .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));

@@ -1,4 +1,4 @@
-//! Repair of a stored zoom factor with which the window would be unreadable.
+//! Repairs a stored zoom factor that would make the window unreadable.
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -8,7 +8,7 @@ use gdcm_model::message_text::{sanitized, sanitized_path};
 /// Usable zoom factors.
 const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
 
-/// Replaces an unusable zoom factor in eframe's file of preferences with 1; returns a caution about
+/// Replaces an unusable zoom factor in eframe's preferences file with 1; returns a caution about
 /// it. The file is not parsed: the number follows the first "zoom_factor:".
 pub(super) fn repair_zoom(preferences: &Path) -> Option<String> {
     const KEY: &str = "zoom_factor:";

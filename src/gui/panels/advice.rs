@@ -21,14 +21,14 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::{offered_couplings, used_couplings};
 
-/// Text of the step that uses the offered couplings.
+/// Text on the step that uses the offered couplings.
 pub(super) const USE_COUPLINGS: &str = "Use couplings";
-/// Text of the step that shows the couplings.
+/// Text on the step that shows the couplings.
 pub(super) const INSPECT: &str = "Inspect";
-/// Text of the step that opens the reasons for the result.
+/// Text on the step that opens the reasons for the result.
 const REASONS: &str = "Find the cause";
 
-/// Returns the text of the step that corrects the phase in this way.
+/// Returns the text on the step that chooses this phase correction.
 pub(super) fn phase_step_label(phase: PhaseCorrection) -> &'static str {
     match phase {
         PhaseCorrection::None => "Leave the phase",
@@ -168,7 +168,7 @@ impl Advice {
     }
 }
 
-/// "off-axis J 41→12".
+/// Formats "off-axis J 41→12".
 fn off_axis_note(cost: CorrectionCost) -> String {
     match (cost.without.others, cost.with.others) {
         (Some(without), Some(with)) => {

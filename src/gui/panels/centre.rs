@@ -1,4 +1,4 @@
-//! Middle of the window: the bar of views, the front view, perhaps a second view beside it, and the
+//! Middle of the window: the view bar, the front view, perhaps a second view beside it, and the
 //! dock below.
 
 use egui::{Stroke, Ui};

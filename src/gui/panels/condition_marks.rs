@@ -13,15 +13,15 @@ use crate::gui::widgets::controls::entries_ui;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
-/// Open tasks of a condition, and its role in the schedule.
+/// Open tasks in a condition, and its role in the schedule.
 pub(super) struct Marks {
     pub(super) condition: ConditionId,
-    /// Models suggested as outliers and not rejected.
+    /// Number of models suggested as outliers and not rejected.
     suggested: usize,
-    /// Constrained gains that are not matched.
+    /// Number of constrained gains that are not matched.
     unmatched_gains: usize,
-    /// Constrained delays that are not matched although a decision could match them. Delays that
-    /// need lead do not count while leads are not requested.
+    /// Number of constrained delays that are not matched although a decision could match them.
+    /// Delays that need lead do not count while leads are not requested.
     unmatched_delays: usize,
     pub(super) left_out: bool,
     held_out: bool,
@@ -62,7 +62,7 @@ impl Marks {
         marks
     }
 
-    /// Returns the end of the row's accessible name, which follows the flight state.
+    /// Returns the suffix that follows the flight state in the row's accessible name.
     pub(super) fn after_name(&self) -> &'static str {
         if self.held_out {
             ", held out"
@@ -162,7 +162,7 @@ impl Marks {
         }
     }
 
-    /// "3 suggested as outliers, not rejected".
+    /// Describes open tasks: "3 suggested as outliers, not rejected".
     fn open_tasks(&self) -> Vec<String> {
         let mut tasks = Vec::new();
         match self.suggested {

@@ -1,5 +1,5 @@
-//! Rows of conditions: number, mark, airspeed, and the cells of the cost map. The list and the rail
-//! lay them out differently; `cost_picture.rs` paints some of them as a picture.
+//! Condition rows: number, mark, airspeed, and cost-map cells. The list and the rail lay them out
+//! differently; `cost_picture.rs` paints some rows as a picture.
 
 use egui::{
     Align2, Color32, CornerRadius, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
@@ -24,12 +24,12 @@ use crate::gui::widgets::list_row::RowLook;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 
-/// Rows of conditions with their cells of the cost map, as laid out in the current frame.
+/// Condition rows with their cost-map cells, as laid out in the current frame.
 pub(super) struct ConditionRows<'a> {
     state: &'a State,
     classes: Classes,
     columns: Vec<CostColumn>,
-    /// Distance between the columns of cells \[pt\].
+    /// Distance between cell columns \[pt\].
     pitch: f32,
     layout: RowLayout,
     /// Whether these are the narrow rows of the rail, which do not mark the response in focus.
@@ -40,13 +40,12 @@ pub(super) struct ConditionRows<'a> {
 struct RowLayout {
     /// Right edge of the condition number.
     number_end: f32,
-    /// Centre of the mark of the flight state; `None` without marks.
+    /// Centre of the flight-state mark; `None` without marks.
     mark_center: Option<f32>,
     /// Right edge of the airspeed.
     airspeed_end: f32,
-    /// Left edge of the cells.
     cells_left: f32,
-    /// Height of the row \[pt\].
+    /// Row height \[pt\].
     height: f32,
 }
 
@@ -66,37 +65,37 @@ const RAIL: RowLayout = RowLayout {
     height: 24.0,
 };
 
-/// Maximum distance between the columns of cells \[pt\].
+/// Maximum distance between cell columns \[pt\].
 const MOST_PITCH: f32 = 26.0;
-/// Half the width of a cell \[pt\].
+/// Half a cell's width \[pt\].
 pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
 /// Minimum gap between two cells \[pt\].
 const LEAST_GAP: f32 = 3.0;
 /// Width of the frame around the cell in focus \[pt\].
 const FOCUS_WIDTH: f32 = 1.5;
-/// Height of a cell \[pt\].
+/// Cell height \[pt\].
 pub(super) const CELL_HEIGHT: f32 = 12.0;
-/// Space at the right end of a row, for the mark of open tasks \[pt\].
+/// Space at a row's right end, for the mark that shows open tasks \[pt\].
 const MARK_ROOM: f32 = 16.0;
 
 impl<'a> ConditionRows<'a> {
-    /// Lays out rows of `width` \[pt\].
+    /// Lays out rows with the given `width` \[pt\].
     pub(super) fn list(state: &'a State, width: f32) -> Self {
         Self::new(state, LIST, width - LIST.cells_left - MARK_ROOM)
     }
 
-    /// Lays out the cells of rows of `width` \[pt\] from `cells_left` on; the caller paints the rest.
+    /// Lays out the cells in rows with the given `width` \[pt\], starting at `cells_left`; the
+    /// caller paints the rest.
     pub(super) fn picture(state: &'a State, cells_left: f32, width: f32) -> Self {
         let layout = RowLayout { cells_left, ..LIST };
         Self::new(state, layout, width - cells_left)
     }
 
-    /// Returns the columns of the cost map.
     pub(super) fn columns(&self) -> &[CostColumn] {
         &self.columns
     }
 
-    /// Lays out the columns of cells within a width of `room` \[pt\].
+    /// Lays out the cell columns within a width `room` \[pt\].
     fn new(state: &'a State, layout: RowLayout, room: f32) -> Self {
         let columns = columns(state);
         let pitch = (room / columns.len().max(1) as f32).min(MOST_PITCH);
@@ -128,18 +127,18 @@ impl<'a> ConditionRows<'a> {
         }
     }
 
-    /// Returns the horizontal centre of the column at `place`.
+    /// Returns the horizontal centre of the column with index `place`.
     pub(super) fn center(&self, row: Rect, place: usize) -> f32 {
         let first = row.left() + self.layout.cells_left + self.half_width();
         first + self.pitch * place as f32
     }
 
-    /// Returns half the width of a cell \[pt\]; narrow columns leave a gap of [`LEAST_GAP`].
+    /// Returns half a cell's width \[pt\]; cells in narrow columns shrink to leave [`LEAST_GAP`]
+    /// between them.
     fn half_width(&self) -> f32 {
         HALF_CELL_WIDTH.min(0.5 * (self.pitch - LEAST_GAP))
     }
 
-    /// Returns the place of a cell.
     fn cell(&self, row: Rect, place: usize) -> Rect {
         let center = pos2(self.center(row, place), row.center().y);
         Rect::from_center_size(center, vec2(2.0 * self.half_width(), CELL_HEIGHT))
@@ -153,8 +152,8 @@ impl<'a> ConditionRows<'a> {
         cell.expand2(vec2(margin, 2.0))
     }
 
-    /// Paints the mark of a condition as in the Net gain view: the shape shows the altitude class,
-    /// the fill the weight class.
+    /// Paints a condition's mark as in the Net gain view: the shape shows the altitude class, the
+    /// fill the weight class.
     pub(super) fn paint_mark(
         &self,
         ui: &Ui,
@@ -185,7 +184,7 @@ impl<'a> ConditionRows<'a> {
         }
     }
 
-    /// Draws the headings of the columns; a right-click selects the mapped cost.
+    /// Draws the column headings; a right-click selects the mapped cost.
     pub(super) fn heads_ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let (row, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::CLICK);
         for (end, words) in [
@@ -224,7 +223,7 @@ impl<'a> ConditionRows<'a> {
         });
     }
 
-    /// Draws the row of a condition; a click shows the condition.
+    /// Draws a condition's row; a click shows the condition.
     pub(super) fn row_ui(
         &self,
         ui: &mut Ui,
@@ -354,7 +353,7 @@ fn cost_words(
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
 }
 
-/// Returns the accessible name of a row: "Condition 10: 60 kt, low altitude, high weight".
+/// Returns a row's accessible name: "Condition 10: 60 kt, low altitude, high weight".
 pub(super) fn condition_name(condition: &Condition, marks: &Marks) -> String {
     format!(
         "Condition {}: {}{}",
@@ -364,7 +363,7 @@ pub(super) fn condition_name(condition: &Condition, marks: &Marks) -> String {
     )
 }
 
-/// "60 kt, low altitude, high weight".
+/// Formats "60 kt, low altitude, high weight".
 fn flight_state_words(state: &FlightState) -> String {
     let mut words = format!("{} kt", state.airspeed_kt);
     if let Some(altitude) = &state.altitude {

@@ -1,4 +1,4 @@
-//! List of the flight conditions with a map of the remaining costs, and the key of the map.
+//! List of flight conditions with a map of the remaining costs, and the map's key.
 
 use egui::{Align2, Mesh, Rect, Sense, Ui, pos2, vec2};
 
@@ -12,8 +12,8 @@ use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{HEAT_COSTS, Palette, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws every condition with its airspeed and the remaining cost of its constrained responses; a
-/// click shows the condition.
+/// Draws every condition with its airspeed and its constrained responses' remaining cost; a click
+/// shows the condition.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Conditions, |ui| {
         let older = if state.others_are_older() {
@@ -37,10 +37,10 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     });
 }
 
-/// Height of the key, with the space below it \[pt\].
+/// Key height, with the space below it \[pt\].
 const KEY_HEIGHT: f32 = 38.0;
 
-/// Draws the key of the shades, below the list.
+/// Draws the key that explains the shades, below the list.
 fn key_ui(ui: &mut Ui, mapped: MappedCost, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), KEY_HEIGHT), Sense::hover());
     let rect = rect.with_max_y(rect.bottom() - 6.0);

@@ -1,5 +1,5 @@
 //! Values of the cost map: magnitude and phase part of J for every constrained response in every
-//! condition. With couplings, a further column has the mean over the unconstrained responses.
+//! condition. With couplings, another column has the mean over the unconstrained responses.
 //! `condition_rows.rs` paints the values as shades.
 
 use gdcm_method::fidelity::Cost;
@@ -9,16 +9,16 @@ use gdcm_study::CouplingCorrection;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
 
-/// Maximum number of constrained responses with a column each; more responses are merged into a
+/// Maximum count of constrained responses with a column each; more responses are merged into a
 /// column for each input.
 const MOST_COLUMNS: usize = 8;
 
-/// Column of the map: a constrained response, the constrained responses of an input, or all
+/// Column in the map: a constrained response, an input's constrained responses, or all
 /// unconstrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostColumn {
-    /// Short heading, which the tooltips of the cells complete: the output of the response, the
-    /// input, or "off" for the unconstrained responses, most of which are off-axis.
+    /// Short heading, completed by the cells' tooltips: the response's output, the input, or "off"
+    /// for the unconstrained responses, most of which are off-axis.
     pub head: String,
     pub pairs: Vec<Pair>,
     /// Whether the column shows the mean over its responses instead of the maximum. Every
@@ -27,8 +27,8 @@ pub struct CostColumn {
     pub is_mean: bool,
 }
 
-/// Returns the columns of the constrained responses; if the study requests couplings, also the
-/// column of the unconstrained responses, which couplings are meant to improve.
+/// Returns the columns for constrained responses; if the study requests couplings, also the column
+/// for unconstrained responses, which couplings are meant to improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = constrained_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {
@@ -79,7 +79,7 @@ fn constrained_columns(state: &State) -> Vec<CostColumn> {
     columns
 }
 
-/// Returns J of a response in a condition, for the mapped correction; `None` without a result.
+/// Returns a response's J in a condition, for the mapped correction; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     match state.display.judging.mapped_cost {
@@ -98,15 +98,14 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
     }
 }
 
-/// Cost of a column in a condition.
 pub struct ColumnCost {
-    /// Response with the greatest sum of magnitude and phase part of J.
+    /// Response with the greatest J (magnitude and phase part together).
     pub pair: Pair,
-    /// Mean or maximum over the responses, of the magnitude and the phase part separately.
+    /// Mean or maximum over the responses, taken separately for the magnitude and the phase part.
     pub cost: Cost,
 }
 
-/// Returns the cost of a column in a condition; `None` without a result.
+/// Returns a column's cost in a condition; `None` without a result.
 pub fn cost_of_column(
     state: &State,
     condition: ConditionId,

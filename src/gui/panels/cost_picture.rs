@@ -8,13 +8,13 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Maximum number of conditions in the picture of the start page.
+/// Maximum count of conditions in the picture.
 const MOST_PICTURED: usize = 12;
 
-/// Height of the headings in the picture \[pt\].
+/// Heading height in the picture \[pt\].
 pub(super) const PICTURE_HEAD: f32 = 18.0;
 
-/// Height of a row in the picture \[pt\].
+/// Row height in the picture \[pt\].
 const PICTURE_ROW: f32 = 17.0;
 
 /// Left edge of the cells in the picture \[pt\].

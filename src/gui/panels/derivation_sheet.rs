@@ -1,5 +1,6 @@
 //! Derivation of a value ("How was this computed?"): its sheet, and the labels and menus that open
-//! it. For G and D, the sheet adds the cost of constraining or releasing the response.
+//! it. For G and D, the sheet also shows how constraining or releasing the response would change
+//! the objective.
 
 use egui::{CursorIcon, Label, Response, RichText, Sense, Ui, WidgetText};
 
@@ -71,7 +72,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     });
 }
 
-/// Tabulates the symbols of the equation with their meanings.
+/// Tabulates the equation's symbols with their meanings.
 fn terms_table(found: &Derivation) -> Table {
     let mut table = Table::new("Terms of the equation", ["symbol", "meaning"]);
     for (symbol, meaning) in found.terms() {
@@ -80,7 +81,7 @@ fn terms_table(found: &Derivation) -> Table {
     table
 }
 
-/// Draws the cost of constraining or releasing the response whose derivation is shown.
+/// Draws how constraining or releasing the response would change the objective.
 fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
     let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) =
         asked
@@ -140,8 +141,8 @@ pub fn question_menu_ui(
     });
 }
 
-/// Describes the cost of constraining or releasing a response; empty until the costs of this result
-/// are computed.
+/// Describes how constraining or releasing a response would change the objective; empty until
+/// computed for this result.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();

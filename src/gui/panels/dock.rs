@@ -17,8 +17,8 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws the page of the dock, which is folded to its bar in a low window. A double click on the bar
-/// doubles its height.
+/// Draws the dock with its page; in a low window, the dock is folded to its bar. A double click on
+/// the bar doubles its height.
 pub(super) fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -69,17 +69,17 @@ pub(super) fn dock_ui(
 const FOLDED: f32 = 34.0;
 /// Minimum window height at which the dock is unfolded by default \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
-/// Height of the dock, as a share of the window's height.
+/// Dock height, as a share of the window height.
 const DOCK_PART: f32 = 0.252;
-/// Maximum height of the enlarged dock, as a share of the window's height.
+/// Maximum height of the enlarged dock, as a share of the window height.
 const MOST_PART: f32 = 0.66;
 /// Minimum height of the unfolded dock \[pt\].
 const LEAST_OPEN: f32 = 140.0;
-/// Height of the window without the dock that gives the Bode plots five ticks on each axis \[pt\]. In
+/// Window height, without the dock, that gives the Bode plots five ticks on each axis \[pt\]. In
 /// low windows the dock shrinks first.
 const REST_OF_WINDOW: f32 = 568.0;
 
-/// Returns the usual height of the unfolded dock, or the height to which it was dragged \[pt\].
+/// Returns the height to which the unfolded dock was dragged, else its default height \[pt\].
 fn usual_height(ui: &Ui, window: f32) -> f32 {
     match PanelState::load(ui.ctx(), ui.scope_id().with("dock")) {
         Some(dragged) => dragged.size().y,
@@ -87,7 +87,7 @@ fn usual_height(ui: &Ui, window: f32) -> f32 {
     }
 }
 
-/// Returns the height of the unfolded dock in a window of this height \[pt\].
+/// Returns the unfolded dock's default height for a window height \[pt\].
 fn default_height(window: f32) -> f32 {
     (DOCK_PART * window)
         .min(window - REST_OF_WINDOW)
@@ -105,7 +105,7 @@ fn present_page(state: &State, page: View) -> View {
     }
 }
 
-/// Page of the dock, whether the dock is unfolded, and whether its height is doubled.
+/// The dock's page, whether the dock is unfolded, and whether its height is doubled.
 #[derive(Clone, Copy)]
 struct Dock {
     view: View,
@@ -174,7 +174,7 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
         .asks(LayoutCommand::OpenDock(!is_open), commands);
 }
 
-/// Draws the switch between the pages of the dock, or a plain name if there is only one.
+/// Draws the switch between the dock's pages, or a plain name if there is only one.
 fn dock_pages_ui(
     ui: &mut Ui,
     state: &State,

@@ -1,9 +1,9 @@
-//! The export dialog: formats; what is exported, and where to; the files with the head of each,
-//! above what they omit or approximate. The writers find the latter in a dry run; this dialog has
-//! no text of its own for it.
+//! The export dialog: formats; what is exported, and where to; the files with the first lines of
+//! the selected one, above what they omit or approximate. A dry run of the writers supplies the
+//! texts about omissions; this dialog has none of its own.
 //!
-//! Wide windows have three columns. In narrow ones, formats and options share a column that
-//! scrolls; both lists remain.
+//! Wide windows have three columns. In narrow windows, formats and options share a column that
+//! scrolls.
 
 mod files;
 mod options;
@@ -28,19 +28,19 @@ use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Largest size \[pt\].
+/// Maximum size \[pt\].
 const LARGEST: Vec2 = vec2(1028.0, 616.0);
-/// Room \[pt\] between the dialog and the edges of the window, on each side.
+/// Minimum distance between the dialog and the window edges, on each side \[pt\].
 const MARGIN: f32 = 24.0;
-/// Heights of the title and of the line with the buttons \[pt\].
+/// Heights of the title line and the button line \[pt\].
 const HEAD: f32 = 45.0;
 const FOOT: f32 = 52.0;
-/// Height of the line with an error \[pt\].
+/// Height of an error line \[pt\].
 const ERROR: f32 = 30.0;
-/// Padding of the columns \[pt\].
+/// Column padding \[pt\].
 const PADDING: f32 = 20.0;
-/// Widths of the formats and of the options in wide windows, and of their common column in narrow
-/// ones \[pt\].
+/// Widths for formats and options in wide windows, and for their common column in narrow windows
+/// \[pt\].
 const FORMATS: f32 = 232.0;
 const OPTIONS: f32 = 306.0;
 const SHARED: f32 = 330.0;
@@ -138,7 +138,7 @@ fn column_ui(ui: &mut Ui, name: &str, place: Rect, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Draws the title, the origin of the corrections, and the button that closes the dialog.
+/// Draws the title, the dataset name, and the button that closes the dialog.
 fn head_ui(
     ui: &mut Ui,
     place: Rect,
@@ -239,7 +239,7 @@ fn foot_ui(
     });
 }
 
-/// Draws a dim label at the left of a line of `width`, and a control at its right.
+/// Draws a line `width` wide, with a dim label at the left and a control at the right.
 fn labelled_ui(
     ui: &mut Ui,
     label: &str,

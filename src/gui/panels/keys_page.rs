@@ -50,7 +50,7 @@ impl KeyRow {
     }
 }
 
-/// Returns the keys of the command table; " *" marks keys that work only without focus.
+/// Returns the keys in the command table; " *" marks keys that work only without focus.
 fn command_keys(ctx: &Context, state: &State) -> Vec<KeyRow> {
     let mut rows = Vec::new();
     for entry in command_table(state) {

@@ -1,4 +1,4 @@
-//! Licences of the libraries in the program, as a text to scroll.
+//! Licences of the program's libraries, as a scrollable text.
 
 use std::sync::LazyLock;
 
@@ -10,12 +10,12 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::widgets::palette::SMALL_SIZE;
 use crate::licences;
 
-/// Width of the longest line.
+/// Width of the longest line \[pt\].
 const WIDTH: f32 = 720.0;
-/// Height of the form besides the text.
+/// Height of the form without the text \[pt\].
 const OTHER_HEIGHT: f32 = 160.0;
 
-/// Lines of the text; only those that are visible are laid out.
+/// Text lines; only visible lines are laid out.
 static LINES: LazyLock<Vec<&str>> = LazyLock::new(|| licences::TEXT.lines().collect());
 
 /// Draws the licences; Page up, Page down, Home and End scroll them.
@@ -42,7 +42,7 @@ pub(super) fn licences_ui(form: &mut Form<'_, '_>) {
     form.button_ui("Close", true, FormCommand::ShowForm(None));
 }
 
-/// Scrolls by a page or to an end of the text.
+/// Scrolls by a page, or to the start or end of the text.
 fn scroll_with_keys(ui: &Ui, page: f32, whole: f32) {
     for (key, distance) in [
         (Key::PageDown, -page),

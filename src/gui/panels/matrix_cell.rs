@@ -1,5 +1,5 @@
-//! Cell of the constraint matrix: G and D of a response, each above its part of J; the box that
-//! holds the response; tooltip and menu.
+//! Cell in the constraint matrix: a response's G and D, each above its part of J; the box that
+//! constrains the response; tooltip and menu.
 
 use egui::{
     Align2, Color32, FontId, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui,
@@ -30,7 +30,7 @@ use crate::gui::widgets::controls::{entries_ui, named_switch, tooltip_left_of};
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
-/// Size of the box that constrains or releases a response \[pt\].
+/// Side of the box that constrains or releases a response \[pt\].
 const HOLD_BOX_SIZE: f32 = 13.0;
 /// Margin around the box that also reacts to the pointer \[pt\].
 const HOLD_BOX_MARGIN: f32 = 2.0;
@@ -38,15 +38,15 @@ const HOLD_BOX_MARGIN: f32 = 2.0;
 /// J at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
 
-/// Place of the matrix in the panel.
+/// The matrix's area in the panel.
 #[derive(Clone, Copy)]
 pub(super) struct MatrixPlace {
     pub(super) visible: Rect,
-    /// Whether the card of the focused response is below the matrix.
+    /// Whether the focused response's card is below the matrix.
     pub(super) has_card: bool,
 }
 
-/// Cell of a response.
+/// Matrix cell for a response, with the facts that determine its look.
 pub(super) struct Cell<'a> {
     pair: Pair,
     name: String,
@@ -55,14 +55,14 @@ pub(super) struct Cell<'a> {
     constrained: bool,
     /// Whether the response has weight in the objective.
     fitted: bool,
-    /// Whether the gain constraint of the response conflicts with others.
+    /// Whether the response's gain constraint conflicts with others.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
     value_uncertainty: ValueUncertainty<'a>,
-    /// Whether the card of the focused response is visible.
+    /// Whether the focused response's card is visible.
     has_card: bool,
-    /// Place of the matrix, which the tooltip does not cover.
+    /// Matrix area, which the tooltip does not cover.
     matrix: Rect,
 }
 
@@ -126,14 +126,14 @@ impl<'a> Cell<'a> {
             commands.push(SelectionCommand::FocusPair(self.pair).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
-        // The card below the matrix shows the same rows of the focused response.
+        // The card below the matrix shows the same rows for the focused response.
         if !(self.focused && self.has_card) {
             tooltip_left_of(&response, self.matrix, |ui| self.tooltip_ui(ui, palette));
         }
     }
 
-    /// Draws the box that constrains or releases the response, at the end of the G line; visible
-    /// under the pointer.
+    /// Draws the box that constrains or releases the response, at the end of the G line; it is
+    /// visible while the pointer is on the cell.
     fn hold_box_ui(
         &self,
         ui: &mut Ui,
@@ -250,7 +250,7 @@ impl<'a> Cell<'a> {
                 before: change.uncorrected.magnitude,
                 after: change.corrected.magnitude,
             }),
-            // Under the pointer, the error bar makes room for the box that holds the response.
+            // Under the pointer, the box that constrains the response takes the error bar's place.
             end_room: if is_pointed {
                 HOLD_BOX_SIZE + 2.0 * HOLD_BOX_MARGIN
             } else {
@@ -331,8 +331,8 @@ impl<'a> Cell<'a> {
         sign_reversal_entry(self.state, channel, role)
     }
 
-    /// Draws four aligned rows. The derivation of every value is in the submenu
-    /// [`QUESTION`](crate::gui::plot::questions::QUESTION) of the cell's menu.
+    /// Draws four aligned rows. The submenu [`QUESTION`](crate::gui::plot::questions::QUESTION) in
+    /// the cell's menu leads to the derivation of every value.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {
@@ -360,9 +360,8 @@ struct CellValue {
     half: Rect,
     text: String,
     font: FontId,
-    /// Half-width of the error bar: "±12".
+    /// Error bar's half-width: "±12".
     bar: Option<String>,
-    /// Colour of the half-width.
     bar_color: Color32,
     underline: Option<CostParts>,
     /// Space reserved at the right end \[pt\].
@@ -393,7 +392,7 @@ impl CellValue {
     }
 }
 
-/// Paints the part of J before the correction (pale) and after it (orange if a part above 1 has not
+/// Paints a part of J before the correction (pale) and after it (orange if a part above 1 has not
 /// decreased by at least 0.1).
 fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
     paint_cost_bar(ui, half, parts.before, palette.quiet_mark);

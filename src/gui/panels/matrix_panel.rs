@@ -1,5 +1,5 @@
-//! Constraint matrix: the channel names and the cells of all responses; outputs are rows, inputs
-//! are columns. `matrix_cell.rs` draws a cell.
+//! Constraint matrix: channel names and a cell for each response; outputs are rows, inputs are
+//! columns. `matrix_cell.rs` draws a cell.
 
 use std::collections::BTreeSet;
 
@@ -28,9 +28,9 @@ const MOST_CELL_HEIGHT: f32 = 44.0;
 const GAP: f32 = 3.0;
 /// Minimum distance between the left edges of two cells \[pt\].
 const LEAST_CELL_WIDTH: f32 = 58.0;
-/// Width of the output names beside the rows \[pt\].
+/// Width for the output names beside the rows \[pt\].
 const ROW_LABEL_WIDTH: f32 = 28.0;
-/// Height of the input names above the columns \[pt\].
+/// Height for the input names above the columns \[pt\].
 const HEADER_HEIGHT: f32 = 20.0;
 
 /// Space for the matrix with its title.
@@ -38,7 +38,7 @@ const HEADER_HEIGHT: f32 = 20.0;
 pub struct MatrixSpace {
     /// Height \[pt\].
     pub height: f32,
-    /// Whether the card of the focused response is below the matrix.
+    /// Whether the focused response's card is below the matrix.
     pub has_card: bool,
 }
 
@@ -77,7 +77,7 @@ pub fn matrix_ui(
     });
 }
 
-/// Draws the key of the underlines, laid out from right to left.
+/// Draws the key that explains the underlines, laid out from right to left.
 fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     let mut right = row.right();
     for (words, color) in [
@@ -103,11 +103,11 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     }
 }
 
-/// Layout of the cells and of the channel names above and beside them \[pt\].
+/// Layout of cells and channel names \[pt\].
 struct CellGrid {
     /// Visible height.
     room: f32,
-    /// Whether the card of the focused response is below the matrix.
+    /// Whether the focused response's card is below the matrix.
     has_card: bool,
     cell_height: f32,
 }
@@ -175,9 +175,9 @@ impl CellGrid {
     }
 }
 
-/// Places of cells and names on the screen; outputs are rows, inputs are columns.
+/// Screen positions of cells and names; outputs are rows, inputs are columns.
 struct CellPlaces {
-    /// Area of all cells with the names above and beside them.
+    /// Area with all cells and names.
     area: Rect,
     /// Distance between the left edges of two cells \[pt\].
     column_pitch: f32,
@@ -202,13 +202,13 @@ impl CellPlaces {
         )
     }
 
-    /// Centre of an input name.
+    /// Returns the centre of an input name on the screen.
     fn input_name(&self, input: usize) -> Pos2 {
         let center = self.left(input) + 0.5 * (self.column_pitch - GAP);
         pos2(center, self.area.top() + 0.5 * HEADER_HEIGHT)
     }
 
-    /// Right end of an output name.
+    /// Returns the right end of an output name on the screen.
     fn output_name(&self, output: usize) -> Pos2 {
         let right = self.area.left() + ROW_LABEL_WIDTH - 8.0;
         pos2(right, self.top(output) + 0.5 * self.cell_height)
@@ -244,8 +244,8 @@ impl ChannelName<'_> {
     }
 }
 
-/// Returns the responses and channels of conflicting gain constraints, and the channels whose sign
-/// or unit is doubtful.
+/// Returns the responses and channels with conflicting gain constraints, and the channels whose
+/// sign or unit is doubtful.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let mut pairs = BTreeSet::new();
     let mut channels = BTreeSet::new();

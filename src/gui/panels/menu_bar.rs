@@ -197,7 +197,7 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         .asks(LayoutCommand::SetTheme(other), commands);
 }
 
-/// Draws the names of dataset and study in the middle of the bar, if they fit.
+/// Draws dataset and study name in the middle of the bar, if they fit.
 fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette) {
     let edited = if state.unsaved { " · edited" } else { "" };
     let study = format!("{}{edited}", state.study_name);

@@ -54,7 +54,7 @@ fn bar_sentence(bar: &MessageBar) -> String {
     }
 }
 
-/// States the interrupted work, that the decisions are kept, and the details to send.
+/// States which work was interrupted, that the decisions are kept, and which details to send.
 fn fault_sentence(report: &FaultReport) -> String {
     let FaultReport {
         work,
@@ -68,7 +68,8 @@ fn fault_sentence(report: &FaultReport) -> String {
     )
 }
 
-/// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not saved."
+/// Formats "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were
+/// not saved."
 fn recovery_sentence(offer: &RecoveryOffer) -> String {
     let study = match &offer.study {
         Some(name) => format!(" (study {name})"),

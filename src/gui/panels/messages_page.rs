@@ -1,4 +1,4 @@
-//! The messages of the session, newest first: readable and copyable after their toasts are gone.
+//! Messages since the start, newest first: readable and copyable after their toasts are gone.
 
 use egui::{Label, RichText, ScrollArea};
 
@@ -8,7 +8,7 @@ use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::notices::{Notice, NoticeKind, Notices};
 use crate::gui::widgets::palette::SMALL_SIZE;
 
-/// Draws the messages of the session.
+/// Draws all messages since the start.
 pub(super) fn messages_ui(form: &mut Form<'_, '_>, notices: &Notices) {
     form.title("Messages of this session");
     let messages = notices.messages();

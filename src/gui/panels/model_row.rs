@@ -1,4 +1,4 @@
-//! Row in the list of a bundle: box, star, trim or name, discontinuity ratio or order.
+//! Row in a bundle's list: box, star, trim or name, discontinuity ratio or order.
 
 use egui::{Checkbox, Grid, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -27,7 +27,7 @@ const FULL_RATIO: f64 = 4.0;
 /// Full bar length \[pt\].
 const FULL_BAR: f32 = 38.0;
 
-/// Returns the bar length of a discontinuity ratio \[pt\].
+/// Returns the bar length for a discontinuity ratio \[pt\].
 fn bar_length(ratio: f64) -> f32 {
     FULL_BAR * (ratio / FULL_RATIO).clamp(0.0, 1.0) as f32
 }
@@ -50,7 +50,7 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// Model of the displayed condition, as its row shows it.
+/// Model in the displayed condition, as its row shows it.
 pub(super) struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
@@ -371,8 +371,9 @@ impl<'a> ModelRow<'a> {
         );
     }
 
-    /// Draws the name above at most five aligned rows. The derivation of every value is in the
-    /// submenu [`QUESTION`](crate::gui::plot::questions::QUESTION) of the row's menu.
+    /// Draws the name above at most five aligned rows. The submenu
+    /// [`QUESTION`](crate::gui::plot::questions::QUESTION) in the row's menu leads to the
+    /// derivation of every value.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")

@@ -1,4 +1,4 @@
-//! Bundles of the displayed condition: kept models, representatives, suspected outliers.
+//! Bundles in the displayed condition: kept models, representatives, suspected outliers.
 
 use egui::{Align, Label, Layout, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
@@ -19,7 +19,7 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws the bundles of the displayed condition in the left panel: the physics models above, the
+/// Draws the displayed condition's bundles in the left panel: the physics models above, the
 /// identified models in a foldable part below.
 pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Models, |ui| {
@@ -75,7 +75,7 @@ pub fn bundle_sheet_ui(
     });
 }
 
-/// Height of the fold line above the identified models \[pt\].
+/// Height of the line that folds the identified models \[pt\].
 const FOLD: f32 = 36.0;
 
 fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -125,7 +125,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                     .on_hover_text(hint)
                     .asks(Edit::reject_physics(condition, &open), commands);
             }
-            // The text has the room that the buttons leave.
+            // The text takes the width that the buttons leave.
             let text = if open.is_empty() {
                 palette.small(&words)
             } else {
@@ -185,7 +185,7 @@ fn fold_ui(
     response.asks(LayoutCommand::ShowIdentified(!is_open), commands);
 }
 
-/// Returns the order of the identified representative; `None` without a result, or for a measured
+/// Returns the identified representative's order; `None` without a result, or for a measured
 /// response.
 fn representative_order(state: &State) -> Option<usize> {
     let name = state.shown()?.representative_name(BundleKind::Identified);

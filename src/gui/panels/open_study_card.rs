@@ -1,4 +1,5 @@
-//! Card of the open study on the start page: name, picture of its results, way back to it.
+//! Card about the open study on the start page: name, picture of its results, and the button that
+//! returns to it.
 
 use egui::{Button, Frame, Margin, RichText, Sense, Stroke, Ui, vec2};
 

@@ -12,11 +12,11 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, Forms, RequirementTable};
 use crate::gui::state::window_state::State;
 
-/// Texts of a form that asks for a path.
+/// Texts in a form that asks for a path.
 struct PathWords {
     kind: FormKind,
     title: &'static str,
-    /// Accessible name of the field.
+    /// Accessible name for the field.
     field: &'static str,
     /// Placeholder in the empty field.
     hint: &'static str,
@@ -26,7 +26,7 @@ struct PathWords {
     submit: &'static str,
 }
 
-/// Every form that asks for a path and for at most one choice.
+/// Texts for every form that asks for a path, and for at most one choice.
 const PATHS: [PathWords; 10] = [
     PathWords {
         kind: FormKind::Open,
@@ -143,7 +143,7 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
     *forms.typed_in(kind) = path;
 }
 
-/// Returns the title, with the name of the table or view to be saved.
+/// Returns the title, which names the table or view to be saved.
 fn title(words: &PathWords, forms: &Forms) -> String {
     match (words.kind, &forms.table, forms.figure) {
         (FormKind::SaveTable, Some(table), _) => {

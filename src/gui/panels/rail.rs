@@ -67,7 +67,7 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     });
 }
 
-/// Returns the button that opens the records of the displayed condition.
+/// Returns the button that opens the displayed condition's records.
 fn records_button(state: &State) -> BundleButton {
     let counts = state.condition_fit(state.condition().id()).counts;
     BundleButton {
@@ -103,9 +103,9 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
 /// Button in the rail that opens a list in a sheet.
 struct BundleButton {
     name: &'static str,
-    /// "16 of 19"; for records, "8 + 1".
+    /// Kept and total model count, "16 of 19"; for records, fitted and held-out count, "8 + 1".
     kept: String,
-    /// Models suggested as outliers and not rejected.
+    /// Number of models suggested as outliers and not rejected.
     suggested: usize,
     sheet: Sheet,
 }

@@ -64,7 +64,7 @@ pub fn coupling_remarks(state: &State) -> Vec<CouplingRemark> {
 struct Cause {
     title: &'static str,
     symptom: &'static str,
-    /// Channels whose median lags tell the cause from others.
+    /// Channels whose median lags distinguish this cause from others.
     compares: Option<ChannelKind>,
     /// View that shows the symptom.
     view: View,
@@ -104,7 +104,7 @@ const CAUSES: [Cause; 4] = [
     },
 ];
 
-/// Draws the reasons below the verdict, in place of result and matrix, so that no plot to which they
+/// Draws the reasons below the verdict, instead of result and matrix, so that no plot to which they
 /// point is covered. Escape closes them.
 pub fn reasons_inspector_ui(
     ui: &mut Ui,
@@ -184,8 +184,9 @@ fn causes_ui(
     }
 }
 
-/// Returns "LON 66": each input or output with the median lag of the physics representative in its
-/// responses, in whole milliseconds; channels without a defined lag are omitted.
+/// Returns entries such as "LON 66": an input or output, and the physics representative's median
+/// lag over the channel's responses, in whole milliseconds; channels without a defined lag are
+/// omitted.
 fn channel_lags(state: &State, shown: &ConditionAnalysis, kind: ChannelKind) -> Vec<String> {
     let dataset = state.dataset();
     let channels = match kind {
@@ -227,7 +228,7 @@ fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &
     ui.label(palette.dim(format!("{words} Gap {:.0e}.", outcome.gap())));
 }
 
-/// Draws remarks as sentences, each with the buttons of its possible actions.
+/// Draws remarks as sentences, each with buttons for possible actions.
 fn remarks_ui(
     ui: &mut Ui,
     state: &State,
@@ -262,7 +263,7 @@ fn remarks_ui(
     }
 }
 
-/// Tooltip of a button that decides for every condition.
+/// Tooltip on a button that decides for every condition.
 const EVERYWHERE: &str = "In every condition; can be undone";
 
 fn objective_ui(
@@ -309,7 +310,7 @@ fn objective_ui(
     });
 }
 
-/// Draws the lead in each constrained response and the price of each filter.
+/// Draws the lead in each constrained response and each filter's price.
 fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
     if shown.compensated.is_none() {
         return;
@@ -326,7 +327,7 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
         });
 }
 
-/// Draws the off-axis benefit of worthwhile couplings, and the button that uses them.
+/// Draws the off-axis benefit from worthwhile couplings, and the button that uses them.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((assessment, _)) = offered_couplings(state) else {
         return;

@@ -1,4 +1,4 @@
-//! List of the conditions while the view *Records* is in front: records, fit and its state.
+//! Condition list while the view *Records* is in front: record counts, fit costs and fit state.
 
 use egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -22,15 +22,14 @@ use crate::gui::widgets::window_regions::{Region, region_ui};
 /// Positions in a row \[pt from its left edge\].
 struct Columns {
     number_end: f32,
-    /// Centre of the mark of the flight state; `None` in the rail.
+    /// Centre of the flight-state mark; `None` in the rail.
     mark_center: Option<f32>,
     airspeed_end: f32,
-    /// Right edges of the numbers of records and of χ²/dof of the fitted records; `None` in the
-    /// rail.
+    /// Right edges of the record counts and of χ²/dof for fitted records; `None` in the rail.
     records_end: Option<f32>,
     cost_end: Option<f32>,
     held_out_end: f32,
-    /// Left edge of the state of the fit.
+    /// Left edge of the fit state.
     status_left: f32,
     height: f32,
 }
@@ -57,7 +56,7 @@ const RAIL: Columns = Columns {
     height: 24.0,
 };
 
-/// Draws every condition with its records and the state of its fit; a click shows the condition.
+/// Draws every condition with its record counts and its fit state; a click shows the condition.
 pub fn record_conditions_ui(
     ui: &mut Ui,
     state: &State,
@@ -85,7 +84,7 @@ pub fn record_conditions_ui(
     });
 }
 
-/// Draws the conditions as a narrow strip: number, airspeed, χ²/dof of the held-out records.
+/// Draws the conditions as a narrow strip: number, airspeed, χ²/dof for the held-out records.
 pub(super) fn record_rail_rows_ui(
     ui: &mut Ui,
     state: &State,
@@ -153,7 +152,6 @@ fn rows_ui(
     }
 }
 
-/// Row of a condition.
 struct RecordsRow<'a> {
     state: &'a State,
     condition: &'a Condition,
@@ -215,7 +213,7 @@ impl RecordsRow<'_> {
         painted_text(ui, upto, AT_RIGHT_END, words, body(), color);
     }
 
-    /// Paints numbers of records and costs; outdated numbers are dim.
+    /// Paints record counts and costs; outdated numbers are dim.
     fn paint_fit(&self, ui: &Ui, row: Rect, palette: &Palette) {
         let columns = self.columns;
         let counts = self.fit.counts;
@@ -250,7 +248,7 @@ impl RecordsRow<'_> {
         self.paint_cell(ui, row, columns.held_out_end, &words, color(is_bad));
     }
 
-    /// Paints the state of the fit: ✓, ⚠ with a count, progress, "queued", "outdated".
+    /// Paints the fit state: ✓, ⚠ with a count, progress, "queued", "outdated".
     fn paint_status(&self, ui: &Ui, row: Rect, palette: &Palette) {
         let left = self.columns.status_left;
         let is_rail = self.columns.records_end.is_none();
@@ -299,7 +297,6 @@ impl RecordsRow<'_> {
     }
 }
 
-/// Paints a tick.
 fn paint_tick(ui: &Ui, center: egui::Pos2, color: Color32) {
     let corners = [vec2(-3.5, 0.2), vec2(-1.0, 2.8), vec2(3.5, -2.8)];
     let points = corners.map(|corner| center + corner).to_vec();
@@ -322,7 +319,7 @@ fn paint_progress(ui: &Ui, center: egui::Pos2, percent: usize, palette: &Palette
         .add(Shape::line(points, Stroke::new(2.0, palette.accent)));
 }
 
-/// Describes the state of the fit, for the tooltip.
+/// Describes the fit state, for the tooltip.
 fn status_words(fit: &ConditionFit) -> String {
     match fit.status {
         FitStatus::None if fit.counts.fitted + fit.counts.held_out == 0 => {

@@ -7,7 +7,7 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::WantedDataset;
 use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
-/// Maximum number of listed record columns.
+/// Maximum count of listed record columns.
 const MOST_COLUMNS: usize = 60;
 
 /// Draws the form for a new dataset from the open records: channels, band, path.
@@ -83,7 +83,7 @@ fn wide_field_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool
     is_entered(ui, &field)
 }
 
-/// "columns: time, gyro_x, gyro_y, and 12 more".
+/// Formats "columns: time, gyro_x, gyro_y, and 12 more".
 fn column_words(columns: &[String]) -> String {
     let shown = &columns[..columns.len().min(MOST_COLUMNS)];
     let mut words = format!("columns: {}", shown.join(", "));

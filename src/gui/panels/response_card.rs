@@ -1,4 +1,4 @@
-//! Card of the focused response: required corrections, remaining errors, error bars.
+//! Card about the focused response: required corrections, remaining errors, error bars.
 
 use egui::{Grid, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 
@@ -18,7 +18,7 @@ pub const CARD_HEIGHT: f32 = 104.0;
 /// Row height \[pt\].
 const ROW: f32 = 18.0;
 
-/// Row of the card: a quantity, its required or initial value, the remaining value, and the error
+/// Row in the card: a quantity, its required or initial value, the remaining value, and the error
 /// bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardRow {
@@ -27,13 +27,13 @@ pub struct CardRow {
     pub wants: String,
     /// Gain error, delay error or J that remains after the correction.
     pub left: String,
-    /// Half-width of the error bar, with its unit.
+    /// Error bar's half-width, with its unit.
     pub half: String,
     /// Whether the correction has hardly reduced the value; always false for the gain.
     pub is_missed: bool,
 }
 
-/// Returns the rows of a response: gain, delay, and both parts of J.
+/// Returns the rows for a response: gain, delay, and both parts of J.
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
     let value_uncertainty = state.painted_uncertainty();
     let mut rows = Vec::new();
@@ -81,7 +81,7 @@ fn cost_row(name: &'static str, before: f64, after: f64) -> CardRow {
     }
 }
 
-/// "56.3 ms".
+/// Formats "56.3 ms".
 fn milliseconds(value: f64) -> String {
     format!("{} ms", decimals(value, 1))
 }
@@ -91,7 +91,7 @@ pub(super) fn is_not_reduced(before: f64, after: f64) -> bool {
     after > 1.0 && after > before - 0.1
 }
 
-/// Draws the card of the focused response.
+/// Draws the focused response's card.
 pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), CARD_HEIGHT), Sense::hover());
     ui.painter().rect_stroke(
@@ -110,8 +110,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let title = format!("{}, {held}", state.dataset().pair_name(pair));
     let title_line = card_line(inner, 0);
     painted_text(ui, title_line, 0.0, &title, medium(BODY_SIZE), palette.text);
-    // Distances of the text ends from the right edge; negative, because the text is aligned to the
-    // right.
+    // Distances from the right edge to the text ends; negative, because the text is right-aligned.
     let ends = [inner.width() * 0.54, inner.width() * 0.78, inner.width()]
         .map(|end| end - inner.width() + AT_RIGHT_END);
     let level = state
@@ -142,7 +141,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     }
 }
 
-/// Returns the rectangle of a row; row 0 is the title.
+/// Returns a row's rectangle; row 0 is the title.
 fn card_line(inner: Rect, row: usize) -> Rect {
     Rect::from_min_size(
         inner.min + vec2(0.0, ROW * row as f32),
@@ -150,7 +149,7 @@ fn card_line(inner: Rect, row: usize) -> Rect {
     )
 }
 
-/// Draws the rows of the card in a tooltip.
+/// Draws the card's rows in a tooltip.
 pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
     let Some(shown) = state.shown() else { return };
     Grid::new("card")

@@ -26,15 +26,15 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Row height \[pt\].
 const ROW: f32 = 18.0;
-/// Right edge of the gains, as a share of the width of a side.
+/// Right edge of the gains, as a share of the side's width.
 const GAIN_END: f32 = 0.5;
-/// Right edge of the delays, as a share of the width of a side.
+/// Right edge of the delays, as a share of the side's width.
 const DELAY_END: f32 = 0.85;
 
-/// Opacity of error bars of earlier settings.
+/// Opacity of error bars that belong to earlier settings.
 pub(super) const OLDER: f32 = 0.5;
 
-/// Draws gain and delay of every channel; in a low window only the smallest and the largest gain.
+/// Draws every channel's gain and delay; in a low window only the smallest and the largest gain.
 pub fn result_ui(
     ui: &mut Ui,
     state: &State,
@@ -93,8 +93,7 @@ pub fn result_ui(
     outputs.ui(ui, commands);
 }
 
-/// Returns the height of the heading and of the rows of all channels, reserved without a result too
-/// \[pt\].
+/// Returns the height for the heading and all channel rows, reserved without a result too \[pt\].
 fn rows_height(state: &State) -> f32 {
     let dataset = state.dataset();
     let rows = dataset.inputs().len().max(dataset.outputs().len());
@@ -136,7 +135,7 @@ fn proof_ui(
         .asks(LayoutCommand::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
-/// Channels of one side: inputs on the left, or outputs on the right.
+/// Channels on one side: inputs on the left, or outputs on the right.
 #[derive(Clone, Copy)]
 struct Side<'a> {
     is_input_side: bool,
@@ -148,14 +147,14 @@ struct Side<'a> {
 
 /// A channel's gain or delay.
 struct ChannelValue {
-    /// Right edge, as a share of the row's width.
+    /// Right edge, as a share of the row width.
     end: f32,
     text: String,
     font: FontId,
     color: Color32,
-    /// Half-width of the error bar: "±12".
+    /// Error bar's half-width: "±12".
     half: Option<String>,
-    /// Value at the opening of the settings, if its text has changed since.
+    /// Value when the settings were opened, if its text has changed since.
     was: Option<String>,
     /// Accessible name.
     name: String,
@@ -231,7 +230,7 @@ impl Side<'_> {
         changed
     }
 
-    /// Returns the text of a value at the opening of the settings, unless it equals `text`.
+    /// Returns a value's text when the settings were opened, unless it equals `text`.
     fn was(
         &self,
         text: &str,
@@ -304,7 +303,7 @@ impl Side<'_> {
         }
     }
 
-    /// Draws a value with the half-width of its error bar; a click opens its derivation.
+    /// Draws a value with its error bar's half-width; a click opens its derivation.
     fn value_ui(&self, ui: &mut Ui, row: Rect, value: ChannelValue, commands: &mut Vec<Command>) {
         let ChannelValue {
             text,
@@ -349,7 +348,7 @@ impl Side<'_> {
     }
 }
 
-/// Returns "Gain of LON: 1.059 was 1.023", or with the half-width of the error bar instead.
+/// Returns "Gain of LON: 1.059 was 1.023", or the same with the error bar's half-width instead.
 fn accessible_name(name: &str, text: &str, was: Option<&str>, half: Option<&str>) -> String {
     match (was, half) {
         (Some(was), _) => format!("{name}: {text} was {was}"),
@@ -385,8 +384,7 @@ fn delay_text_of(result: &ConditionAnalysis, channel: Channel) -> String {
     decimals(delay_ms, digits)
 }
 
-/// Paints right-aligned text that ends at the share `end` of the row's width; returns its
-/// rectangle.
+/// Paints right-aligned text that ends at the share `end` of the row width; returns its rectangle.
 fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: Color32) -> Rect {
     painted_text(
         ui,

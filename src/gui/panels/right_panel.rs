@@ -1,5 +1,5 @@
-//! Right side of the window, from top to bottom: verdict, result, constraint matrix, card of the
-//! focused response, settings line, export.
+//! Right side of the window, from top to bottom: verdict, result, constraint matrix, focused
+//! response's card, settings line, export.
 
 use egui::{Align2, Button, Frame, Margin, Panel, Rect, RichText, Role, Sense, Ui, pos2, vec2};
 
@@ -34,9 +34,9 @@ use crate::gui::widgets::window_regions::{Region, region_ui};
 const PADDING: f32 = 12.0;
 /// Settings line height \[pt\].
 const LINE: f32 = 36.0;
-/// Height of the export row \[pt\].
+/// Export row height \[pt\].
 const FOOT: f32 = 48.0;
-/// Minimum window height that shows the card of the focused response \[pt\].
+/// Minimum window height that shows the focused response's card \[pt\].
 const LEAST_WITH_CARD: f32 = 860.0;
 /// Minimum window height that shows the full result; in lower windows the result takes a single
 /// line \[pt\].
@@ -64,7 +64,7 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The width is fixed here, so that wide content of one part does not widen the next part.
+        // The width is fixed here, so that wide content in one part does not widen the next part.
         let width = ui.available_width();
         let is_wide = state.display.layout.is_wide;
         region_ui(ui, Region::Verdict, |ui| {
@@ -157,15 +157,14 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     response.on_hover_text(format!("{words}\n{action} with Ctrl+comma"));
 }
 
-/// Part of the settings line.
 struct LinePart {
     text: String,
-    /// Whether one of its settings has changed since the settings were opened.
+    /// Whether any of the part's settings has changed since the settings were opened.
     is_changed: bool,
 }
 
 impl LinePart {
-    /// Creates the part for some settings, and removes these from the `changed` settings.
+    /// Creates the part for `settings`, and removes these from the `changed` settings.
     fn new(text: String, settings: &[&Setting], changed: &mut Vec<&'static Setting>) -> Self {
         let before = changed.len();
         changed.retain(|setting| !settings.contains(setting));
@@ -176,7 +175,7 @@ impl LinePart {
     }
 }
 
-/// Returns the parts "α 1", "0.5–12 rad/s", "delays", "representatives", and the number of other
+/// Returns the parts "α 1", "0.5–12 rad/s", "delays", "representatives", and the count of other
 /// changed settings.
 fn settings_parts(state: &State) -> Vec<LinePart> {
     let settings = &state.study.settings;

@@ -1,4 +1,4 @@
-//! Settings beside live results: a control for each row of the settings table. The panel replaces
+//! Settings beside live results: a control for each row in the settings table. The panel replaces
 //! the model list, so that verdict, result, matrix and plots keep their places.
 
 use egui::{Button, Grid, Label, Rect, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
@@ -21,18 +21,18 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Height of the heading \[pt\].
+/// Heading height \[pt\].
 const HEAD: f32 = 30.0;
-/// Height of the foot, which shows either *Revert* or the explanation of the control under the
-/// pointer \[pt\].
+/// Foot height \[pt\]. The foot shows either *Revert* or the explanation for the control under the
+/// pointer.
 const FOOT: f32 = 60.0;
 /// Distance between two settings \[pt\].
 const GAP: f32 = 7.0;
-/// Room at the right for the scroll bar \[pt\].
+/// Width at the right for the scroll bar \[pt\].
 const SCROLL_BAR: f32 = 6.0;
 
-/// Draws every setting that is not part of a view: first the frequently changed settings, then the
-/// others in a foldable part.
+/// Draws every setting that does not belong to a view: first the frequently changed settings, then
+/// the others in a foldable part.
 pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     region_ui(ui, Region::Settings, |ui| {
@@ -65,7 +65,7 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     });
 }
 
-/// Draws the heading with the number of changed settings, and the button that closes the panel.
+/// Draws the heading with the count of changed settings, and the button that closes the panel.
 fn head_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let row = ui.max_rect();
     painted_text(ui, row, 0.0, "Settings", medium(BODY_SIZE), palette.text);
@@ -92,7 +92,8 @@ fn is_frequent(line: &Line) -> bool {
     matches!(place, Place::Slider | Place::Top) || *line[0] == setting_table::BAND
 }
 
-/// Returns the place of a line among the frequent settings: sliders, segmented controls, others.
+/// Returns a line's rank among the frequent settings: sliders first, then segmented controls, then
+/// others.
 fn rank(line: &Line) -> usize {
     match line[0].control.place {
         Place::Slider => 0,
@@ -102,7 +103,7 @@ fn rank(line: &Line) -> usize {
     }
 }
 
-/// Returns whether the line is a single choice of at most four words.
+/// Returns whether the line has a single setting, a choice among at most four entries.
 fn is_segmented(line: &Line) -> bool {
     line.len() == 1 && matches!(line[0].kind, Kind::Choice { words, .. } if words.len() <= 4)
 }
@@ -187,8 +188,8 @@ fn controls<'a, 'c>(
     }
 }
 
-/// Draws the line that folds and unfolds the rarely changed settings, with the number of those that
-/// differ from the settings of a new study.
+/// Draws the line that folds and unfolds the rarely changed settings, and counts those that differ
+/// from a new study's settings.
 fn advanced_head_ui(
     ui: &mut Ui,
     state: &State,
@@ -216,8 +217,8 @@ fn advanced_head_ui(
         .asks(LayoutCommand::ShowAdvanced(!is_open), commands);
 }
 
-/// Draws the explanation of the control under the pointer; without one, the button that restores
-/// the settings at the opening of the panel.
+/// Draws the explanation for the control under the pointer; without one, the button that restores
+/// the settings from when the panel was opened.
 fn foot_ui(
     ui: &mut Ui,
     state: &State,

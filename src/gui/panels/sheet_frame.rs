@@ -1,4 +1,4 @@
-//! Frame of a sheet over the middle of the window: its place, its heading, and how it is closed.
+//! Frame for a sheet over the middle of the window: position, heading, and closing.
 
 use egui::{
     Align, Area, Frame, Id, Layout, Margin, Order, Rect, RichText, Role, ScrollArea, Stroke, Ui,

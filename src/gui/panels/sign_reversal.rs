@@ -1,4 +1,4 @@
-//! Menu entry that reverses the sign of a channel.
+//! Menu entry that reverses a channel's sign.
 
 use gdcm_method::correction::Channel;
 use gdcm_study::Edit;
@@ -7,8 +7,8 @@ use gdcm_study::decisions::signs::SignRole;
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
 
-/// Returns the label and the command that reverse a channel in the models of a role, or undo the
-/// reversal.
+/// Returns the label and the command that reverse a channel's sign in the models with this role;
+/// without a role, those that undo the reversal.
 pub fn sign_reversal_entry(
     state: &State,
     channel: Channel,

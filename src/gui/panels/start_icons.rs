@@ -1,4 +1,4 @@
-//! Icons of the ways to begin, drawn as lines.
+//! Icons for the start page's cards, drawn as lines.
 
 use egui::{Color32, Rect, Stroke, Ui, pos2};
 

@@ -22,15 +22,15 @@ use crate::gui::widgets::palette::{
 
 /// Width of the column with the ways to begin \[pt\].
 const WAYS_WIDTH: f32 = 600.0;
-/// Width of the card of the open study \[pt\].
+/// Width of the open study's card \[pt\].
 const STUDY_WIDTH: f32 = 460.0;
 /// Gap between the ways to begin and the open study \[pt\].
 const GAP: f32 = 64.0;
-/// Maximum height of the page \[pt\].
+/// Maximum page height \[pt\].
 const MOST_HEIGHT: f32 = 450.0;
 /// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Height of the card of a way to begin \[pt\].
+/// Card height for a way to begin \[pt\].
 const WAY_HEIGHT: f32 = 72.0;
 
 /// Way to begin, drawn as a card.

@@ -15,8 +15,8 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws the computation status on the left. On the right: the description of the element under the
-/// pointer, else a remark on the data. Messages are toasts in the top bar.
+/// Draws the computation status on the left. On the right: the description for the element under
+/// the pointer, else a remark on the data. Messages are toasts in the top bar.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
@@ -161,8 +161,8 @@ fn count_models(state: &State) -> usize {
     count
 }
 
-/// Describes the background work other than the live analysis; of several jobs, the first in the
-/// order below.
+/// Describes the background work other than the live analysis; if there are several jobs, the first
+/// in the order below.
 fn background_words(background: &Background, records: &RecordsState) -> String {
     if let Some(steps) = background.report {
         return format!("writing the report, {} % …", steps.percent());
@@ -201,8 +201,8 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
 }
 
-/// "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged until the fits are
-/// used".
+/// Formats "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged until the fits
+/// are used".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
     let mut words = match records.under_way() {
         Some(job) => format!("identifying condition {}, {percent} %", job.condition),
@@ -217,8 +217,7 @@ fn identification_words(records: &RecordsState, percent: usize) -> String {
     words
 }
 
-/// Returns why the assessment leaves out the displayed condition, or else the name of its flight
-/// state.
+/// Returns why the assessment leaves out the displayed condition, or else its flight state.
 fn data_remark(state: &State) -> String {
     let id = state.condition().id();
     if let Some(analysis) = state.analysis()

@@ -1,4 +1,5 @@
-//! Reruns of the physics model worth making first, from the pattern of the corrections (M18.4).
+//! Reruns of the physics model worth making first, suggested by the pattern in the corrections
+//! (M18.4).
 
 use egui::{Button, Label, RichText, Ui};
 
@@ -23,8 +24,8 @@ pub(super) fn shown_suggestions(state: &State) -> Vec<SuggestedRuns> {
     suggested_runs(analysis, couplings)
 }
 
-/// Draws the suggestions, and the button that copies a template of the models to add to the dataset;
-/// draws nothing without suggestions.
+/// Draws the suggestions, and the button that copies a template for the models to add to the
+/// dataset; draws nothing without suggestions.
 pub(super) fn suggested_runs_ui(
     ui: &mut Ui,
     state: &State,

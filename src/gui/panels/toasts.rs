@@ -1,5 +1,5 @@
-//! Toasts: messages in the middle of the top bar, over the name of the dataset, so that they cover
-//! no curve and move nothing. The newest is shown; the others are in a list below it.
+//! Toasts: messages in the middle of the top bar, over the dataset name, so that they cover no
+//! curve and move nothing. The newest is shown; the others are in a list below it.
 
 use egui::{
     Area, Button, Frame, Id, Label, Margin, Order, Rect, RichText, Role, ScrollArea, Sense, Stroke,
@@ -21,20 +21,20 @@ use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body};
 use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Width of a toast in a wide and in a narrow window \[pt\].
+/// Toast width in a wide and in a narrow window \[pt\].
 const WIDTHS: [f32; 2] = [560.0, 400.0];
-/// Height of a toast \[pt\].
+/// Toast height \[pt\].
 const HEIGHT: f32 = 28.0;
 /// Width of the coloured edge \[pt\].
 const EDGE: f32 = 3.0;
-/// Maximum height of the list of toasts \[pt\].
+/// Maximum height of the toast list \[pt\].
 const LIST_HEIGHT: f32 = 280.0;
 
-/// Place of the toasts in the top bar, and what they show.
+/// The toasts' area in the top bar, and the notices that they show.
 pub(super) struct ToastBar<'a> {
     /// The whole top bar.
     pub(super) bar: Rect,
-    /// Room between the menus and the search field.
+    /// Area between the menus and the search field.
     pub(super) room: Rect,
     pub(super) is_wide: bool,
     pub(super) notices: &'a Notices,
@@ -42,7 +42,7 @@ pub(super) struct ToastBar<'a> {
 }
 
 impl ToastBar<'_> {
-    /// Returns whether a toast covers the name of the dataset.
+    /// Returns whether a toast covers the dataset name.
     pub(super) fn is_shown(&self) -> bool {
         self.notices.toasts().next().is_some()
     }
@@ -74,8 +74,8 @@ impl ToastBar<'_> {
         Rect::from_min_size(pos2(left, top), vec2(width, HEIGHT))
     }
 
-    /// Draws the newest toast: the coloured edge, the sentence, the action, the count of the
-    /// others, and the button that closes it.
+    /// Draws the newest toast: the coloured edge, the sentence, the action, the count of other
+    /// toasts, and the button that closes it.
     fn newest_ui(&self, ui: &mut Ui, notice: &Notice, more: usize, commands: &mut Vec<Command>) {
         let palette = self.palette;
         let place = self.place();
@@ -108,7 +108,7 @@ impl ToastBar<'_> {
         }
     }
 
-    /// Draws the button that opens the list of the other toasts; returns its left edge.
+    /// Draws the button that opens the list of other toasts; returns its left edge.
     fn more_ui(&self, ui: &mut Ui, more: usize, commands: &mut Vec<Command>) -> f32 {
         let text = RichText::new(format!("{more} more"))
             .size(SMALL_SIZE)
@@ -121,7 +121,7 @@ impl ToastBar<'_> {
         list.rect.left()
     }
 
-    /// Draws the older toasts below the newest, with whole sentences; returns whether the pointer
+    /// Draws the older toasts below the newest, with uncut sentences; returns whether the pointer
     /// is on them.
     fn list_ui(&self, ui: &Ui, commands: &mut Vec<Command>) -> bool {
         let newest = self.place();
@@ -150,7 +150,7 @@ impl ToastBar<'_> {
     }
 }
 
-/// Draws the ground of a toast with its edge: green for a success, orange for a failure.
+/// Draws a toast's background and edge: green for a success, orange for a failure.
 fn frame_ui(ui: &Ui, place: Rect, notice: &Notice, palette: &Palette) {
     let color = match notice.kind {
         NoticeKind::Done => palette.good,
@@ -167,7 +167,7 @@ fn frame_ui(ui: &Ui, place: Rect, notice: &Notice, palette: &Palette) {
     ui.painter().rect_filled(edge, 2.0, color);
 }
 
-/// Draws the button of an action; returns its left edge.
+/// Draws an action's button; returns its left edge.
 fn action_ui(
     ui: &mut Ui,
     action: &NoticeAction,

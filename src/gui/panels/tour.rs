@@ -1,4 +1,4 @@
-//! Guided tour: notes beside the regions of the window.
+//! Guided tour: notes beside regions in the window.
 
 use egui::{
     Align2, Area, Button, Context, Frame, Id, Order, Rect, RichText, Stroke, StrokeKind, Ui, Vec2,
@@ -53,7 +53,7 @@ pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut V
     }
 }
 
-/// Width of a note \[pt\].
+/// Note width \[pt\].
 const WIDTH: f32 = 300.0;
 
 /// Step in the guided tour.
@@ -136,8 +136,8 @@ fn note_ui(
     });
 }
 
-/// Returns the corner of the note to be aligned, and its position: right of the region, left of it,
-/// or over it if the region takes the whole width.
+/// Returns which corner of the note to align, and its position: right of the region, left of it, or
+/// over it if the region takes the whole width.
 fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;

@@ -1,5 +1,5 @@
-//! Trade-off of α below its slider: deviation of the output gains from 1, and J, over α. The
-//! horizontal axis is that of the slider.
+//! Trade-off plot below the slider for α: the output gains' deviation from 1, and J, over α. The
+//! horizontal axis is the slider's.
 
 use egui::{Align2, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -14,18 +14,17 @@ use crate::gui::widgets::controls::named;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// Height of the plot with caption and tick labels \[pt\].
+/// Plot height, with caption and tick labels \[pt\].
 pub const TRADE_OFF_HEIGHT: f32 = 88.0;
-/// Height of the caption and of the tick labels \[pt\].
+/// Heights of caption and tick labels \[pt\].
 const CAPTION: f32 = 16.0;
 const TICKS: f32 = 14.0;
 /// Values of α with a tick label.
 const TICK_ALPHAS: [f64; 5] = [1e-2, 0.1, 1.0, 10.0, 100.0];
-/// Explanation of the plot.
 const HELP: &str = "Solid: root mean square of ln k of the outputs, scale at the left. Dashed: mean J of \
     the responses in the objective, scale at the right. Both for the displayed condition";
 
-/// Draws the trade-off into `place`, below the rail of the slider; while it is missing, the reason.
+/// Draws the trade-off into `place`, below the slider rail; while it is missing, the reason.
 pub(super) fn trade_off_ui(
     ui: &Ui,
     place: Rect,
@@ -108,7 +107,7 @@ pub(super) fn trade_off_ui(
     named(response, egui::Role::Label, name);
 }
 
-/// Trade-off with its place.
+/// Trade-off with its area on the screen.
 struct TradeOffPlot<'a> {
     frame: Rect,
     rail: Rect,
@@ -174,7 +173,7 @@ impl TradeOffPlot<'_> {
     }
 }
 
-/// Returns the smallest of 1, 2 and 5 times a power of ten that is not below a value.
+/// Returns a value rounded up to 1, 2 or 5 times a power of ten.
 fn rounded_up(value: f64) -> f64 {
     if value <= 0.0 || !value.is_finite() {
         return 1.0;

@@ -1,4 +1,4 @@
-//! Columns of the trim offsets in the list of physics models, and the same offsets in words.
+//! Trim-offset columns in the list of physics models, and the same offsets in words.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ impl TrimColumns {
         Some(Self { keys, heads })
     }
 
-    /// Returns the offsets of a model, "·" for zero; `None` if all are zero.
+    /// Returns a model's offsets, "·" for zero; `None` if all are zero.
     pub(super) fn offsets(&self, model: &Model) -> Option<Vec<String>> {
         let trim = model.perturbation()?;
         if trim.values().all(|offset| *offset == 0.0) {
@@ -68,7 +68,7 @@ fn trim_head(key: &str) -> String {
     }
 }
 
-/// "airspeed_kt +5, roll_deg −3".
+/// Formats "airspeed_kt +5, roll_deg −3".
 pub(super) fn trim_words(trim: &BTreeMap<String, f64>) -> String {
     let offsets = trim.iter().filter(|(_, offset)| **offset != 0.0);
     let offsets: Vec<String> = offsets
@@ -81,7 +81,7 @@ pub(super) fn trim_words(trim: &BTreeMap<String, f64>) -> String {
     }
 }
 
-/// "+5", "−3".
+/// Formats "+5", "−3".
 fn signed_compact(value: f64) -> String {
     let sign = if value > 0.0 { "+" } else { "" };
     format!("{sign}{}", compact(value))

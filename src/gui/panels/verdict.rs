@@ -1,6 +1,6 @@
-//! Verdict: whether the constrained responses of the corrected model are matched, and the next step
-//! if they are not. `gdcm_words::verdict` and `verdict_caution.rs` form its texts, `advice.rs`
-//! chooses the steps, `verdict_view.rs` draws it.
+//! Verdict: whether the corrected model's constrained responses are matched, and the next step if
+//! they are not. `gdcm_words::verdict` and `verdict_caution.rs` form its texts, `advice.rs` chooses
+//! the steps, `verdict_view.rs` draws it.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::ConditionAnalysis;
@@ -18,7 +18,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::message::Message;
 
-/// Verdict on gain and phase of the constrained responses, in the displayed condition and in all
+/// Verdict on the constrained responses' gain and phase, in the displayed condition and in all
 /// conditions, with the next steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
@@ -32,14 +32,14 @@ pub struct Verdict {
     pub note: String,
     /// Caution to read before the result is used: "Price: +21 dB above 12 rad/s".
     pub caution: Option<Message>,
-    /// Number of poles within the band that the couplings in use make unstable, over the kept
-    /// physics models of all conditions.
+    /// Number of poles within the band that the couplings in use make unstable, over all kept
+    /// physics models in all conditions.
     pub unstable_in_band: usize,
-    /// Number of remarks in the sheet of reasons.
+    /// Number of remarks in the reasons sheet.
     pub reasons: usize,
 }
 
-/// Gains or phases of the constrained responses.
+/// Row about the constrained responses' gains or phases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerdictRow {
     /// "Gain" or "Phase".
@@ -143,7 +143,6 @@ impl Verdict {
         }
     }
 
-    /// Returns the text of the caution.
     pub fn caution_text(&self) -> Option<&str> {
         match &self.caution {
             Some(caution) => Some(&caution.text),

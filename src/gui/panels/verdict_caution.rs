@@ -1,4 +1,4 @@
-//! Caution beside the verdict: the fact to know before the result is used, in a few words.
+//! Short caution beside the verdict, to be read before the result is used.
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::schedule::ScheduleCaution;
@@ -13,8 +13,8 @@ use crate::gui::views::used_couplings;
 use crate::message::Message;
 
 /// Returns the most important caution: couplings that are requested but missing or that make poles
-/// unstable; else the lead price; else any other caution about couplings; else the cost of the
-/// schedule in this condition.
+/// unstable; else the lead price; else any other caution about couplings; else the schedule's cost
+/// in this condition.
 pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
     let couplings = coupling_caution(state);
     if let Some(caution) = &couplings
@@ -40,7 +40,7 @@ struct CouplingCaution {
     message: Message,
 }
 
-/// Returns the most serious remark on the couplings in use, in a few words; the sheet of reasons
+/// Returns the most serious remark on the couplings in use, in a few words; the reasons sheet
 /// contains every remark.
 fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
@@ -71,7 +71,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     })
 }
 
-/// Returns the number of poles within the band that the couplings in use make unstable.
+/// Counts the poles within the band that the couplings in use make unstable.
 pub(super) fn unstable_in_band(state: &State) -> usize {
     match used_couplings(state) {
         Some(used) => used.unstable_in_band(),
@@ -79,8 +79,8 @@ pub(super) fn unstable_in_band(state: &State) -> usize {
     }
 }
 
-/// Returns the lead price: the maximum magnitude that the filters of a constrained response add
-/// above the band (M15.6); `None` up to 0.05 dB.
+/// Returns the lead price: the maximum magnitude that a constrained response's filters add above
+/// the band (M15.6); `None` up to 0.05 dB.
 fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     let price = LeadPrice::new(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
@@ -96,8 +96,8 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     Some(Message::new("lead-price", text))
 }
 
-/// Returns a caution if the schedule costs more than twice the J of the condition's own correction
-/// (M12).
+/// Returns a caution if J under the schedule is more than twice J under the condition's own
+/// correction (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     for caution in &schedule.cautions {

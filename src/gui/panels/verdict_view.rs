@@ -1,4 +1,4 @@
-//! Drawing of the verdict: counts and words for gain and phase, a caution, and the next steps. Every
+//! Drawing the verdict: counts and words for gain and phase, a caution, and the next steps. Every
 //! line has a reserved place.
 
 use egui::{
@@ -22,13 +22,13 @@ use crate::gui::widgets::palette::{
     BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Height of the verdict in wide and in narrow windows \[pt\], reserved whatever it contains, so that
-/// nothing below moves when a step is taken.
+/// Verdict height in wide and in narrow windows \[pt\], reserved whatever the verdict contains, so
+/// that nothing below moves when a step is taken.
 const HEIGHT_WIDE: f32 = 128.0;
 const HEIGHT_NARROW: f32 = 112.0;
-/// Height of the line with the headings \[pt\].
+/// Height of the heading line \[pt\].
 const HEADS: f32 = 16.0;
-/// Height of the line with the steps \[pt\].
+/// Height of the step line \[pt\].
 const STEPS: f32 = 28.0;
 /// Padding at the left, where the edge is coloured, and at the right \[pt\].
 const PAD_LEFT: f32 = 16.0;
@@ -43,12 +43,12 @@ pub(super) struct ShownVerdict {
     pub(super) is_older: bool,
     /// Whether the spinner in the heading turns.
     pub(super) spins: bool,
-    /// Whether the step is the primary button of the window; not while the view in front has it.
+    /// Whether the first step is the window's primary button; not while the view in front has one.
     pub(super) is_primary: bool,
 }
 
 /// Returns the verdict to be displayed. While results are being computed, the verdict on the
-/// previous results of the condition stays, so that its steps do not change twice.
+/// condition's previous results stays, so that the steps do not change twice.
 pub(super) fn shown_verdict(ui: &Ui, state: &State) -> ShownVerdict {
     let id = Id::unique("verdict");
     let now = ui.input(|input| input.time);
@@ -128,7 +128,7 @@ pub(super) fn verdict_ui(
     });
 }
 
-/// Places of the lines of the verdict.
+/// Areas of the verdict's lines.
 struct VerdictPlaces {
     heads: Rect,
     rows: [Rect; 2],
@@ -136,7 +136,7 @@ struct VerdictPlaces {
 }
 
 impl VerdictPlaces {
-    /// Divides the area of the verdict; the spaces between the lines share the rest of the height.
+    /// Divides the verdict's area; the spaces between the lines share the remaining height.
     fn new(area: Rect) -> Self {
         let row = if area.height() >= HEIGHT_WIDE {
             24.0
@@ -167,7 +167,7 @@ const COUNT_LEFT: f32 = 46.0;
 /// Left edge of the words in a verdict row \[pt from the row's left edge\].
 const WORDS_LEFT: f32 = 106.0;
 
-/// Draws the headings of the columns; the spinner has its place at the left.
+/// Draws the column headings, with the spinner at the left.
 fn heads_ui(ui: &mut Ui, rect: Rect, shown: &ShownVerdict, palette: &Palette) {
     let here = format!("condition {}", shown.verdict.condition);
     painted_text(ui, rect, COUNT_LEFT, &here, small(), palette.dim_text);
@@ -215,7 +215,7 @@ fn row_ui(ui: &Ui, rect: Rect, row: &VerdictRow, is_all_met: bool, palette: &Pal
     painted_text(ui, rect, WORDS_LEFT, &words, body(), palette.text);
 }
 
-/// Line of the steps, from left to right: the primary step, its alternatives, the caution or the
+/// Line with the steps, from left to right: the primary step, its alternatives, the caution or the
 /// note, and at the right end the link to the reasons. Each has the same place in every verdict.
 struct StepsLine<'a> {
     primary: Option<&'a Step>,
@@ -224,7 +224,7 @@ struct StepsLine<'a> {
     note: &'a str,
     /// Opens the reasons, or lists the notes.
     reasons: Option<Step>,
-    /// Whether the first step is the primary button of the window.
+    /// Whether the first step is the window's primary button.
     is_primary: bool,
 }
 
@@ -276,8 +276,8 @@ impl<'a> StepsLine<'a> {
             self.primary_ui(ui, place, step, palette, commands);
             left = place.right() + GAP;
         }
-        // An alternative that leaves no room for the caution is omitted: the sheet of reasons and
-        // the palette offer it too.
+        // An alternative that leaves no room for the caution is omitted: the reasons sheet and the
+        // command palette offer it too.
         let needed = match self.caution {
             Some(caution) => text_width(ui, &short_caution(caution), body()),
             None => 0.0,
@@ -375,7 +375,6 @@ fn note_ui(ui: &Ui, place: Rect, note: &str, palette: &Palette) {
     }
 }
 
-/// Draws a step as a link.
 fn link_ui(ui: &mut Ui, place: Rect, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
     let label = RichText::new(&step.label).color(palette.accent);
     let builder = UiBuilder::new().id_salt(&step.label).max_rect(place);
@@ -386,7 +385,7 @@ fn link_ui(ui: &mut Ui, place: Rect, step: &Step, palette: &Palette, commands: &
     });
 }
 
-/// Returns whether the step opens the sheet of reasons.
+/// Returns whether the step opens the reasons sheet.
 fn shows_reasons(step: &Step) -> bool {
     step.command == Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons)))
 }

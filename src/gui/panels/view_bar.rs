@@ -1,4 +1,5 @@
-//! Bar above the views: groups at the left, views of the front group, tools at the right.
+//! Bar above the views: groups at the left, the front group's views beside them, tools at the
+//! right.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
@@ -106,7 +107,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
-/// Draws the views of the front group side by side, or as a menu if they do not fit.
+/// Draws the front group's views side by side, or as a menu if they do not fit.
 fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
     /// Width reserved for the other controls in the bar \[pt\].
     const TOOLS: f32 = 130.0;

@@ -91,7 +91,7 @@ struct PageBar {
 impl PageBar {
     /// Returns the width of title and page switch, without the context \[pt\].
     fn least_width(&self, ui: &Ui) -> f32 {
-        /// Padding of a segment, and the gap beside the title \[pt\].
+        /// Segment padding, and the gap beside the title \[pt\].
         const PAD: f32 = 24.0;
         let mut width = text_width(ui, &self.title.heading, medium(TITLE_SIZE)) + PAD;
         if self.pages.len() > 1 {
@@ -113,7 +113,7 @@ impl PageBar {
     }
 }
 
-/// Draws the page switch of a view; a click shows the page.
+/// Draws a view's page switch; a click shows the page.
 fn pages_ui(ui: &mut Ui, pages: &[PageEntry], palette: &Palette, commands: &mut Vec<Command>) {
     let tabs: Vec<PageTab> = pages
         .iter()
@@ -157,7 +157,7 @@ pub(super) fn tools_ui(
     }
 }
 
-/// Draws the title of a page of the dock, such as "LON → Q  condition 10: 60 kt, low altitude, high
+/// Draws the title of a dock page, such as "LON → Q condition 10: 60 kt, low altitude, high
 /// weight"; some omit the response or the condition.
 pub(super) fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let words = title_words(state, title);
@@ -167,16 +167,16 @@ pub(super) fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &P
     context_ui(ui, palette, &words.context);
 }
 
-/// Title of a view in two parts, each empty if the view has none.
+/// A view's title in two parts, each empty if the view has none.
 struct TitleWords {
-    /// What the view shows, such as the response.
+    /// Subject shown in the view, such as the response.
     heading: String,
-    /// Further words, of which the last parts are omitted in a narrow window.
+    /// Additional text, whose last parts are omitted in a narrow window.
     context: String,
 }
 
 impl TitleWords {
-    /// Returns the words with the name of the view as their heading, if they have none.
+    /// Returns the title with the view's name as heading, if it has none.
     fn or_named(mut self, view: View) -> Self {
         if self.heading.is_empty() {
             view.name().clone_into(&mut self.heading);

@@ -1,6 +1,6 @@
-//! Plots across conditions: the response in focus of every condition, coloured by airspeed, and
-//! beside it the error that the schedule leaves. The chips are in `across_chips`, the values at the
-//! pointer in `across_readout`.
+//! Plots across conditions: the response in focus in every condition, coloured by airspeed, and
+//! beside it the schedule error (scheduled minus identified response). The chips are in
+//! `across_chips`, the values at the pointer in `across_readout`.
 
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
@@ -26,16 +26,16 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::{DropDown, PageWords};
 use crate::gui::widgets::palette::Palette;
 
-/// Number of frequencies on each curve.
+/// Frequencies on each curve.
 const POINTS: usize = 300;
-/// Share of the responses in the width, beside the errors.
+/// Share of the width for the responses, beside the errors.
 const RESPONSE_PART: f32 = 0.62;
 /// Gap between responses and errors \[pt\].
 const GAP: f32 = 8.0;
 /// Gap between the magnitude plot and the read-out \[pt\].
 const READOUT_GAP: f32 = 6.0;
 
-/// Returns the pages of the view: none where the window has room for both plots.
+/// Returns the pages; none if the window has room for both plots.
 pub fn across_pages(state: &State) -> Vec<PageEntry> {
     if shows_both(state) {
         return Vec::new();
@@ -75,7 +75,7 @@ fn shows_both(state: &State) -> bool {
     state.display.layout.is_wide && state.display.layout.arrangement.beside().is_none()
 }
 
-/// Draws the selector of the conditions.
+/// Draws the condition selector.
 pub fn across_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -96,8 +96,8 @@ pub fn across_header_ui(
     ui.label(palette.dim("conditions"));
 }
 
-/// Draws magnitude and phase of the response in focus in every condition, and the error of the
-/// schedule; a click selects a condition.
+/// Draws the response in focus and the schedule error in every condition; a click selects a
+/// condition.
 pub fn across_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -194,7 +194,7 @@ pub fn across_view_ui(
     state.display.frequency.across_error = errors;
 }
 
-/// Returns the message shown without errors of the schedule.
+/// Returns the message shown if there are no schedule errors.
 fn error_message(state: &State) -> &'static str {
     match state.analysis() {
         Some(analysis) if analysis.schedule.is_err() => "There is no schedule",
@@ -203,8 +203,8 @@ fn error_message(state: &State) -> &'static str {
     }
 }
 
-/// Returns the place of the read-out below the magnitude plots, widened by a further plot; `None`
-/// if the plot has no room for it.
+/// Returns the read-out's area: `before`, from another plot, joined with the strip below this
+/// magnitude plot if there is room; `None` if no plot has room.
 fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
     let magnitude = *view.transform(Pane::Magnitude)?.frame();
     let phase = *view.transform(Pane::Phase)?.frame();
@@ -222,7 +222,7 @@ fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
     })
 }
 
-/// Magnitude above phase over the conditions.
+/// Plot of magnitude above phase, with a curve for each condition.
 struct AcrossPlot<'a> {
     state: &'a State,
     scene: BodeScene<'a>,
@@ -253,8 +253,7 @@ impl AcrossPlot<'_> {
     }
 }
 
-/// Returns a name for each airspeed, with its number of conditions if there are several: "140 kt ×
-/// 2".
+/// Returns a name for each airspeed, with the condition count if it has several: "140 kt × 2".
 fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
     struct Named {
         airspeed_kt: f64,
@@ -323,7 +322,8 @@ fn fit_across(state: &mut State) {
     }
     state.display.frequency.across.request_refit();
     state.display.frequency.across_error.request_refit();
-    // Until then, the previous curves are drawn, and the fit must be repeated.
+    // Until the new curves are available, the previous curves are drawn, and the fit must be
+    // repeated.
     if let Some((job, _)) = &state.results.across
         && job.models == across_job(state).models
     {
@@ -331,13 +331,13 @@ fn fit_across(state: &mut State) {
     }
 }
 
-/// Returns the job that computes the responses in the view: the models of each condition.
+/// Returns the job that computes the view's responses: those of the models in each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
     AcrossJob::for_conditions(&state.study.dataset, state.analysis(), grid)
 }
 
-/// Returns the curves of the response in focus in each condition; empty until the responses are
+/// Returns the curves for the response in focus in each condition; empty until the responses are
 /// available.
 pub fn across_curves(state: &mut State) -> AirspeedCurves {
     let Some(responses) = state.across().cloned() else {
@@ -367,7 +367,7 @@ pub fn across_curves(state: &mut State) -> AirspeedCurves {
     drawn
 }
 
-/// Returns the text about the conditions beside the title: "all 11 conditions".
+/// Returns the text beside the title: "all 11 conditions".
 pub fn across_context(state: &State) -> String {
     let all = state.dataset().conditions().len();
     let shown = state.display.frequency.across_display.conditions;

@@ -1,4 +1,4 @@
-//! Line above the plots across conditions: a chip for each role, and the colours of the airspeeds.
+//! Line above the plots across conditions: a chip for each role, and a colour key for airspeed.
 
 use egui::{Align2, FontId, Pos2, Rect, Ui, pos2, vec2};
 
@@ -12,13 +12,13 @@ use crate::gui::plot::chip_row::{ChipFace, ChipRow, Sample};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Length of a curve sample \[pt\].
+/// Length of a curve sample in a chip \[pt\].
 const SAMPLE: f32 = 18.0;
-/// Airspeed in whose colour the samples are drawn: the middle of the range.
+/// Airspeed whose colour the samples have: mid-range, on a scale from 0 to 255.
 const MIDDLE: u8 = 128;
-/// Number of steps in the colour key of the airspeeds.
+/// Colour steps in the key.
 const KEY_STEPS: u8 = 24;
-/// Width and height of the colour key \[pt\].
+/// Size of the colour key \[pt\].
 const KEY_WIDTH: f32 = 120.0;
 const KEY_HEIGHT: f32 = 8.0;
 /// Distance between the key and its texts \[pt\].
@@ -26,7 +26,7 @@ const TEXT_GAP: f32 = 8.0;
 /// Width of the key with its texts \[pt\].
 const KEY_ROOM: f32 = 270.0;
 
-/// Draws the chips and the colour key into the top of `area`; returns the height of the line.
+/// Draws the chips and the colour key at the top of `area`; returns the line height \[pt\].
 pub(super) fn across_chips_ui(
     ui: &Ui,
     area: Rect,
@@ -67,7 +67,7 @@ pub(super) fn across_chips_ui(
     height
 }
 
-/// Paints the colours from the slowest condition to the fastest, so that the line ends at `end`.
+/// Paints the colours from the slowest condition to the fastest, right-aligned at `end`.
 fn paint_key(ui: &Ui, end: Pos2, state: &State, palette: &Palette) {
     let (slowest, fastest) = state.dataset().airspeed_range_kt();
     let font = FontId::proportional(SMALL_SIZE);

@@ -1,5 +1,5 @@
-//! Values of the plots across conditions at the pointer: spread over the conditions, error of the
-//! schedule in the displayed condition, and the largest error.
+//! Values at the pointer in the plots across conditions: spread over the conditions, schedule error
+//! in the displayed condition, and the largest schedule error.
 
 use gdcm_method::fidelity::summand;
 use gdcm_model::dataset::ConditionId;
@@ -21,7 +21,7 @@ pub(super) struct AcrossReadout<'a> {
     pub(super) unit: FrequencyUnit,
 }
 
-/// Error of the schedule in a condition at a frequency.
+/// Schedule error in a condition at a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ScheduleError {
     condition: ConditionId,
@@ -30,7 +30,7 @@ struct ScheduleError {
 }
 
 impl ScheduleError {
-    /// Returns the integrand of J (M4).
+    /// Returns the integrand in J (M4).
     fn summand(&self) -> f64 {
         summand(self.magnitude_db, self.phase_deg)
     }
@@ -76,7 +76,7 @@ impl AcrossReadout<'_> {
         })
     }
 
-    /// Formats the difference between the largest and the smallest magnitude of a role.
+    /// Formats the difference between a role's largest and smallest magnitude over the conditions.
     fn spread_text(&self, role: AcrossRole, omega: f64) -> String {
         let mut least = f64::INFINITY;
         let mut most = f64::NEG_INFINITY;
@@ -105,8 +105,8 @@ impl AcrossReadout<'_> {
         errors.filter_map(|curve| error_of(curve, omega)).collect()
     }
 
-    /// Returns the frequency \[rad/s\] within the band at which the integrand of J is largest in
-    /// any condition; the middle of the band if only responses are drawn, `None` without curves.
+    /// Returns the frequency \[rad/s\] within the band with the largest integrand of J in any
+    /// condition; mid-band if only responses are drawn, `None` without curves.
     fn omega_of_largest_error(&self) -> Option<f64> {
         let (min, max) = self.band;
         let mut found = None;
@@ -127,7 +127,7 @@ impl AcrossReadout<'_> {
     }
 }
 
-/// Returns the error of a curve at a frequency \[rad/s\].
+/// Returns a curve's error at a frequency \[rad/s\].
 fn error_of(curve: &BodeCurve, omega: f64) -> Option<ScheduleError> {
     let CurveId::OfCondition(condition, _) = curve.id else {
         return None;

@@ -1,4 +1,4 @@
-//! Benefit of the correction in each condition: a summary, and the change of J as bars or as a
+//! Benefit from the correction in each condition: a summary, and the change in J as bars or as a
 //! table.
 
 use egui::{Align, Label, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
@@ -21,10 +21,10 @@ use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(130.0, 90.0);
-/// Smallest rise of J that the table, with one decimal, does not round to zero.
+/// Smallest rise in J that the table, with one decimal, does not round to zero.
 const LEAST_SHOWN_RISE: f64 = 0.05;
 
-/// Draws a summary, and below it the change of J in every condition for the chosen responses
+/// Draws a summary, and below it the change in J in every condition for the chosen responses
 /// (Figures 8 to 19).
 pub fn assessment_view_ui(
     ui: &mut Ui,
@@ -45,7 +45,7 @@ pub fn assessment_view_ui(
     }
 }
 
-/// Draws the summary in a line; its tooltip is the same text in full.
+/// Draws the summary in a line, cut to its width; the tooltip shows the full text.
 fn summary_ui(ui: &mut Ui, state: &State, table: &AssessmentTable, palette: &Palette) {
     let sentences = assessment_sentences(state, table).join(" · ");
     let text = RichText::new(&sentences)
@@ -55,7 +55,7 @@ fn summary_ui(ui: &mut Ui, state: &State, table: &AssessmentTable, palette: &Pal
         .on_hover_text(&sentences);
 }
 
-/// Draws a plot of bars for each response, a column for each condition. A click selects the
+/// Draws a bar plot for each response, with a column for each condition. A click selects the
 /// condition and the response.
 fn bars_ui(
     ui: &mut Ui,
@@ -64,7 +64,7 @@ fn bars_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -101,7 +101,7 @@ fn bars_ui(
     state.display.figures.insert(View::Assessment, view);
 }
 
-/// Returns the commands for an event in the plots of bars.
+/// Returns the commands for an event in the bar plots.
 fn bar_commands(plots: &AssessmentPlots<'_>, event: FigureEvent) -> Vec<Command> {
     match event {
         FigureEvent::Clicked(plot, MarkId::Condition(condition), _) => {

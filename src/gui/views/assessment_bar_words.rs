@@ -1,5 +1,5 @@
-//! Words about the bars of the assessment: accessible names, status text with the reason for a
-//! missing change of J, and derivations.
+//! Texts about the assessment bars: accessible names, status text with the reason for a missing
+//! change in J, and derivations.
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::decimals;
@@ -65,7 +65,7 @@ impl FigureWords for AssessmentPlots<'_> {
     }
 }
 
-/// Returns why the change of J is missing.
+/// Returns why the change in J is missing.
 fn absence_reason(
     table: &AssessmentTable,
     dataset: &Dataset,

@@ -1,4 +1,4 @@
-//! Content of the assessment apart from its bars: assessed responses, table of changes, summary.
+//! Content of the assessment view apart from the bars: assessed responses, table, summary.
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::assessment::{ChangeColumn, ChangeTable};
@@ -28,7 +28,7 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
 }
 
 /// Builds the table: a row for each response, a column for each condition, and in each cell the
-/// signed change of J.
+/// signed change in J.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.judging.assessed.part;
     let columns: Vec<ChangeColumn> = state
@@ -51,8 +51,8 @@ pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     contents.table(title)
 }
 
-/// Summarises the assessment in sentences: improved responses, the verdict on the conditions held
-/// out of the schedule, and omissions.
+/// Summarises the assessment in sentences: improved responses, the verdict on conditions held out
+/// of the schedule, and omissions.
 pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<String> {
     let pairs = assessed_pairs(state);
     let marked = state

@@ -1,4 +1,5 @@
-//! Pages and options of the assessment view: form; responses, correction, model and cost.
+//! Pages (bars or table) and options (responses, correction, model and cost) in the assessment
+//! view.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, PopupCloseBehavior, Role, Ui};
@@ -16,7 +17,6 @@ use crate::gui::widgets::choices::{PageOption, PageWords, choice_ui};
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
 
-/// Returns the pages: bars or table.
 pub fn assessment_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.judging.assessed;
     let words = [

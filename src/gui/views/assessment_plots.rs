@@ -1,4 +1,4 @@
-//! Stacked bars for the change of J in each condition; `assessment_bar_words` describes them.
+//! Stacked bars for the change in J in each condition; `assessment_bar_words` describes them.
 
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -13,33 +13,33 @@ use crate::gui::state::window_state::State;
 
 /// Bar width, relative to the distance between conditions.
 const BAR: f64 = 0.6;
-/// Half the length of the line that marks the sum of both parts, relative to the distance between
+/// Half-length of the line that marks the sum of both parts, relative to the distance between
 /// conditions.
 const HALF_TOTAL: f64 = 0.38;
-/// Colour strength of the phase part, relative to the magnitude part \[%\].
+/// Colour strength for the phase part, relative to the magnitude part \[%\].
 pub(super) const PHASE_PERCENT: u8 = 45;
 /// Space above and below the bars, relative to their height.
 const MARGIN: f64 = 0.12;
 /// Distance between a value label and its bar, relative to the visible range.
 const NUMBER_GAP: f64 = 0.05;
-/// Labels of values from this magnitude on have no decimals: 9.95 would be rounded to 10.0.
+/// Labels have no decimals from this magnitude on: 9.95 would be rounded to 10.0.
 const WHOLE_FROM: f64 = 9.95;
 
-/// Plots of the change of J, one for each response.
+/// Plots of the change in J, one for each response.
 pub(super) struct AssessmentPlots<'a> {
     pub(super) state: &'a State,
     pub(super) table: &'a AssessmentTable,
     pub(super) pairs: Vec<Pair>,
 }
 
-/// Change of J at a position on the condition axis.
+/// Change in J at a position on the condition axis.
 #[derive(Clone, Copy)]
 struct PlacedChange {
     at: f64,
     change: CostChange,
 }
 
-/// Part of the change of J that is drawn as a separate bar.
+/// Part of the change in J with its own bar.
 #[derive(Clone, Copy, PartialEq)]
 enum BarPart {
     Magnitude,
@@ -54,8 +54,8 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the value at which the bar of a part begins. The phase part is stacked on the
-    /// magnitude part if both have the same sign; otherwise they lie on either side of zero.
+    /// Returns the value at which a part's bar begins. The phase part is stacked on the magnitude
+    /// part if both have the same sign; otherwise they lie on either side of zero.
     fn foot(&self, part: BarPart) -> f64 {
         let is_stacked =
             part == BarPart::Phase && self.change.magnitude() * self.change.phase() > 0.0;
@@ -66,7 +66,7 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the end values of both parts, and zero.
+    /// Returns both parts' end values, and zero.
     fn ends(&self) -> [f64; 3] {
         [
             self.change.magnitude(),
@@ -114,8 +114,8 @@ impl AssessmentPlots<'_> {
             .with_margin(MARGIN, 1.0)
     }
 
-    /// Builds the panel of a response with a value range: in each condition a bar with magnitude and phase part, and a
-    /// line across the bar at their sum.
+    /// Builds a response's panel with the given value range: in each condition a bar with magnitude
+    /// and phase part, and a line across the bar at their sum.
     pub(super) fn panel(&self, pair: Pair, range: Range) -> Panel {
         let mut found = Vec::new();
         let mut left_out = Vec::new();
@@ -138,7 +138,7 @@ impl AssessmentPlots<'_> {
             .with_all(left_out.iter().map(|at| left_out_note(*at, range)))
     }
 
-    /// Returns the value labels of the displayed condition and, unless the two are neighbours, of
+    /// Returns the value labels for the displayed condition and, unless the two are neighbours, for
     /// the condition with the largest change. Labels on every bar would overlap; the status line
     /// shows the other values.
     fn numbers(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
@@ -163,7 +163,7 @@ impl AssessmentPlots<'_> {
     }
 }
 
-/// Returns the bars of both parts: improvements, then deteriorations.
+/// Returns both parts' bars: improvements, then deteriorations.
 fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     let mut bars = Vec::new();
     for part in [BarPart::Magnitude, BarPart::Phase] {
@@ -174,7 +174,7 @@ fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     bars
 }
 
-/// Returns the bars of a part in a colour: positive changes have the warning colour.
+/// Returns a part's bars in a colour: positive changes have the warning colour.
 fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
     let mut bars = Vec::new();
     let mut feet = Vec::new();
@@ -213,7 +213,7 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
 }
 
 fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
-    // The visible range may exceed the range of the data.
+    // The visible range may exceed the data range.
     let range = range.with_margin(1.0, 0.0);
     Spans {
         name: String::new(),

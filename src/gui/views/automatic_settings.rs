@@ -14,7 +14,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named_switch;
 use crate::gui::widgets::number_field::{Entered, NumberField};
 
-/// Explanation of the check box that lets the program determine a value.
+/// Explanation on the "auto" check box.
 const AUTOMATIC: &str = "On: from the quantiles of each condition. Off: set by hand, the same for every \
     condition";
 
@@ -59,8 +59,7 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws both ends of a range. If the range is optional, the program determines it unless it is
-    /// set by hand.
+    /// Draws both range ends. The program determines an optional range unless it is set by hand.
     pub(super) fn range_ui(&mut self, setting: &'static Setting, value: Value) {
         let Kind::Range {
             range: [least, most],

@@ -1,12 +1,12 @@
-//! When the axes of the views may follow their data.
+//! Decides when plot axes may follow the data.
 
 use egui::Ui;
 
 use crate::gui::plot::steady_range::AxisUpdate;
 use crate::gui::state::window_state::State;
 
-/// Returns how far the displayed results have come: axes follow complete results, and only grow
-/// while the pointer drags.
+/// Returns how axes follow the displayed results: they follow complete results, and only grow while
+/// the pointer drags.
 pub(super) fn axis_update(ui: &Ui, state: &State) -> AxisUpdate {
     if state.results.is_waiting() {
         AxisUpdate::Pending

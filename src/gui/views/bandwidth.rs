@@ -1,5 +1,5 @@
-//! Phase delay over bandwidth of a response, in the details of a requirement; a click on a mark
-//! selects its condition.
+//! Phase delay over bandwidth for a response, in the requirement details; a click on a mark selects
+//! its condition.
 
 use egui::{Grid, Ui, Vec2, vec2};
 
@@ -28,7 +28,7 @@ use crate::gui::widgets::palette::Palette;
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(120.0, 80.0);
 
-/// Draws phase delay over bandwidth of the response in focus.
+/// Draws phase delay over bandwidth for the response in focus.
 pub(super) fn bandwidth_detail_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -54,7 +54,7 @@ pub(super) fn bandwidth_detail_ui(
         phase_delay_s: settings.overview.phase_delay_s,
     };
     let figure = bandwidth_detail_figure(&detail, state.dataset());
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -99,7 +99,7 @@ fn absence_text(state: &State, requirements: &Requirements, pair: Pair) -> Strin
     }
 }
 
-/// Draws bandwidth and phase delay of every model in the displayed condition.
+/// Draws every model's bandwidth and phase delay in the displayed condition.
 pub(super) fn bandwidth_numbers_ui(
     ui: &mut Ui,
     state: &State,
@@ -136,7 +136,7 @@ pub(super) fn bandwidth_numbers_ui(
 }
 
 /// Returns the commands that show a response in the Bode view, with marks at the frequencies that
-/// define the bandwidth and the phase delay of the model in a role.
+/// define bandwidth and phase delay for the model in a role.
 pub(super) fn bode_commands(
     requirements: &Requirements,
     condition: ConditionId,
@@ -165,7 +165,7 @@ pub(super) fn bode_commands(
     commands
 }
 
-/// Accessible name of the bandwidth plot, and descriptions of its marks.
+/// Accessible name for the bandwidth plot, and descriptions of its marks.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,

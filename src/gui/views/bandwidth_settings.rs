@@ -1,4 +1,4 @@
-//! Settings of the bandwidth requirements: attitude commands and level boundaries.
+//! Settings for the bandwidth requirements: attitude commands and level boundaries.
 
 use std::collections::BTreeSet;
 
@@ -17,8 +17,7 @@ use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws the settings of the bandwidth requirements: which attitudes are commanded by a stick, and
-/// the engineer's levels.
+/// Draws the settings: which attitudes a stick commands, and the engineer's level boundaries.
 pub(super) fn bandwidth_inputs_ui(
     ui: &mut Ui,
     state: &State,
@@ -33,7 +32,7 @@ pub(super) fn bandwidth_inputs_ui(
     });
 }
 
-/// Draws a check box for each attitude that may be commanded by a stick.
+/// Draws a check box for each attitude that a stick may command.
 fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut outputs = BTreeSet::new();
     for pair in state.dataset().measuring_pairs().marked() {
@@ -63,7 +62,7 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
     }
 }
 
-/// Draws the number of level boundaries, and the buttons that remove them or read them from a file.
+/// Draws the count of level boundaries, and the buttons that remove them or read them from a file.
 fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let levels = state.study.requirements.levels.as_slice().len();
     let text = if levels == 0 {
@@ -87,7 +86,7 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
 }
 
-/// Draws a check box for each set of boundaries of the standard whose axis the dataset has.
+/// Draws a check box for each of the standard's boundary sets whose axis the dataset has.
 pub(super) fn standard_levels_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let outputs = state.dataset().outputs();
     for standard in &STANDARD_LEVELS {

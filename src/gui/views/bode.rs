@@ -1,5 +1,5 @@
-//! Bode view: the response in focus of every model in the displayed condition, with the effect of
-//! the correction.
+//! Bode view: the response in focus for every model in the displayed condition, with the
+//! correction's effect.
 
 use egui::Ui;
 
@@ -74,7 +74,7 @@ pub fn bode_view_ui(
     state.display.frequency.drawn = curves;
 }
 
-/// Returns the quantity of the plot in the displayed units; `ratio_unit` as in "(deg/s)/in".
+/// Returns the plotted quantity in the displayed units; `ratio_unit` as in "(deg/s)/in".
 fn response_quantity<'a>(state: &State, ratio_unit: &'a str) -> BodeQuantity<'a> {
     let display = &state.display.curves;
     BodeQuantity::Response {

@@ -1,4 +1,4 @@
-//! Channels view: gain or delay of every channel over airspeed or over the conditions, inputs above
+//! Channels view: each channel's gain or delay over airspeed or over the conditions, inputs above
 //! outputs.
 
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
@@ -22,12 +22,11 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::{PageOption, PageWords};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Height of the headings "Input channels" and "Output channels" \[pt\].
+/// Height for the headings "Input channels" and "Output channels" \[pt\].
 const HEADING_HEIGHT: f32 = 20.0;
-/// Gap below each half of the view \[pt\].
+/// Gap below the inputs and below the outputs \[pt\].
 const GAP: f32 = 8.0;
 
-/// Returns the pages: gains or delays.
 pub fn channels_pages(state: &State) -> Vec<PageEntry> {
     let (shown, across) = state.display.gains.channel_values;
     let pages = [
@@ -57,8 +56,8 @@ pub fn channels_pages(state: &State) -> Vec<PageEntry> {
     entries
 }
 
-/// Draws the selector between airspeed and conditions, and the switch of the error bars, from right
-/// to left.
+/// Draws the selector for the horizontal axis (airspeed or conditions) and the error-bar switch,
+/// from right to left.
 pub fn channels_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -82,8 +81,8 @@ pub fn channels_header_ui(
     }
 }
 
-/// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
-/// below, on the same axes.
+/// Draws each channel's gain or delay over airspeed or conditions (Figures 3 and 4): inputs above,
+/// outputs below, on the same axes.
 pub fn channels_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -142,12 +141,12 @@ pub fn channels_view_ui(
     state.display.gains.channels = view;
 }
 
-/// Plots of all inputs, or of all outputs.
+/// Plots for all inputs, or for all outputs.
 struct ChannelPlots<'a> {
     name: &'static str,
     rect: Rect,
     figure: Figure,
-    /// Index of the first of these plots among the plots of all channels.
+    /// Index of the first of these plots among all channel plots.
     first_plot: usize,
     view: &'a mut FigureView,
 }
@@ -183,8 +182,8 @@ impl ChannelPlots<'_> {
     }
 }
 
-/// Builds a plot for each channel, inputs first: gain or delay at the optimum of each condition,
-/// and the schedule.
+/// Builds a plot for each channel, inputs first: gain or delay at each condition's optimum, and the
+/// schedule.
 pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let (measure, across) = state.display.gains.channel_values;
     let mut figure = Figure::default();

@@ -1,5 +1,5 @@
 //! Compare view: variants (named decision sets), with buttons that keep, take, overlay and remove
-//! them, and their differences from the current decisions.
+//! them, and differences from the current decisions.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
 
@@ -20,7 +20,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
-/// Draws all variants, and their differences from the current decisions or the effects of these.
+/// Draws all variants, and below them a page: differences from the current decisions, or effects.
 pub fn compare_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -49,7 +49,6 @@ pub fn compare_view_ui(
     table_ui(ui, &table, sorting, &TableLook::PLAIN, palette, commands);
 }
 
-/// Returns the pages: decisions and effects.
 pub fn compare_pages(state: &State) -> Vec<PageEntry> {
     [ComparePage::Decisions, ComparePage::Effects]
         .map(|page| PageEntry::of(ViewPage::Compare(page), page == state.display.pages.compare))
@@ -117,7 +116,7 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
         .clicked()
 }
 
-/// Builds the table of all decisions in which a variant differs from the current decisions.
+/// Tabulates all decisions in which a variant differs from the current decisions.
 fn difference_table(state: &State) -> Table {
     let columns = ["variant", "decision", "in the variant", "now"];
     let mut table = Table::new("Different decisions", columns);

@@ -1,4 +1,4 @@
-//! Effect of the correction in the Bode view: notes with J and the remaining error, the remaining
+//! The correction's effect in the Bode view: notes with J and the remaining error, the remaining
 //! phase error as an area, and the region above the band in which the corrected model is not valid.
 
 use gdcm_model::dataset::{Band, Pair};
@@ -68,8 +68,8 @@ pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand
 /// Returns the region above the band in which the corrected model is not valid and only shows the
 /// gain added by leads; `None` without leads (M15.6).
 ///
-/// The words are those of `lead_price::limit_text`, but with the band that is being edited and in
-/// the displayed unit.
+/// The text is as in `lead_price::limit_text`, but shows the band currently being edited, in the
+/// displayed unit.
 pub(super) fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
@@ -85,8 +85,7 @@ pub(super) fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<Inva
     })
 }
 
-/// Returns the magnitudes \[dB\] of the corrected model with and without leads at `omega`
-/// \[rad/s\].
+/// Returns the corrected model's magnitudes \[dB\] with and without leads at `omega` \[rad/s\].
 fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Option<[f64; 2]> {
     let without = drawn_curve(curves, Role::WithoutLeads)?;
     Some([

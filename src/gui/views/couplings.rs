@@ -34,10 +34,9 @@ use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Initial width of texts and tables, as a share of the view's width.
+/// Initial width of texts and tables, as a share of the view width.
 const WORDS_PART: f32 = 0.56;
 
-/// Returns the pages: benefit, matrices, loop.
 pub fn couplings_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.pages.couplings;
     [
@@ -49,7 +48,7 @@ pub fn couplings_pages(state: &State) -> Vec<PageEntry> {
     .into()
 }
 
-/// Draws the selector of the coupling correction: none, mixing, or mixing and feedback.
+/// Draws the selector for the coupling correction: none, mixing, or mixing and feedback.
 pub fn couplings_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -85,8 +84,8 @@ pub fn couplings_header_ui(
     }
 }
 
-/// Draws the texts and tables of the page on the left, the loop and the poles on the right; the
-/// matrices take the whole width.
+/// Draws the page's texts and tables on the left, the loop and the poles on the right; the matrices
+/// take the whole width.
 pub fn couplings_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -143,7 +142,7 @@ fn couplings_figure_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     {
         figure = drawn;
     }
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -180,7 +179,7 @@ impl CouplingsWords<'_> {
             .show(ui, |ui| match page {
                 CouplingsPage::Benefit => {
                     self.use_ui(ui, commands);
-                    // The costs, on which the decision depends, come first.
+                    // The costs come first, because the decision depends on them.
                     self.costs_ui(ui, commands);
                     self.remarks_ui(ui);
                 }
@@ -256,7 +255,6 @@ impl CouplingsWords<'_> {
         }
     }
 
-    /// Draws the coupling matrices.
     fn matrices_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in coupling_matrix_tables(self.assessment, self.state.dataset()) {
             // Values in parentheses lie within their error bar, so they are not distinguishable
@@ -275,7 +273,7 @@ impl CouplingsWords<'_> {
         }
     }
 
-    /// Draws the tables of the loop and of its poles.
+    /// Draws the loop table and the pole table.
     fn loop_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in [self.loop_table(), self.pole_table()] {
             if !table.rows.is_empty() {
@@ -298,7 +296,7 @@ impl CouplingsWords<'_> {
     }
 
     /// Builds the loop table: in each condition, the minimum singular value, and the on-axis
-    /// response that the couplings change most between the band and ten times its upper end.
+    /// response that the couplings change most at ten times the band's upper end.
     fn loop_table(&self) -> Table {
         let dataset = self.state.dataset();
         let columns = [

@@ -1,4 +1,4 @@
-//! Whether couplings are in use, assessed, or offered because they are worthwhile.
+//! Determines whether couplings are in use, assessed, or offered because they are worthwhile.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Values of the principal curves at the pointer, at marked frequencies, or where the integrand of
+//! Values on the principal curves at the pointer, at marked frequencies, or where the integrand of
 //! J is largest.
 
 use gdcm_method::fidelity::summand;
@@ -78,7 +78,7 @@ impl<'a> ReadoutSource<'a> {
         listed
     }
 
-    /// Lists the changes of the values between two frequencies \[rad/s\].
+    /// Lists how the values change between two frequencies \[rad/s\].
     fn changes(&self, from: f64, to: f64) -> Readout {
         let mut cells = Vec::new();
         for ListedCurve { role, curve } in self.listed_curves() {

@@ -1,4 +1,4 @@
-//! Error bars of gains and delays: whether they are shown, their description, and their switch.
+//! Error bars on gains and delays: whether they are shown, their description, and their switch.
 
 use egui::Ui;
 
@@ -14,7 +14,7 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::Toggle;
 
-/// Returns the uncertainty of gains and delays; `None` if error bars are hidden or not available.
+/// Returns the uncertainty in gains and delays; `None` if error bars are hidden or not available.
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         None
@@ -23,8 +23,8 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Returns the uncertainty that is drawn in plots of gains: until it is computed for the present
-/// settings, that of earlier settings, which [`dim_older_bars`] dims.
+/// Returns the uncertainty drawn in gain plots: until it is computed for the present settings, the
+/// one for earlier settings, which [`dim_older_bars`] dims.
 pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         return None;
@@ -35,7 +35,7 @@ pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Dims the error bars and bands of a figure if they belong to earlier settings.
+/// Dims a figure's error bars and bands if they belong to earlier settings.
 pub fn dim_older_bars(state: &State, figure: &mut Figure) {
     if state.older_uncertainty().is_none() {
         return;

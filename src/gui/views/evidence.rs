@@ -1,5 +1,5 @@
 //! Evidence view: significant differences between net gains at equal airspeed, sources of their
-//! scatter, and the variables and the form of schedule that they require.
+//! scatter, and the scheduling variables and schedule form that they require.
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
@@ -22,7 +22,6 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_block_ui, table_heig
 /// Maximum table height \[pt\]; longer tables scroll.
 const MOST_TABLE: f32 = 330.0;
 
-/// Returns the pages: findings, differences, forms.
 pub fn evidence_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.pages.evidence;
     [
@@ -35,7 +34,7 @@ pub fn evidence_pages(state: &State) -> Vec<PageEntry> {
 }
 
 /// Shows the findings (significant differences, a superfluous second variable, sources of the
-/// scatter), or the tables of differences, or those of second variables and forms of the schedule.
+/// scatter), or the table of differences, or the tables about second variables and schedule forms.
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -90,7 +89,6 @@ impl EvidenceTables<'_> {
         difference.is_significant(self.uncertainty.level)
     }
 
-    /// Draws the significant differences.
     fn differences_ui(&self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let significant: Vec<&AirspeedDifference> = self
             .uncertainty
@@ -142,7 +140,7 @@ impl EvidenceTables<'_> {
         sorting: &mut Sorting,
         commands: &mut Vec<Command>,
     ) {
-        /// Index of the column with the ratio of the difference to the expected difference.
+        /// Index of the column with the ratio of found to expected difference.
         const RATIO: usize = 6;
         let (table, differences) = difference_table(state.dataset(), self.uncertainty);
         heading_ui(ui, &table.title);
@@ -182,8 +180,7 @@ impl EvidenceTables<'_> {
         });
     }
 
-    /// Draws the root mean square error of each form of the schedule, in fitted and in left-out
-    /// conditions.
+    /// Draws each schedule form's root mean square error, in fitted and in left-out conditions.
     fn forms_table_ui(
         &self,
         ui: &mut Ui,
@@ -211,8 +208,8 @@ impl EvidenceTables<'_> {
     }
 }
 
-/// Returns the cells: response, conditions, relative difference, and the ratio of this difference
-/// to the expected one.
+/// Returns the cells: response, conditions, relative difference, and the ratio of found to expected
+/// difference.
 fn difference_cells(state: &State, found: &AirspeedDifference) -> [String; 4] {
     let [first, second] = found.conditions;
     [

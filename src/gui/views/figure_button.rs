@@ -1,4 +1,4 @@
-//! Save menu of a view: copies or saves its figure or its tables.
+//! Save menu in a view's header: copies or saves the figure or the tables.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
@@ -13,8 +13,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named;
 
-/// Returns the tables that a view shows above its figure and that are saved as its numbers; `None`
-/// if the numbers are those of its figure.
+/// Returns the tables that are saved as a view's values; `None` if its figure's values are saved.
 pub fn tables_of_view(state: &State, view: View) -> Option<Vec<Table>> {
     match view {
         View::Requirements => requirement_tables(state),

@@ -1,5 +1,4 @@
-//! Figures of the views, for the screen and for export: the request for a figure, the figure, and
-//! the file name.
+//! The views' figures, for the screen and for export: request, figure, and file name.
 
 use std::sync::Arc;
 
@@ -28,8 +27,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     } else {
         state.analysis().cloned()
     };
-    // The requirements of the study may be newer than the requirements of the analysis, which does
-    // not depend on them.
+    // The study's requirements may be newer than the analysis, which does not depend on them.
     let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
     figure_request(state, view)?.figure(analysis.as_ref(), source.as_ref())
@@ -60,7 +58,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     name
 }
 
-/// Returns the request for a view's figure, equal to the request of the command `gdcm figure`.
+/// Returns the request for a view's figure, as the command `gdcm figure` makes it.
 pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
@@ -109,8 +107,8 @@ pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
 }
 
-/// Returns the diagnosis of the physics parameters for a figure; `None` for other figures, or until
-/// it is available.
+/// Returns the physics parameters' diagnosis for a figure; `None` for other figures, or until it is
+/// available.
 fn shown_physics(state: &State, kind: FigureKind) -> Option<Arc<PhysicsAssessment>> {
     if kind != FigureKind::Physics {
         return None;

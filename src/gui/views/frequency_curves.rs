@@ -10,8 +10,8 @@ use super::variant_analyses::overlaid_analysis;
 use crate::gui::plot::{BodeCurve, CurveId};
 use crate::gui::state::window_state::State;
 
-/// Returns the source of all curves in the displayed condition; `None` until its responses are
-/// available.
+/// Returns the data from which all curves in the displayed condition are made; `None` until its
+/// responses are available.
 pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let mut schedule = None;
     if let Some(analysis) = state.analysis() {
@@ -32,7 +32,7 @@ pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<
     })
 }
 
-/// Returns the options of the displayed curves, which are the same in the window and on paper.
+/// Returns the curve options, which are the same in the window and on paper.
 pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &display.curves;
@@ -99,7 +99,7 @@ pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     curves
 }
 
-/// Returns the error curves of a response in the displayed condition, as used by the fit; empty
+/// Returns a response's error curves in the displayed condition, as used by the axis fit; empty
 /// until the responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.frequency.errors);
@@ -126,7 +126,7 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Emphasises the curve under the pointer, and adds the effect of a click to each description.
+/// Emphasises the curve under the pointer, and tells in each description what a click does.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,

@@ -35,7 +35,7 @@ pub(super) struct FrequencyPlot<'a> {
 
 impl FrequencyPlot<'_> {
     /// Draws the plot with cursors, values at the cursor and chips. Pushes the resulting commands,
-    /// and a description of the element under the pointer.
+    /// and a description for the element under the pointer.
     pub(super) fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let Self {
             state,
@@ -169,7 +169,7 @@ pub(super) fn action_command(state: &State, id: CurveId, action: CurveAction) ->
     }
 }
 
-/// Formats the values of a curve as text: a heading, then a tab-separated line for each frequency.
+/// Formats a curve's values as text: a heading, then a tab-separated line for each frequency.
 fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
     let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);

@@ -1,8 +1,8 @@
-//! Interaction of the plots of gains and delays: names of plots and dots, status text, derivations,
-//! and commands.
+//! Interaction with gain and delay plots: names for plots and dots, status text, derivations, and
+//! commands.
 //!
-//! `channels` and `net_gain` build the figures and draw them; each dot is the value of a quantity
-//! in a condition.
+//! `channels` and `net_gain` build the figures and draw them; each dot is a quantity's value in a
+//! condition.
 
 use egui::{Vec2, vec2};
 
@@ -23,22 +23,22 @@ use crate::gui::state::window_state::State;
 /// Minimum plot size \[pt\].
 pub const LEAST_PLOT: Vec2 = vec2(110.0, 84.0);
 
-/// Plots of gains or delays, with their quantities.
+/// Gain or delay plots, with their quantities.
 pub struct GainPlots<'a> {
     pub state: &'a State,
     /// Plots with a single panel each.
     pub figure: Figure,
-    /// Quantity of each plot.
+    /// Quantity on each plot's vertical axis.
     pub quantities: Vec<GainQuantity>,
-    /// Quantity on the horizontal axis of every plot.
+    /// Quantity on every plot's horizontal axis.
     pub across: Across,
 }
 
 impl GainPlots<'_> {
-    /// Returns the scene of all plots or of a sequence of them, with marks at the displayed
+    /// Returns the scene with all plots or a sequence of them, with marks at the displayed
     /// condition and at the condition under the pointer.
     ///
-    /// `figure` contains the plots of `self.figure` from the index `first_plot` on.
+    /// `figure` contains the plots in `self.figure` from the index `first_plot` on.
     pub fn scene<'b>(
         &'b self,
         name: &'static str,
@@ -81,7 +81,7 @@ impl FigureWords for GainPlots<'_> {
     }
 
     /// Describes a dot: condition, value, error bar, scheduled value, bounds, use in the schedule,
-    /// and the effect of clicks.
+    /// and what clicks do.
     fn status_text(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else {
             return None;
@@ -162,7 +162,7 @@ impl PointedDot<'_> {
         Some(format!("scheduled {}", measure.text(scheduled)))
     }
 
-    /// Returns the bounds of the search; `None` for net gains, which have no bounds.
+    /// Returns the search bounds; `None` for net gains, which have no bounds.
     fn bounds_words(&self) -> Option<String> {
         let measure = self.quantity.measure();
         let result = self.analysis.condition(self.condition)?;
@@ -174,7 +174,7 @@ impl PointedDot<'_> {
         ))
     }
 
-    /// Describes the use of the condition unless the schedule is fitted to it.
+    /// Describes how the condition is used unless the schedule is fitted to it.
     fn schedule_use(&self) -> Option<&'static str> {
         let choice = self.analysis.study.choice(self.condition);
         if choice.held_out {
@@ -187,7 +187,7 @@ impl PointedDot<'_> {
     }
 }
 
-/// Returns the command for an event in a plot of gains or delays.
+/// Returns the command for an event in a gain or delay plot.
 pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
     match event {
         FigureEvent::Clicked(_, MarkId::Condition(condition), keys) => {

@@ -1,4 +1,4 @@
-//! Effect of delay or lead in each channel, and the gain that leads add above the band.
+//! Effect that delays or leads have in each channel, and the gain that leads add above the band.
 
 use egui::{Panel, Ui, vec2};
 
@@ -19,10 +19,11 @@ use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
-/// Initial table width, as a share of the view's width.
+/// Initial table width, as a share of the view width.
 const TABLE_PART: f32 = 0.5;
 
-/// Draws the gain and phase added by leads up to ten times the band, and the channel table.
+/// Draws the gain and phase added by leads up to ten times the band's upper end, and the channel
+/// table.
 pub fn leads_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -58,7 +59,7 @@ pub fn leads_view_ui(
             Settings, phase, \"delay or lead\""
         }
     };
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -83,9 +84,9 @@ fn figure(state: &State) -> Figure {
         .unwrap_or_default()
 }
 
-/// Builds the channel table: delay or lead, phase at the upper end of the band, replaced servo, and
-/// the gain added above the band. The title gives the highest frequency at which the corrected
-/// model is valid. `None` without leads.
+/// Builds the channel table: delay or lead, phase at the upper band edge, replaced servo, and the
+/// gain added above the band. The title gives the highest frequency at which the corrected model is
+/// valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::new(leads);

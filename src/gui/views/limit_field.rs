@@ -73,7 +73,7 @@ impl LimitField {
         }
     }
 
-    /// Formats a stored value, without the rounding error of the unit conversion.
+    /// Formats a stored value in the displayed unit, without the conversion's rounding error.
     fn text(&self, value: f64) -> String {
         number((1e9 * (self.to_shown * value)).round() / 1e9)
     }

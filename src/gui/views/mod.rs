@@ -140,15 +140,16 @@ pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
     /// Additional text in the header.
     pub title: ViewTitle,
-    /// Pages of the view, in the order of the segmented control; empty for a view without pages.
+    /// Pages, in the order of the segmented control; empty for a view without pages.
     pub pages: fn(&State) -> Vec<PageEntry>,
     /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
-    /// Width of the tools \[pt\]; the title takes the rest.
+    /// Width for the tools \[pt\]; the title takes the rest.
     pub tools_width: f32,
     /// Computations needed in addition to the analysis of the current settings.
     pub needs: fn(&State) -> Vec<Need>,
-    /// Content of the right panel below the verdict; `None` for the result and the constraint matrix.
+    /// Content in the right panel below the verdict; `None` for the result and the constraint
+    /// matrix.
     pub side: Option<SideUi>,
     /// Whether the page bar has the primary button, because the view has results that are not used.
     pub has_primary: fn(&State) -> bool,
@@ -180,7 +181,7 @@ pub struct PageEntry {
 }
 
 impl PageEntry {
-    /// Creates the entry of a page of a view without columns or jobs of its own.
+    /// Creates the entry for a page that shares the view's columns and jobs.
     fn of(page: ViewPage, is_shown: bool) -> Self {
         Self {
             words: page.words(),
@@ -197,12 +198,12 @@ pub enum ViewTitle {
     Condition,
     /// The response in focus, and the condition.
     ResponseAndCondition,
-    /// The response in focus without the condition, for views of all conditions.
+    /// The response in focus without the condition, for views that show all conditions.
     ResponseOnly,
-    /// This name of the view, and the condition.
+    /// The given name, and the condition.
     NameAndCondition(&'static str),
     Words(fn(&State) -> String),
-    /// A name, and further words, which are cut first.
+    /// A name, and additional text, which is cut first.
     Named(&'static str, fn(&State) -> String),
 }
 

@@ -1,5 +1,5 @@
-//! Table of the modes in the displayed condition, and the cache of this table, of the zeros and of
-//! the pole shifts.
+//! Table of modes in the displayed condition, and a cache for this table, the zeros and the pole
+//! shifts.
 
 use std::sync::Arc;
 
@@ -84,7 +84,7 @@ impl CachedModes {
 }
 
 /// Returns the models whose zeros are shown: the nominal model and both representatives, because
-/// the zeros of all models would hide the poles.
+/// all models' zeros would hide the poles.
 fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     let condition = &modes.condition;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
@@ -100,7 +100,7 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     models
 }
 
-/// Returns the index of the physics model whose modes are followed through the other models: the
+/// Returns the index of the physics model whose modes are followed in the other models: the
 /// representative or, until it is available, the nominal model.
 fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     let kind = BundleKind::Physics;
@@ -114,9 +114,9 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     modes.condition.nominal()
 }
 
-/// Builds the mode table of the physics bundle: a row for each mode of the reference model,
+/// Builds the mode table for the physics bundle: a row for each mode in the reference model,
 /// followed from model to model. Also returns, for each row, the first model whose pole is an
-/// outlier of the mode.
+/// outlier for the mode.
 fn modes_table(
     state: &State,
     modes: &ConditionModes,

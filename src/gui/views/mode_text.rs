@@ -1,4 +1,4 @@
-//! Text about a mode: values, name, participations, and the conversion of a discrete-time pole.
+//! Text about a mode: values, name, participations, and how a discrete-time pole is converted.
 
 use gdcm_method::requirements::{ModeName, NamedBy};
 use gdcm_model::dataset::{Dynamics, Model};
@@ -6,7 +6,7 @@ use gdcm_model::response::Mode;
 use gdcm_model::units::number;
 
 /// Describes a mode: its values, its name, its largest participations and, for a discrete-time
-/// model, the conversion of its pole to `s`.
+/// model, how its pole is converted to `s`.
 pub(super) fn mode_description(mode: &Mode, model: &Model) -> Vec<String> {
     let mut words = vec![mode_values(mode)];
     words.extend(mode_name(mode, model));
@@ -36,7 +36,7 @@ pub(super) fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
     }
 }
 
-/// Returns the name of a mode; `None` unless the model names its states (M17.3).
+/// Returns a mode's name; `None` unless the model names its states (M17.3).
 pub(super) fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     match ModeName::determine(mode, &model.states) {
         (Some(name), NamedBy::States) => Some(name.to_string()),
@@ -44,7 +44,7 @@ pub(super) fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     }
 }
 
-/// Describes the conversion of discrete-time poles to `s`.
+/// Describes how discrete-time poles are converted to `s`.
 fn discrete_time_words(model: &Model) -> Option<String> {
     let Dynamics::StateSpace(system) = &model.dynamics else {
         return None;

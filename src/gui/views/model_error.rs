@@ -1,5 +1,5 @@
-//! Error view: ratio and phase difference of the models to the identified model, in the response
-//! in focus.
+//! Error view: the models' magnitude ratio and phase difference to the identified model, in the
+//! response in focus.
 
 use egui::Ui;
 
@@ -18,8 +18,8 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageOption;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws the ratio and phase difference of every kept physics model and of the corrected model to
-/// the identified model, in the response in focus.
+/// Draws magnitude ratio and phase difference to the identified model for every kept physics model
+/// and the corrected model, in the response in focus.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,

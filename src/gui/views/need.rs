@@ -1,4 +1,4 @@
-//! Background results that a view needs in addition to the analysis of the current settings.
+//! Background results that a view needs in addition to the current analysis.
 
 use std::sync::Arc;
 
@@ -12,13 +12,13 @@ use gdcm_study::jobs::requirement_jobs::{
 
 use crate::gui::state::window_state::State;
 
-/// Computation that a view needs in addition to the analysis of the current settings.
+/// Computation that a view needs in addition to the current analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Need {
-    /// Modes of all models in the condition.
+    /// All models' modes in the condition.
     Modes(ModesJob),
     Assessment(AssessmentJob),
-    /// Responses of a model in each condition.
+    /// Models' responses in each condition.
     Across(AcrossJob),
     Variant(VariantJob),
     /// Simulated response to a record.

@@ -1,5 +1,5 @@
-//! Net-gain view: plots of the net gains over airspeed, and beside them the evidence for the form
-//! of the schedule. The header is in `net_gain_header`.
+//! Net-gain view: plots of net gains over airspeed, and beside them the evidence for the schedule
+//! form. The header is in `net_gain_header`.
 
 use egui::{Panel, RichText, ScrollArea, Ui};
 
@@ -25,7 +25,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
-/// Draws the net gain of each displayed response over airspeed.
+/// Draws each displayed response's net gain over airspeed.
 pub fn net_gain_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -49,7 +49,7 @@ pub fn net_gain_view_ui(
             .min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -78,7 +78,7 @@ pub fn net_gain_view_ui(
     state.display.figures.insert(View::NetGain, view);
 }
 
-/// Draws the evidence for each form of the schedule; a click selects a form.
+/// Draws the evidence for each schedule form; a click selects a form.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
@@ -116,7 +116,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     state.display.gains.evidence_sorting = sorting;
 }
 
-/// Builds a plot for each displayed response: net gain at the optimum of each condition, and the
+/// Builds a plot for each displayed response: net gain at each condition's optimum, and the
 /// schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let mut pairs = Vec::new();

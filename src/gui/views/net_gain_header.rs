@@ -1,5 +1,5 @@
-//! Header of the net-gain view: description, switches, displayed responses, and the menu with the
-//! form of the schedule.
+//! Header for the net-gain view: description, switches, displayed responses, and the menu with the
+//! schedule form.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Label, PopupCloseBehavior, RichText, Role, Ui, WidgetInfo, vec2};
@@ -19,13 +19,13 @@ use crate::gui::widgets::choices::{Toggle, choice_ui};
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
 
-/// Size of the explanation of the control under the pointer \[pt\].
+/// Size of the area that explains the control under the pointer \[pt\].
 const HELP_WIDTH: f32 = 300.0;
 const HELP_HEIGHT: f32 = 30.0;
-/// Width of the controls in a single line \[pt\].
+/// Width that the controls need in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// Returns the description of the plots in the view's header.
+/// Returns the description in the view's header.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.gains.hide_bars {
@@ -82,7 +82,7 @@ pub fn net_gain_header_ui(
     pair_set_ui(ui, state, commands);
 }
 
-/// Draws the selector of the displayed responses, from right to left.
+/// Draws the selector for displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.selection.pair;
     if state.display.gains.net_gain_pairs == PairSet::Picked {
@@ -107,7 +107,7 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the settings of the schedule, line by line.
+/// Draws the schedule settings, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
         &setting_table::SCHEDULE,

@@ -1,4 +1,4 @@
-//! Responses in the net-gain plots and tables, as chosen in the header of the view.
+//! Responses in the net-gain plots and tables, as chosen in the view's header.
 
 use gdcm_model::dataset::Pair;
 

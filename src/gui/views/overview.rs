@@ -18,7 +18,6 @@ use crate::gui::state::view_pages::ViewPage;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Returns the pages: magnitudes, or magnitudes and phases.
 pub fn overview_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.frequency.overview.show_phase;
     [false, true]
@@ -81,7 +80,7 @@ pub fn overview_view_ui(
     }
 }
 
-/// Returns "J 75→61": J of the uncorrected physics representative, and of the fully corrected
+/// Returns "J 75→61": J for the uncorrected physics representative, and for the fully corrected
 /// model. Empty unless both are available.
 fn cost_note(state: &State, pair: Pair) -> String {
     let Some(shown) = state.shown() else {

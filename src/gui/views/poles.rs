@@ -1,4 +1,4 @@
-//! Poles in the s-plane, and a table of the modes of the physics bundle.
+//! Poles in the s-plane, and a table of the physics bundle's modes.
 
 use egui::{Panel, Ui, Vec2, vec2};
 
@@ -27,8 +27,8 @@ use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Ranges of real and imaginary part in the plot of slow modes \[rad/s\], which contains the
-/// rigid-body modes of a helicopter.
+/// Ranges for real and imaginary part in the plot of slow modes \[rad/s\], which contains a
+/// helicopter's rigid-body modes.
 const SLOW: [Range; 2] = [
     Range {
         min: -2.0,
@@ -41,10 +41,10 @@ const SLOW: [Range; 2] = [
 ];
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
-/// Initial table height, as a share of the view's height.
+/// Initial table height, as a share of the view height.
 const TABLE_PART: f32 = 0.3;
-/// Minimum height of the view with room for plots and table \[pt\]; below, the table is a page of its
-/// own only.
+/// Minimum view height for plots and table \[pt\]; a lower view shows the table only on its own
+/// page.
 const LEAST_WITH_TABLE: f32 = 440.0;
 
 /// Returns the pages: the s-plane, and the modes.
@@ -67,7 +67,7 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// Draws the poles of every model in the displayed condition; a click rejects or restores a model.
+/// Draws every model's poles in the displayed condition; a click rejects or restores a model.
 pub fn poles_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -96,7 +96,7 @@ pub fn poles_view_ui(
         panel.show(ui, |ui| modes_ui(ui, state, palette, commands));
     }
     let message = absence_of_modes(state);
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
@@ -150,8 +150,8 @@ fn pole_command(state: &State, event: FigureEvent) -> Option<Command> {
     }
 }
 
-/// Builds the pole figure of all models in the displayed condition, optionally with the zeros of
-/// the response in focus; `None` until these are available.
+/// Builds the figure with all models' poles in the displayed condition, optionally with zeros for
+/// the response in focus; `None` until the modes are available.
 pub fn poles(state: &State) -> Option<Figure> {
     let CachedModes { zeros, shifts, .. } = &state.display.poles.modes;
     let zeros_of_model = |id: &ModelId| match zeros.iter().find(|(model, _)| model == id) {
@@ -198,8 +198,8 @@ fn with_screen_marks(mut figure: Figure, view: &mut FigureView, update: AxisUpda
     figure
 }
 
-/// Returns the dot size of a legend entry, relative to the usual size. Perturbed models have
-/// smaller dots than the nominal model and the representatives.
+/// Returns a legend entry's dot size, relative to the usual size. Perturbed models have smaller
+/// dots than the nominal model and the representatives.
 fn dot_size(key: Option<&str>) -> f64 {
     const LARGE: [Role; 3] = [
         Role::Nominal,
@@ -215,7 +215,7 @@ fn dot_size(key: Option<&str>) -> f64 {
     }
 }
 
-/// Accessible names of the pole plots, and descriptions of their marks.
+/// Accessible names for the pole plots, and descriptions of their marks.
 struct PoleWords<'a> {
     state: &'a State,
     dots: usize,
@@ -258,7 +258,7 @@ impl FigureWords for PoleWords<'_> {
     }
 }
 
-/// Draws the mode table; a click isolates the first model whose pole is an outlier of the mode.
+/// Draws the mode table; a click isolates the first model whose pole is an outlier for the mode.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let CachedModes {
         table, outliers, ..

@@ -1,5 +1,4 @@
-//! Cards of the details of a requirement: heading with its accent line, and the colours of the
-//! models.
+//! Cards in the requirement details: heading with its accent line, and the model colours.
 
 use egui::{Color32, Label, Rect, RichText, Stroke, Ui, vec2};
 
@@ -9,13 +8,13 @@ use gdcm_study::results::requirement_role::RequirementRole;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Height of a card's heading \[pt\].
+/// Heading height \[pt\].
 const HEADING: f32 = 22.0;
-/// Width of the accent line above the card of the selected requirement, and of a plain line \[pt\].
+/// Width of the accent line above the selected requirement's card, and of the line above other
+/// cards \[pt\].
 const ACCENT_LINE: f32 = 2.0;
 const LINE: f32 = 1.0;
 
-/// Heading of a card.
 pub(super) struct CardHeading<'a> {
     pub(super) title: &'a str,
     /// Subject, drawn dim and cut at the end.
@@ -24,8 +23,8 @@ pub(super) struct CardHeading<'a> {
     pub(super) is_accented: bool,
 }
 
-/// Draws the heading of a card: a line, title and subject, controls at the right; returns the area
-/// of the card's content.
+/// Draws a card's heading: a line, title and subject, controls at the right; returns the content
+/// area.
 pub(super) fn card_ui(
     ui: &mut Ui,
     area: Rect,
@@ -53,7 +52,7 @@ pub(super) fn card_ui(
     area.with_min_y(row.bottom())
 }
 
-/// Returns the colour of the model in a role.
+/// Returns the colour for the model in a role.
 pub(super) fn role_color(palette: &Palette, role: RequirementRole) -> Color32 {
     let hue = match role {
         RequirementRole::Physics => Hue::Perturbed,

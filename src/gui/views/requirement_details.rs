@@ -1,5 +1,5 @@
-//! Drawer with the details of the selected requirement: three cards side by side in a wide window,
-//! one of them with its numbers in a narrow one.
+//! Drawer with details about the selected requirement: three cards side by side in a wide window,
+//! one card with its numbers in a narrow window.
 
 use egui::{Rect, Ui, UiBuilder, vec2};
 
@@ -31,16 +31,16 @@ use crate::gui::widgets::drawer::{Drawer, drawer_ui};
 use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Default and least height of the drawer \[pt\].
+/// Default and least drawer height \[pt\].
 const HEIGHT: f32 = 250.0;
 /// Least distance between cards \[pt\].
 const CARD_GAP: f32 = 16.0;
-/// Widths of the cards, as shares.
+/// Card widths, as shares of the drawer width without gaps.
 const CARD_SHARES: [f32; 3] = [0.25, 0.37, 0.38];
-/// Width of the numbers beside a single card \[pt\].
+/// Width for the numbers beside a single card \[pt\].
 const NUMBERS: f32 = 250.0;
 
-/// Draws the drawer at the bottom of the view; Escape and its button close it.
+/// Draws the drawer at the bottom of the view; Escape or its button closes it.
 pub(super) fn details_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -93,7 +93,7 @@ pub(super) fn details_ui(
     }
 }
 
-/// Returns the display after Escape: an open editor of a limit is closed before the details.
+/// Returns the display after Escape: an open limit editor is closed before the drawer.
 fn closed(display: RequirementsDisplay) -> RequirementsDisplay {
     if display.edited_limit.is_some() {
         return RequirementsDisplay {
@@ -129,12 +129,13 @@ fn verdict(selected: &SelectedCell<'_>) -> String {
     format!("{value}, {verdict}; physics {physics}")
 }
 
-/// Controls in the bar of the drawer.
+/// Controls in the drawer's title bar.
 struct DetailsBar {
     display: RequirementsDisplay,
-    /// Command of the link to couplings, if they are worthwhile.
+    /// Command for the link to couplings, if they are worthwhile.
     use_couplings: Option<Command>,
-    /// Commands of the link to the Bode view, for a bandwidth or a phase delay.
+    /// Commands for the link to the Bode view; empty unless a bandwidth or a phase delay is
+    /// selected.
     show_in_bode: Vec<Command>,
 }
 
@@ -223,7 +224,7 @@ fn detail_words(detail: RequirementDetail) -> PageWords {
     }
 }
 
-/// Details of the selected requirement.
+/// Details about the selected requirement.
 struct Details<'a> {
     requirements: &'a Requirements,
     requirement: Requirement,
@@ -245,7 +246,7 @@ impl Details<'_> {
         ui.advance_cursor_after_rect(room);
     }
 
-    /// Draws the card in front, with its numbers at the right.
+    /// Draws the chosen card, with its numbers at the right.
     fn card_with_numbers_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let detail = state.display.judging.requirements.detail;
         let room = ui.available_rect_before_wrap();

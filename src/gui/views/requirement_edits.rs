@@ -1,4 +1,4 @@
-//! Command that changes the settings of the requirements.
+//! Command that changes requirement settings.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSe
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
 
-/// Returns the command that changes a part of the settings of the requirements.
+/// Returns the command that changes a part of the requirement settings.
 pub(super) fn requirement_edit(
     state: &State,
     part: RequirementPart,

@@ -1,5 +1,5 @@
-//! The grid of the requirements: rows of requirements, columns of conditions. Below
-//! [`FULL_WIDTH`], the groups fold to counts except the one of the selected cell.
+//! Requirement grid: a row for each requirement, a column for each condition. In windows narrower
+//! than [`FULL_WIDTH`], each group except that of the selected cell folds to a row of counts.
 
 use egui::{
     Align2, EventFilter, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
@@ -36,21 +36,21 @@ const GROUP: f32 = 76.0;
 const NAME: f32 = 158.0;
 const UNIT: f32 = 28.0;
 const LIMIT: f32 = 58.0;
-/// Range of the width of a condition's column \[pt\].
+/// Least and largest width of a condition's column \[pt\].
 const LEAST_CONDITION: f32 = 40.0;
 const MOST_CONDITION: f32 = 72.0;
-/// Row heights: all groups, folded groups \[pt\].
+/// Row heights if all groups are open, and if groups are folded \[pt\].
 const ROW: f32 = 19.0;
 const FOLDED_ROW: f32 = 21.0;
-/// Distance between rows, and further distance between groups \[pt\].
+/// Distance between rows, and additional distance between groups \[pt\].
 const ROW_GAP: f32 = 2.0;
 const GROUP_GAP: f32 = 4.0;
-/// Width of the strip for the physics model, and distance between cells \[pt\].
+/// Width of a cell's strip for the physics model, and distance between cells \[pt\].
 const STRIP: f32 = 5.0;
 const CELL_GAP: f32 = 2.0;
-/// Distance of a number from the right edge of its cell \[pt\].
+/// Distance from a number to its cell's right edge \[pt\].
 const NUMBER_MARGIN: f32 = 8.0;
-/// Indentation of the rows of an open group \[pt\].
+/// Row indentation in an open group \[pt\].
 const INDENT: f32 = 13.0;
 
 /// Draws the grid into the remaining space, with scroll bars where it does not fit.
@@ -87,17 +87,16 @@ pub(super) fn grid_ui(
         });
 }
 
-/// Positions of the columns, from the left edge of the grid \[pt\].
+/// Column positions, from the grid's left edge \[pt\].
 #[derive(Clone, Copy)]
 struct GridLayout {
     is_folded: bool,
     name: f32,
-    /// Left edge of the units.
+    /// Left edge of the unit column.
     unit: f32,
-    /// Left edge of the first condition.
+    /// Left edge of the first condition's column.
     conditions: f32,
     condition_width: f32,
-    /// Number of conditions.
     count: usize,
     row: f32,
 }
@@ -119,7 +118,7 @@ impl GridLayout {
         }
     }
 
-    /// Left edge of the limits.
+    /// Returns the left edge of the limit column.
     fn limit(&self) -> f32 {
         self.conditions + self.condition_width * self.count as f32
     }
@@ -128,7 +127,7 @@ impl GridLayout {
         self.limit() + LIMIT
     }
 
-    /// Returns the area of a cell; `place` counts the columns in display order.
+    /// Returns a cell's area; `place` counts the columns in display order.
     fn cell(&self, row: Rect, place: usize) -> Rect {
         let left = row.left() + self.conditions + self.condition_width * place as f32;
         Rect::from_min_max(
@@ -138,12 +137,11 @@ impl GridLayout {
     }
 }
 
-/// A line of the grid.
 #[derive(Clone, Copy)]
 enum GridLine<'a> {
     Conditions,
     Airspeeds,
-    /// Heading of a group, with its counts if it is folded.
+    /// Group heading, with counts if the group is folded.
     Group(RequirementGroup),
     Requirement {
         row: &'a GridRow,
@@ -151,11 +149,11 @@ enum GridLine<'a> {
     },
 }
 
-/// A grid as drawn in the current frame.
+/// Grid as drawn in the current frame.
 struct GridPainter<'a> {
     state: &'a State,
     grid: &'a RequirementGrid,
-    /// Indices of the columns in display order.
+    /// Column indices in display order.
     columns: Vec<usize>,
     selected: Requirement,
     layout: GridLayout,
@@ -255,7 +253,7 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws the numbers of the conditions; a click sorts by number.
+    /// Draws the condition numbers; a click sorts by number.
     fn conditions_ui(&self, ui: &mut Ui, row: Rect, commands: &mut Vec<Command>) {
         self.heading_ui(ui, row, "condition", GridOrder::Number, commands);
         let shown = self.state.condition().id();
@@ -282,7 +280,7 @@ impl GridPainter<'_> {
             .text(at, Align2::RIGHT_CENTER, "limit", small(), color);
     }
 
-    /// Draws the airspeeds of the conditions; a click sorts by airspeed.
+    /// Draws the conditions' airspeeds; a click sorts by airspeed.
     fn airspeeds_ui(&self, ui: &mut Ui, row: Rect, commands: &mut Vec<Command>) {
         self.heading_ui(ui, row, "airspeed, kt", GridOrder::Airspeed, commands);
         for (place, column) in self.columns.iter().enumerate() {
@@ -295,7 +293,7 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws the name of a heading row, which is a button as wide as the conditions.
+    /// Draws a heading row's name, a button that extends to the limit column.
     fn heading_ui(
         &self,
         ui: &mut Ui,
@@ -335,7 +333,8 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws the heading of a group: what its values are, or the count of each condition.
+    /// Draws a group's heading with a description of its values if it is open, or with each
+    /// condition's count if it is folded.
     fn group_ui(
         &self,
         ui: &mut Ui,
@@ -413,7 +412,8 @@ impl GridPainter<'_> {
             .text(at, Align2::RIGHT_CENTER, "met", small(), color);
     }
 
-    /// Returns the first requirement of a group that a condition does not meet, or the first of all.
+    /// Returns the group's first requirement that a condition does not meet; the group's first if
+    /// all are met.
     fn first_outside(&self, group: RequirementGroup, column: usize) -> Option<Requirement> {
         let is_outside = |row: &&GridRow| {
             let cell = row.cells.get(column);
@@ -492,8 +492,8 @@ impl GridPainter<'_> {
                 is_selected,
             },
         );
-        // Only the selected cell is reached by Tab; the arrow keys lead to the others.
-        // A cell that has just received the focus would lose it without a focusable sense.
+        // Tab reaches only the selected cell; arrow keys reach the others. A cell that has just
+        // received the focus would lose it without a focusable sense.
         let id = ui.scope_id().with((key, condition));
         let is_focused = ui.memory(|memory| memory.has_focus(id));
         let sense = if is_selected || is_focused {
@@ -522,7 +522,7 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Moves the selection by the arrow keys.
+    /// Moves the selection when an arrow key is pressed.
     fn move_selection(
         &self,
         ui: &Ui,
@@ -592,7 +592,7 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws the limit of a row; a double click edits it.
+    /// Draws a row's limit; a double click edits it.
     fn limit_ui(&self, ui: &mut Ui, row: Rect, requirement: &GridRow, commands: &mut Vec<Command>) {
         let key = requirement.requirement;
         let left = row.left() + self.layout.limit();
@@ -633,17 +633,17 @@ impl GridPainter<'_> {
     }
 }
 
-/// A cell at its position on the screen.
+/// Cell at its position on the screen.
 struct ShownCell<'a> {
     rect: Rect,
     /// Position among the columns in display order.
     place: usize,
-    /// Index of its condition in the grid.
+    /// Index of the condition's column in the grid.
     column: usize,
     cell: &'a GridCell,
 }
 
-/// Text and colours of a cell.
+/// Text in a cell, and the facts that determine its colours.
 struct CellLook<'a> {
     text: &'a str,
     has_value: bool,
@@ -657,15 +657,14 @@ fn presses(ui: &Ui, key: Key) -> isize {
     ui.input(|input| input.num_presses(key)) as isize
 }
 
-/// Returns the entry `by` places further, at most the last.
+/// Returns the entry `by` places from `here`, clamped to the ends.
 fn neighbour<T: Copy>(entries: &[T], here: usize, by: isize) -> Option<T> {
     let last = entries.len().checked_sub(1)?;
     let there = here.saturating_add_signed(by).min(last);
     entries.get(there).copied()
 }
 
-/// Draws the explanation of strip and background at the right of the line above the grid, from right
-/// to left.
+/// Draws the legend for strip and background colours above the grid, from right to left.
 pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 6.0;
     if ui.available_width() > 560.0 {
@@ -679,7 +678,7 @@ pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
     sample_ui(ui, palette, true);
 }
 
-/// Draws a small cell whose strip, or whose background, is in the warning colour.
+/// Draws a small cell with its strip or its background in the warning colour.
 fn sample_ui(ui: &mut Ui, palette: &Palette, is_strip: bool) {
     const SIZE: Vec2 = vec2(22.0, 12.0);
     let (rect, _) = ui.allocate_exact_size(SIZE, Sense::hover());

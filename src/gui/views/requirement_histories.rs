@@ -1,5 +1,5 @@
-//! A flight record with its tolerances, or the responses to a test input, in the details of a
-//! requirement (M17.2).
+//! A flight record with its tolerances, or the responses to a test input, in the requirement
+//! details (M17.2).
 
 use egui::{Align2, Grid, Label, Sense, Ui, Vec2, pos2, vec2};
 
@@ -34,10 +34,11 @@ use crate::message::Message;
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 90.0);
-/// Height of the line with the shares of time inside, and distance between them \[pt\].
+/// Height of the line with the time shares inside the tolerance, and distance between the shares
+/// \[pt\].
 const SHARES: f32 = 16.0;
 const SHARES_GAP: f32 = 7.0;
-/// Relative height of the panel with the test input.
+/// Relative height of the test-input panel.
 const INPUT_WEIGHT: f64 = 0.4;
 
 /// Draws the selector between the condition's records, the held-out ones first, and a test input;
@@ -85,7 +86,7 @@ pub(super) fn record_choice_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Co
     }
 }
 
-/// Returns the subject of the details: the quantity with its unit, and the record.
+/// Returns the card's subject: the quantity with its unit, and the record.
 pub(super) fn time_subject(state: &State, selected: Option<Requirement>) -> String {
     match over_time(state) {
         Some(Ok(OverTime::Record(history, _))) => {
@@ -107,8 +108,8 @@ pub(super) fn time_subject(state: &State, selected: Option<Requirement>) -> Stri
     }
 }
 
-/// Returns the quantity to draw: that of the selected requirement, else the first of the output in
-/// focus, else the first of the record.
+/// Returns the quantity to draw: the selected requirement's, else the first for the output in
+/// focus, else the record's first.
 fn shown_quantity<'a>(
     state: &State,
     history: &'a RecordHistory,
@@ -135,8 +136,8 @@ fn shown_quantity<'a>(
         .or_else(|| drawn().next())
 }
 
-/// Draws the input that was moved, the quantity with its corridor and the error of every model; for
-/// the test input, the input and the output in focus.
+/// Draws the input that was moved, the quantity with its tolerance corridor, and every model's
+/// error; for the test input, the input and the output in focus.
 pub(super) fn time_detail_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -174,7 +175,7 @@ pub(super) fn time_detail_ui(
             return;
         }
     };
-    // The scene borrows the state, so the view is taken out of it while the figure is drawn.
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = std::mem::take(&mut state.display.judging.history_figure);
     view.set_subject(&figure.title);
     let words = HistoryWords(&figure);
@@ -193,7 +194,7 @@ pub(super) fn time_detail_ui(
     state.display.judging.history_figure = view;
 }
 
-/// Keeps the plots of the test input and of an output, above each other.
+/// Keeps only the plots for the test input and one output, the input on top.
 fn output_figure(figure: Figure, output: usize) -> Figure {
     let mut plot = Plot::new("");
     for (index, found) in figure.plots.iter().enumerate() {
@@ -214,8 +215,8 @@ fn output_figure(figure: Figure, output: usize) -> Figure {
     }
 }
 
-/// Draws the share of time that each model is inside the tolerance, in the model's colour; models
-/// that do not fit into the line are omitted.
+/// Draws each model's time share inside the tolerance, in the model's colour; models that do not
+/// fit into the line are omitted.
 fn shares_ui(ui: &mut Ui, quantity: &QuantityHistory, palette: &Palette) {
     let size = vec2(ui.available_width(), SHARES);
     let (row, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -237,13 +238,14 @@ fn shares_ui(ui: &mut Ui, quantity: &QuantityHistory, palette: &Palette) {
     }
 }
 
-/// Formats the share of time inside in percent, rounded down: only the whole is 100.
+/// Formats the time share inside the tolerance in percent, rounded down so that 100 means always
+/// inside.
 fn rounded_down_percent(check: &RecordCheck) -> String {
     decimals((100.0 * check.share_inside()).floor(), 0)
 }
 
-/// Draws the share of time inside, the peak error and its time, for every model, above the
-/// tolerance.
+/// Draws for every model the time share inside the tolerance, the peak error and its time; below
+/// them the tolerance.
 pub(super) fn time_numbers_ui(
     ui: &mut Ui,
     state: &State,
@@ -281,7 +283,7 @@ pub(super) fn time_numbers_ui(
     ui.add(Label::new(palette.small(text)).wrap());
 }
 
-/// Draws the fields of the test input: shape, size and duration.
+/// Draws the fields for the test input: shape, size and duration.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     if let Some(reading) = &state.records.reading {
         ui.label(palette.small(format!("reading {reading} …")));
@@ -339,7 +341,7 @@ fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Comman
     number_entry_ui(ui, name, &number(value), "", 48.0, commands)?
 }
 
-/// Returns the command that changes the test input, or that reports why it is refused.
+/// Returns the command that changes the test input, or the command that reports why it is refused.
 fn set_test_input(state: &State, part: RequirementPart, test: TestInput) -> Command {
     match test.checked() {
         Ok(test) => requirement_edit(state, part, |settings| settings.test = test),
@@ -347,7 +349,7 @@ fn set_test_input(state: &State, part: RequirementPart, test: TestInput) -> Comm
     }
 }
 
-/// Accessible names of the plots over time.
+/// Accessible names for the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

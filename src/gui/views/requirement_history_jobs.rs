@@ -13,8 +13,8 @@ use super::need::{Need, current_analysis};
 use crate::gui::state::requirements_display::RequirementDetail;
 use crate::gui::state::window_state::State;
 
-/// Returns the index of the record in the details: the chosen record, else the first held-out
-/// record, else the first record in use; `None` without records.
+/// Returns the index of the record in the requirement details: the chosen record, else the first
+/// held-out record, else the first record in use; `None` without records.
 pub(super) fn compared_record(state: &State) -> Option<usize> {
     let condition = state.condition().id();
     let records = state.records.conditions.get(&condition)?;
@@ -34,8 +34,8 @@ pub(super) fn compared_record(state: &State) -> Option<usize> {
     first
 }
 
-/// Returns the job of the record in the details; `None` without a record, or if the test input is
-/// shown instead.
+/// Returns the job for the record in the requirement details; `None` without a record, or if the
+/// test input is shown instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current_analysis(state)?;
     let condition = state.condition().id();

@@ -1,5 +1,5 @@
-//! Editors of the limits of the requirements: the fields of one row of the grid, and the menu of
-//! everything that the limits depend on (M17).
+//! Editors for requirement limits: the fields for one grid row, and the menu with everything that
+//! determines the limits (M17).
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Popup, PopupCloseBehavior, Response, Ui};
@@ -24,7 +24,7 @@ use crate::gui::widgets::controls::{button_ui, named};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::message::Message;
 
-/// Draws the fields of a row's limit in a popup at the limit; a click beside it or Escape closes it.
+/// Draws the fields for a row's limit in a popup; a click beside the popup or Escape closes it.
 pub(super) fn limit_editor_ui(
     limit: &Response,
     state: &State,
@@ -52,7 +52,7 @@ pub(super) fn limit_editor_ui(
     }
 }
 
-/// Fields of the limits of a study.
+/// Fields for the study's limits.
 struct LimitEditor<'a> {
     state: &'a State,
     palette: &'a Palette,
@@ -132,7 +132,7 @@ impl LimitEditor<'_> {
         });
     }
 
-    /// Draws the fields of a row of the tolerance table.
+    /// Draws the fields for a row in the tolerance table.
     fn tolerance_ui(&self, ui: &mut Ui, index: usize, commands: &mut Vec<Command>) {
         let table = &self.state.study.requirements.tolerances;
         let mut rows = table.rows().to_vec();
@@ -147,7 +147,7 @@ impl LimitEditor<'_> {
         }
     }
 
-    /// Draws the fields of a tolerance; `place` counts the rows from 1.
+    /// Draws the fields for a tolerance; `place` counts the rows from 1.
     fn tolerance_row_ui(
         &self,
         ui: &mut Ui,
@@ -171,7 +171,7 @@ impl LimitEditor<'_> {
         }
     }
 
-    /// Draws the fields of the tolerances of a mode.
+    /// Draws the fields for a mode's tolerances.
     fn mode_ui(&self, ui: &mut Ui, name: ModeName, commands: &mut Vec<Command>) {
         let table = &self.state.study.requirements.mode_tolerances;
         let mut rows = table.rows().to_vec();
@@ -191,7 +191,7 @@ impl LimitEditor<'_> {
         }
     }
 
-    /// Draws the fields of a row of mode tolerances; `place` counts the rows from 1.
+    /// Draws the fields for a row of mode tolerances; `place` counts the rows from 1.
     fn mode_row_ui(
         &self,
         ui: &mut Ui,
@@ -224,7 +224,7 @@ impl LimitEditor<'_> {
     }
 }
 
-/// Draws the menu of the limits: tables of tolerances, axes with attitude command, levels.
+/// Draws the limits menu: tolerance tables, axes with attitude command, level boundaries.
 pub(super) fn limits_menu_ui(
     ui: &mut Ui,
     state: &State,
@@ -298,21 +298,21 @@ fn menu_content_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     standard_levels_ui(ui, state, commands);
 }
 
-/// Returns the command that changes the tolerances of time histories.
+/// Returns the command that changes the time-history tolerances.
 fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
     requirement_edit(state, RequirementPart::Tolerances, |settings| {
         settings.tolerances = tolerances;
     })
 }
 
-/// Returns the command that changes the tolerances of modes.
+/// Returns the command that changes the mode tolerances.
 fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
     requirement_edit(state, RequirementPart::ModeTolerances, |settings| {
         settings.mode_tolerances = tolerances;
     })
 }
 
-/// Returns the command that changes the limits of bandwidth and summary, or the refusal of a limit
+/// Returns the command that changes the limits for bandwidth and summary, or that refuses a limit
 /// that is not positive.
 fn set_limits(state: &State, limits: OverviewLimits) -> Command {
     match limits.checked() {

@@ -1,4 +1,4 @@
-//! Modes of the displayed condition, in the details of a requirement.
+//! Modes in the displayed condition, as a card in the requirement details.
 
 use egui::{Align2, Rect, Role, ScrollArea, Sense, Ui, pos2, vec2};
 
@@ -20,18 +20,18 @@ use crate::gui::widgets::controls::named;
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, small};
 
-/// Height of a row \[pt\].
+/// Row height \[pt\].
 const ROW: f32 = 19.0;
-/// Right edges of the numbers, as a share of the width: modulus and damping ratio of the model, and
-/// of the identified model.
+/// Right edges of the number columns, as a share of the width: modulus and damping ratio, first for
+/// the judged model, then for the identified model.
 const NUMBERS: [f32; 4] = [0.42, 0.515, 0.635, 0.73];
 /// Gap between the last number and the verdict \[pt\].
 const VERDICT_GAP: f32 = 8.0;
-/// Right edge of the names, as a share of the width.
+/// Right edge of the name column, as a share of the width.
 const NAME: f32 = 0.32;
 
-/// Draws the modes of the displayed condition, without scrolling across: name, modulus and damping
-/// ratio of the judged and of the identified model, verdict. A click shows the poles.
+/// Draws the modes in the displayed condition, without horizontal scrolling: name, modulus and
+/// damping ratio for the judged and the identified model, verdict. A click shows the poles.
 pub(super) fn modes_detail_ui(
     ui: &mut Ui,
     state: &State,
@@ -95,11 +95,10 @@ fn paint_headings(ui: &Ui, row: Rect, model: &str, palette: &Palette) {
     }
 }
 
-/// A mode in the list.
 struct ModeRow<'a> {
     mode: &'a ModeFinding,
     role: RequirementRole,
-    /// Whether the mode is that of the selected requirement.
+    /// Whether the selected requirement concerns this mode.
     is_selected: bool,
     palette: &'a Palette,
 }
@@ -143,7 +142,7 @@ impl ModeRow<'_> {
         }
     }
 
-    /// Returns the name of the mode, or its number.
+    /// Returns the mode's name, else its number.
     fn name(&self) -> String {
         match self.mode.name {
             Some(name) => {
@@ -178,7 +177,7 @@ impl ModeRow<'_> {
     }
 }
 
-/// Returns the verdict, short enough for its column.
+/// Returns the verdict's text, short enough for its column.
 fn verdict_words(verdict: ModeVerdict) -> &'static str {
     match verdict {
         ModeVerdict::Within => "met",

@@ -1,5 +1,4 @@
-//! The grid of the requirements as displayed, its selected cell, and the commands that select
-//! another.
+//! Displayed requirement grid, its selected cell, and the commands that select another cell.
 
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::ConditionId;
@@ -16,7 +15,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::requirements_display::{GridOrder, RequirementsDisplay};
 use crate::gui::state::window_state::State;
 
-/// Returns the grid of the displayed results; `None` until the requirements are available.
+/// Returns the grid for the displayed results; `None` until the requirements are available.
 pub fn shown_grid(state: &State) -> Option<RequirementGrid> {
     let requirements = state.requirements()?;
     let mut histories = None;
@@ -32,7 +31,7 @@ pub fn shown_grid(state: &State) -> Option<RequirementGrid> {
     }))
 }
 
-/// Returns the names of the requirements of the study.
+/// Returns the names for the study's requirements.
 pub(super) fn requirement_names(state: &State) -> RequirementNames<'_> {
     RequirementNames {
         dataset: state.dataset(),
@@ -44,8 +43,8 @@ fn tolerances(state: &State) -> &ToleranceTable {
     &state.study.requirements.tolerances
 }
 
-/// Returns the selected requirement: the chosen one, else the first of the response in focus, else
-/// the first of all.
+/// Returns the selected requirement: the chosen one, else the first for the response in focus, else
+/// the grid's first.
 pub(super) fn selected_requirement(state: &State, grid: &RequirementGrid) -> Option<Requirement> {
     if let Some(selected) = state.display.judging.requirements.selected
         && grid.row(selected).is_some()
@@ -60,7 +59,6 @@ pub(super) fn selected_requirement(state: &State, grid: &RequirementGrid) -> Opt
     of_response.or(grid.rows.first()).map(|row| row.requirement)
 }
 
-/// A selected cell with its row.
 #[derive(Clone, Copy)]
 pub(super) struct SelectedCell<'a> {
     pub(super) row: &'a GridRow,
@@ -83,8 +81,8 @@ pub(super) fn selected_cell<'a>(
     })
 }
 
-/// Returns the commands that select a cell: its requirement, its condition and its response become
-/// those of the window.
+/// Returns the commands that select a cell's requirement, condition and response in the whole
+/// window.
 pub(super) fn select_commands(
     state: &State,
     requirement: Requirement,
@@ -105,7 +103,7 @@ pub(super) fn select_commands(
     commands
 }
 
-/// Returns the indices of the columns in display order.
+/// Returns the column indices in display order.
 pub(super) fn column_order(grid: &RequirementGrid, display: &RequirementsDisplay) -> Vec<usize> {
     let mut columns: Vec<usize> = (0..grid.conditions.len()).collect();
     match display.order {

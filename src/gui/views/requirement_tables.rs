@@ -1,4 +1,4 @@
-//! The grid of the requirements as a table, to copy and to save.
+//! Requirement grid as a table for copying and saving.
 
 use gdcm_words::Table;
 use gdcm_words::requirement_grid::grid_table;

@@ -1,5 +1,5 @@
-//! Requirements in addition to J, as in a qualification: a grid of requirements and conditions above
-//! the details of the selected cell (M17).
+//! Requirements in addition to J, as in a qualification: a grid of requirements and conditions
+//! above details about the selected cell (M17).
 
 use std::sync::Arc;
 
@@ -29,12 +29,12 @@ use crate::gui::widgets::panel_layout::in_line_ui;
 /// Height of the line with the counts \[pt\].
 const COUNTS: f32 = 24.0;
 
-/// Returns the context of the view: what is compared, and that it is no qualification.
+/// Returns the view's context: what is compared, and that it is no qualification.
 pub fn requirements_words(_: &State) -> String {
     "corrected vs identified models, and vs held-out records; not a qualification".to_owned()
 }
 
-/// Draws the options of the view, from right to left.
+/// Draws the view's options, from right to left.
 pub fn requirements_tools_ui(
     ui: &mut Ui,
     state: &State,
@@ -82,7 +82,8 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
 pub fn requirements_needs(state: &State) -> Vec<Need> {
     let mut needs = Vec::new();
     needs.extend(requirements_job(state).map(Need::Requirements));
-    // All records are awaited, so that the grid is not computed again for each condition.
+    // Wait until all records are read; otherwise the grid would be computed again for each
+    // condition.
     if state.records.reading.is_none() {
         needs.extend(time_histories_job(state).map(Need::TimeHistories));
     }
@@ -118,7 +119,7 @@ pub fn requirements_view_ui(
     grid_ui(ui, state, &grid, palette, commands);
 }
 
-/// The line above the grid.
+/// Line above the grid.
 struct RequirementsHeader<'a> {
     grid: &'a RequirementGrid,
     requirements: &'a Requirements,
@@ -154,7 +155,7 @@ impl RequirementsHeader<'_> {
         });
     }
 
-    /// Returns a line for each kind of missing result, and for each reservation about the available
+    /// Returns a line for each kind of missing result, and for each caveat about the available
     /// results.
     fn notes(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = Vec::new();

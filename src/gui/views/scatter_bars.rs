@@ -1,4 +1,5 @@
-//! Bars with the sources of the scatter of the net gains: trim, identification, and unexplained.
+//! Bars that divide the net gains' scatter among its sources: trim, identification, and
+//! unexplained.
 
 use egui::{
     Align2, Color32, FontId, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
@@ -12,14 +13,13 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Bar height \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
-/// Width of the labels before the bars \[pt\].
+/// Width for the labels before the bars \[pt\].
 const LABEL_WIDTH: f32 = 170.0;
-/// Width of the texts after the bars \[pt\].
+/// Width for the texts after the bars \[pt\].
 const TEXT_WIDTH: f32 = 400.0;
 /// Minimum bar width \[pt\].
 const LEAST_BAR: f32 = 60.0;
 
-/// Bars of all responses.
 pub(super) struct ScatterBars<'a> {
     pub(super) uncertainty: &'a Uncertainty,
     pub(super) palette: &'a Palette,
@@ -86,7 +86,7 @@ impl ScatterBars<'_> {
         }
     }
 
-    /// Paints the shares of trim, identification and unexplained variance, from left to right.
+    /// Paints the variance shares for trim, identification and unexplained, from left to right.
     fn paint_shares(&self, painter: &Painter, bar: Rect, split: Option<&VarianceDecomposition>) {
         let Some(shares) = split.and_then(VarianceDecomposition::shares) else {
             return;
@@ -106,7 +106,7 @@ fn name_label(response: &Response, name: String) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
 }
 
-/// Returns the colours of trim, identification and unexplained variance.
+/// Returns the colours for trim, identification and unexplained variance.
 fn source_colors(palette: &Palette) -> [Color32; 3] {
     [palette.perturbed, palette.identified, palette.nominal]
 }

@@ -1,4 +1,4 @@
-//! Dock page about the schedule in the response in focus: net gain over airspeed, and J before the
+//! Dock page about the schedule for the response in focus: net gain over airspeed, and J before the
 //! correction, at each optimum and under the schedule.
 
 use egui::{Ui, vec2};
@@ -17,7 +17,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws net gain and J of the response in focus over airspeed; a click selects a condition.
+/// Draws net gain and J over airspeed for the response in focus; a click selects a condition.
 pub(super) fn schedule_cost_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -70,13 +70,13 @@ pub(super) fn schedule_cost_view_ui(
     state.display.figures.insert(View::ScheduleCost, view);
 }
 
-/// Returns the context of the page: "LON → Q, schedule against the optimum of each condition".
+/// Returns the page's context: "LON → Q, schedule against the optimum of each condition".
 pub(super) fn schedule_cost_words(state: &State) -> String {
     let name = state.dataset().pair_name(state.display.selection.pair);
     format!("{name}, schedule against the optimum of each condition")
 }
 
-/// Descriptions of the plots and dots.
+/// Names for plots and descriptions for dots.
 struct CostWords<'a> {
     state: &'a State,
 }
@@ -102,7 +102,8 @@ impl FigureWords for CostWords<'_> {
         }
     }
 
-    /// Describes a dot: the net gain, or J before, at the optimum and under the schedule.
+    /// Describes a dot: the net gain, or J before the correction, at the optimum and under the
+    /// schedule.
     fn status_text(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = *id else {
             return None;

@@ -1,5 +1,5 @@
-//! Tables about the schedule: error of each form in fitted and in left-out conditions, error of
-//! each degree of the signed delays, residuals, and coefficients; with the cache of the
+//! Tables about the schedule: error for each form in fitted and in left-out conditions, error for
+//! each polynomial degree in the signed delays, residuals, and coefficients; with a cache for the
 //! comparisons.
 
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Evidence for each form of the schedule; its conditions are in the order of `conditions`.
+/// Evidence for each schedule form; its conditions are in the order of `conditions`.
 #[derive(Clone, Copy)]
 pub(super) struct ScheduleEvidence<'a> {
     pub(super) conditions: &'a [ConditionId],
@@ -56,7 +56,7 @@ impl CachedEvidence {
     }
 }
 
-/// Table that compares the forms of the schedule.
+/// Table that compares schedule forms.
 pub(super) struct FormsTable<'a> {
     pub(super) state: &'a State,
     pub(super) forms: &'a FormComparison,
@@ -82,8 +82,8 @@ impl FormsTable<'_> {
     }
 }
 
-/// Builds the table of root mean square errors \[%\] of each form: over the displayed responses in
-/// fitted and in left-out conditions, then for each response in left-out conditions.
+/// Tabulates each form's root mean square error \[%\]: over the displayed responses in fitted and
+/// in left-out conditions, then for each response in left-out conditions.
 fn forms_table(state: &State, forms: &FormComparison) -> Table {
     let pairs = net_gain_pairs(state);
     let mut columns = vec![
@@ -117,7 +117,7 @@ fn kind_name(kind: ScheduleKind) -> String {
     }
 }
 
-/// Formats a root mean square error in `ln k` as a relative error of the gain \[%\].
+/// Formats a root mean square error in `ln k` as a relative gain error \[%\].
 fn percent_text(rms_ln: Option<f64>) -> String {
     match rms_ln {
         Some(rms_ln) => format!("{:.2}", 100.0 * rms_ln),
@@ -147,8 +147,8 @@ fn fit_rms_ln(form: &FormFit, pairs: &[Pair]) -> Option<f64> {
     Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// Builds the table of errors of the scheduled signed delays \[ms\] for each polynomial degree: for
-/// each displayed response, in fitted and in left-out conditions. `None` without leads.
+/// Tabulates the errors in the scheduled signed delays \[ms\] for each polynomial degree: for each
+/// displayed response, in fitted and in left-out conditions. `None` without leads.
 pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Option<Table> {
     if degrees.is_empty() {
         return None;
@@ -173,8 +173,8 @@ pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Op
     Some(table)
 }
 
-/// Builds the table of the residuals of each condition from the current schedule, for each
-/// displayed response \[% of the scheduled gain\].
+/// Tabulates each condition's residuals from the current schedule, for each displayed response \[%
+/// of the scheduled gain\].
 pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> Option<Table> {
     let form = evidence.forms.form(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
@@ -196,7 +196,7 @@ pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> O
     Some(table)
 }
 
-/// Builds the table of the schedule's coefficients, channel by channel; `None` without a schedule.
+/// Tabulates the schedule's coefficients, channel by channel; `None` without a schedule.
 pub(super) fn coefficient_table(state: &State) -> Option<Table> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     let (inputs, outputs) = state.dataset().names_of_channels();

@@ -1,4 +1,4 @@
-//! Controls for the rows of the settings table, by kind of setting: flag, choice, number, slider,
+//! Controls for the rows in the settings table, by kind of setting: flag, choice, number, slider,
 //! threshold. Settings that the program may determine are in `automatic_settings`.
 //!
 //! A drag pushes a change in each frame; `StudyCommand::EndEdit` ends the undo step that they
@@ -29,24 +29,24 @@ pub const SLIDER_START: f64 = 1e-3;
 
 /// Width of a typed number beside a caption \[pt\].
 const TYPED_WIDTH: f32 = 54.0;
-/// Explanation of a source of G without effect.
+/// Explanation shown if the choice of G's source has no effect.
 const IDLE_SOURCE: &str = "With leads, G is computed from the difference between the representatives that \
     remains after the leads";
 
-/// Height of a row with a caption, and of a segmented control \[pt\].
+/// Height of a row with a caption or a segmented control \[pt\].
 const ROW: f32 = 20.0;
 const SEGMENTS: f32 = 24.0;
-/// Radius of the handle of a slider relative to the height of the slider, as in egui.
+/// Slider handle radius relative to the slider height, as in egui.
 const HANDLE_PART: f32 = 0.4;
 
-/// Context for drawing the controls of settings; collects the commands for changed settings. The
-/// entry points are [`Self::controls_ui`], [`Self::control_ui`] and [`Self::slider_ui`].
+/// Context for drawing setting controls; collects the commands for changed settings. The entry
+/// points are [`Self::controls_ui`], [`Self::control_ui`] and [`Self::slider_ui`].
 pub struct SettingControls<'a, 'c> {
     pub ui: &'a mut Ui,
     pub state: &'a State,
     pub palette: &'a Palette,
     pub commands: &'c mut Vec<Command>,
-    /// Receives the explanation of the control under the pointer.
+    /// Receives the explanation for the control under the pointer.
     pub help: &'c mut Option<&'static str>,
 }
 
@@ -66,7 +66,8 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws a part of the panel; while the pointer is on it, the panel shows its explanation.
+    /// Draws a part of the panel; while the pointer is on that part, the panel shows its
+    /// explanation.
     pub(super) fn explained<T>(
         &mut self,
         explanation: &'static str,
@@ -95,8 +96,8 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the caption in a row of its own, and the value at the opening of the panel at `end`
-    /// points from the right, if the setting has changed.
+    /// Draws the caption in its own row; if the setting has changed since the panel was opened,
+    /// also its former value, `end` points from the right.
     fn captioned_row_ui(&mut self, setting: &'static Setting, end: f32) -> Rect {
         let width = self.ui.available_width();
         let (row, response) = self
@@ -288,8 +289,8 @@ impl SettingControls<'_, '_> {
         self.end(entered);
     }
 
-    /// Draws a number in a row with its caption and its value at the opening of the panel, and a
-    /// slider below, on which that value is marked; returns the place of the slider's rail.
+    /// Draws a number in a row with its caption and the value from when the panel was opened, and
+    /// below a slider on which that value is marked; returns the slider rail's area.
     pub fn slider_ui(&mut self, setting: &'static Setting) -> Option<Rect> {
         let Kind::Number { range, .. } = setting.kind else {
             return None;
@@ -375,7 +376,7 @@ impl SettingControls<'_, '_> {
     }
 }
 
-/// Returns the horizontal place of a value on the rail of a slider.
+/// Returns the horizontal position of a value on a slider rail.
 pub fn slider_place(rail: Rect, value: f64) -> f32 {
     let ends = [SLIDER_START.log10(), SLIDER_END.log10()];
     let log = value.max(SLIDER_START).log10().clamp(ends[0], ends[1]);
@@ -383,7 +384,7 @@ pub fn slider_place(rail: Rect, value: f64) -> f32 {
     rail.left() + part as f32 * rail.width()
 }
 
-/// Creates the number field of a setting in display units; the limits are in stored units.
+/// Creates a setting's number field in display units; the limits are in stored units.
 pub(super) fn number_field(
     setting: &'static Setting,
     name: &'static str,

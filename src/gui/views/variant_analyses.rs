@@ -1,5 +1,5 @@
-//! Analyses of the variants (named decision sets): their jobs and results. `compare` lists the
-//! variants, `variant_effects` their effects.
+//! Analyses of the variants (named decision sets): jobs and results. `compare` lists the variants,
+//! `variant_effects` their effects.
 
 use gdcm_study::Analysis;
 use gdcm_study::decisions::study::Variant;

@@ -1,4 +1,4 @@
-//! Table of the effects of the current decisions and of each variant.
+//! Table with the effects of the current decisions and of each variant.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::number_format::NO_VALUE;
@@ -10,7 +10,7 @@ use super::net_gain_pairs::net_gain_pairs;
 use super::variant_analyses::variant_analysis;
 use crate::gui::state::window_state::State;
 
-/// Builds the table of the effects of the current decisions and of each variant.
+/// Tabulates the effects for the current decisions and for each variant.
 pub(super) fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
     let title =
@@ -37,7 +37,7 @@ pub(super) fn effect_table(state: &State) -> Table {
     table
 }
 
-/// Effect that is compared between variants.
+/// Effect compared between variants.
 #[derive(Clone, Copy)]
 enum Effect {
     /// Net gain in the displayed condition.
@@ -46,7 +46,7 @@ enum Effect {
     Cost(Pair),
     /// Gain objective in the displayed condition.
     Objective,
-    /// Mean change of J with the schedule, over all on-axis responses and conditions.
+    /// Mean change in J with the schedule, over all on-axis responses and conditions.
     MeanChange,
 }
 
@@ -96,8 +96,8 @@ impl Effect {
     }
 }
 
-/// Computes the mean change of J of the nominal models with the schedule, over the on-axis
-/// responses in all assessed conditions; `None` without an assessed response.
+/// Computes the nominal models' mean change in J with the schedule, over the on-axis responses in
+/// all assessed conditions; `None` without an assessed response.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
     let mut changes = Vec::new();

@@ -162,13 +162,13 @@ impl Toggle<'_> {
     }
 }
 
-/// Texts of the tab of a page of a view.
+/// Texts for a page's tab.
 #[derive(Clone, Copy, Debug)]
 pub struct PageWords {
     /// Name in tooltips and in the accessible name.
     pub name: &'static str,
-    /// Text of the tab, short enough for narrow windows.
+    /// Tab text, short enough for narrow windows.
     pub short_name: &'static str,
-    /// Sentence about the content.
+    /// Sentence about the page's content.
     pub purpose: &'static str,
 }

@@ -1,7 +1,7 @@
 //! Controls with accessible names, and controls that emit commands: buttons, menu entries.
 //!
 //! Texts are in `painted_text.rs` and `text_fields.rs`, numbers in `number_field.rs` and
-//! `number_entry.rs`, check boxes and lists of choices in `choices.rs`, list rows in `list_row.rs`.
+//! `number_entry.rs`, check boxes and drop-down lists in `choices.rs`, list rows in `list_row.rs`.
 
 use egui::{Button, Rect, RectAlign, Response, Role, Tooltip, Ui, WidgetInfo};
 
@@ -36,8 +36,8 @@ pub fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     }
 }
 
-/// Adds a tooltip at the left of `subject`, the part of the window that it explains, so that it
-/// covers neither the subject nor the controls in it.
+/// Adds a tooltip at the left of `subject`, the part of the window that the tooltip explains, so
+/// that it covers neither the subject nor the controls in it.
 pub fn hint_left_of(response: Response, subject: Rect, hint: &str) -> Response {
     tooltip_left_of(&response, subject, |ui| {
         ui.set_max_width(ui.spacing().tooltip_width);
@@ -46,7 +46,7 @@ pub fn hint_left_of(response: Response, subject: Rect, hint: &str) -> Response {
     response
 }
 
-/// Like [`hint_left_of`], with content of its own.
+/// Like [`hint_left_of`], with content drawn by `add`.
 pub fn tooltip_left_of(response: &Response, subject: Rect, add: impl FnOnce(&mut Ui)) {
     let mut tooltip = Tooltip::for_enabled(response);
     tooltip.popup = tooltip.popup.anchor(subject).align(RectAlign::LEFT_START);

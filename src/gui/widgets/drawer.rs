@@ -1,4 +1,4 @@
-//! Drawer at the bottom of a view: shows the details of a selected item without covering the view.
+//! Drawer at the bottom of a view: shows details about a selected item without covering the view.
 
 use egui::{Button, Frame, Margin, Panel, Rect, Response, RichText, Role, Sense, Stroke, Ui, vec2};
 
@@ -7,16 +7,16 @@ use super::escape_key::take_escape;
 use super::palette::{BODY_SIZE, Palette, medium};
 use super::panel_layout::{in_line_ui, restore_panel_size};
 
-/// Description of a drawer.
+/// Name, title, verdict and height of a drawer.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawer<'a> {
     /// Name under which the height is stored, such as "requirement details".
     pub name: &'static str,
-    /// The item whose details are shown.
+    /// Item whose details are shown.
     pub title: &'a str,
     /// Result about the item in a few words; empty for none.
     pub verdict: &'a str,
-    /// Whether the verdict is drawn in the colour of warnings, otherwise dim.
+    /// Whether the verdict is drawn in the warning colour; otherwise dim.
     pub is_warning: bool,
     /// Height when the drawer is opened for the first time \[pt\].
     pub default_height: f32,
@@ -24,12 +24,12 @@ pub struct Drawer<'a> {
     pub min_height: f32,
 }
 
-/// Height of the drawer's bar \[pt\].
+/// Drawer bar height \[pt\].
 pub const DRAWER_BAR_HEIGHT: f32 = 36.0;
 
 /// Draws a drawer at the bottom of the remaining space; returns whether it was closed by its button
-/// or by Escape. `tools` draws controls at the right of the bar, from right to left; `content` draws
-/// below the bar.
+/// or by Escape. `tools` draws controls at the right of the bar, from right to left; `content`
+/// draws below the bar.
 ///
 /// Call it before the content above the drawer is drawn. The height is remembered; a double click
 /// on the upper edge restores the default.

@@ -8,7 +8,7 @@ pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     elided_at(ui, text, room, size, 0.5)
 }
 
-/// Like [`elided`], with the end of a sentence elided.
+/// Like [`elided`], but elides the end of the text.
 pub fn end_elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     elided_at(ui, text, room, size, 1.0)
 }
@@ -22,8 +22,8 @@ pub fn elided_among(
     room: f32,
     size: f32,
 ) -> String {
-    /// Shares of the kept letters that precede the gap, in the order in which they are tried: gap
-    /// in the middle, at the beginning, at the end.
+    /// Shares of the kept letters before the gap, in the order tried: gap in the middle, at the
+    /// beginning, at the end.
     const HEADS: [f32; 3] = [0.5, 0.0, 1.0];
     for head in HEADS {
         let shown = elided_at(ui, text, room, size, head);
@@ -45,7 +45,7 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
         return text.to_owned();
     }
     let letters: Vec<char> = text.chars().collect();
-    // The width grows with the number of kept letters: bisection finds the maximum number that
+    // The width grows with the count of kept letters, so bisection finds the largest count that
     // fits.
     let mut fits = 0;
     let mut too_wide = letters.len();
@@ -76,8 +76,8 @@ fn with_gap(letters: &[char], kept: usize, head: f32) -> String {
         .collect()
 }
 
-/// Returns the leading parts of text, which commas separate, that fit into `room` \[pt\]; at least the
-/// first part.
+/// Returns as many leading comma-separated parts as fit into `room` \[pt\]; at least the first
+/// part.
 pub fn leading_parts<'a>(ui: &Ui, text: &'a str, room: f32, size: f32) -> &'a str {
     let mut shown = text;
     while text_width(ui, shown, FontId::proportional(size)) > room
@@ -88,7 +88,7 @@ pub fn leading_parts<'a>(ui: &Ui, text: &'a str, room: f32, size: f32) -> &'a st
     shown
 }
 
-/// Returns the width of text on a single line \[pt\].
+/// Returns the text width on a single line \[pt\].
 pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     ui.fonts_mut(|fonts| {
         fonts

@@ -1,7 +1,7 @@
 //! Escape closes the front-most thing, unless a focused control has used the key.
 //!
-//! egui removes the focus at the beginning of the frame in which Escape is pressed, so the focus of
-//! the last frame tells whether the key was meant for a control.
+//! egui removes the focus at the beginning of the frame in which Escape is pressed, so whether the
+//! key was meant for a control follows from the focus in the last frame.
 
 use egui::{Context, Id, Key, Modifiers};
 
@@ -11,7 +11,7 @@ pub fn note_focus(ctx: &Context) {
     ctx.data_mut(|data| data.insert_temp(had_focus(), is_focused));
 }
 
-/// Key, in egui's memory, of whether a control had the focus after the last frame.
+/// Key in egui's memory under which [`note_focus`] stores whether a control has the focus.
 fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }

@@ -1,11 +1,11 @@
-//! Clickable rows of lists: size, background, accessible name.
+//! Clickable list rows: size, background, accessible name.
 
 use egui::{Color32, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
 
 use super::palette::Palette;
 use super::window_regions::mark_selected_row;
 
-/// Usual height of a list row \[pt\].
+/// Usual list row height \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
 
 /// State and height of a clickable list row.

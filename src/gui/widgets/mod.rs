@@ -1,4 +1,4 @@
-//! Widgets, tables and colours: the parts of which views and panels are made.
+//! Widgets, tables and colours, from which views and panels are made.
 //!
 //! Begin with `controls.rs` (named controls, buttons), `painted_text.rs` (text in rows) and
 //! `palette.rs` (colours and fonts). None of them knows the study.

@@ -1,7 +1,7 @@
 //! Numeric field that can be dragged and typed into, with unit, limits and accessible name.
 //!
-//! The drawing is egui's [`DragValue`]. This file adds the messages about refused entries and the
-//! restoring of the old value by Escape.
+//! egui's [`DragValue`] draws the field. This file adds messages about refused entries, and
+//! restores the old value after Escape.
 
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -14,11 +14,11 @@ use gdcm_study::decisions::setting::Digits;
 use super::controls::hint_ui;
 use crate::message::Message;
 
-/// Height of a number field \[pt\].
+/// Number field height \[pt\].
 const FIELD_HEIGHT: f32 = 18.0;
 /// Number of egui passes after Escape in which the typed text must not be committed. egui reports a
-/// loss of focus in two passes, but the key only in the first: in the second, [`DragValue`] would
-/// commit the text that Escape has given up.
+/// lost focus in two passes, but the key only in the first: in the second, [`DragValue`] would
+/// commit the text that Escape has discarded.
 const PASSES_AFTER_ESCAPE: u64 = 2;
 
 /// Numeric input with unit, limits and accessible name.
@@ -27,13 +27,13 @@ pub struct NumberField<'a> {
     pub name: &'a str,
     /// Tooltip: meaning and unit; empty for none.
     pub hint: &'a str,
-    /// Unit of the number; empty if dimensionless.
+    /// Unit; empty if dimensionless.
     pub unit: &'static str,
     /// Whether the unit is shown after the number.
     pub shows_unit: bool,
     pub range: RangeInclusive<f64>,
     pub is_whole: bool,
-    /// Change per point of dragging and per press of an arrow key.
+    /// Change per point dragged and per arrow key press.
     pub step: f64,
     /// Minimum width \[pt\]; 0 to fit the text.
     pub width: f32,
@@ -70,7 +70,7 @@ impl<'a> NumberField<'a> {
     }
 
     /// Draws the field with `value`. Dragging stays within the range; a typed number is committed
-    /// by Enter or by a loss of focus, and Escape restores the old value.
+    /// by Enter or when the focus leaves, and Escape restores the old value.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Entered {
         let is_escaped = self.is_escaped(ui);
         // The parser is a shared closure, so the text that it cannot parse leaves it in a cell.
@@ -107,7 +107,7 @@ impl<'a> NumberField<'a> {
         outcome
     }
 
-    /// Key, in egui's memory, of the pass in which Escape last ended editing.
+    /// Key in egui's memory for the pass in which Escape last ended editing.
     fn escape_key(&self) -> Id {
         Id::unique(("escaped", self.name))
     }
@@ -136,9 +136,9 @@ impl<'a> NumberField<'a> {
         number_in(text, self.unit)
     }
 
-    /// Accepts or refuses the number `after`, which replaces `before`; `unparsed` is a typed text that
-    /// is not a number. A dragged number stays within the range, and need not be whole before the
-    /// pointer is released.
+    /// Accepts or refuses the number `after`, which replaces `before`; `unparsed` is a typed text
+    /// that is not a number. A dragged number stays within the range, and need not be whole before
+    /// the pointer is released.
     fn outcome(
         &self,
         before: f64,
@@ -202,7 +202,7 @@ impl<'a> NumberField<'a> {
     }
 }
 
-/// Key, in egui's memory, of the id of the field with this name.
+/// Key in egui's memory for the id of the field with this name.
 fn field_key(name: &str) -> Id {
     Id::unique(("field", name))
 }
@@ -214,10 +214,10 @@ pub fn focus_field(ctx: &Context, name: &str) {
     }
 }
 
-/// Parses a finite number with or without its unit, which the field shows and which is therefore often
-/// typed or pasted with the number. The minus sign may be typographical, as in copied text. A single
-/// comma is a decimal separator; "1.000,5" and "1,000,000" are refused, because either mark could
-/// separate thousands.
+/// Parses a finite number with or without its unit, which the field shows and which is therefore
+/// often typed or pasted with the number. The minus sign may be typographical, as in copied text. A
+/// single comma is a decimal separator; "1.000,5" and "1,000,000" are refused, because either mark
+/// could separate thousands.
 fn number_in(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
     let text = text

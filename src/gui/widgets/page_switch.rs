@@ -1,5 +1,5 @@
-//! Segmented control that changes the page of a view, the dock or a drawer: the only way to change
-//! pages.
+//! Segmented control that changes the page in a view, the dock or a drawer; every page change uses
+//! this control.
 
 use egui::{Align2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -8,24 +8,24 @@ use super::controls::named_switch;
 use super::elision::text_width;
 use super::palette::{BODY_SIZE, Palette, medium};
 
-/// A page offered by the segmented control.
+/// Page offered by the segmented control.
 #[derive(Clone, Copy, Debug)]
 pub struct PageTab {
     pub words: PageWords,
     pub is_shown: bool,
 }
 
-/// Height of the control \[pt\].
+/// Control height \[pt\].
 const HEIGHT: f32 = 24.0;
-/// Space on both sides of the text of a segment \[pt\].
+/// Space on both sides of a segment's text \[pt\].
 const SEGMENT_PADDING: f32 = 11.0;
-/// Distance between the frame and the segment in front \[pt\].
+/// Distance between the frame and the selected segment \[pt\].
 const INSET: f32 = 2.0;
 
-/// Draws a row of joined segments, one for each page; returns the index of a clicked segment that
-/// is not in front. The accessible name of a segment is "Page NAME".
+/// Draws a row of joined segments, one for each page; returns the index of a clicked segment unless
+/// it is already selected. A segment's accessible name is "Page NAME".
 ///
-/// Nothing is drawn for fewer than two pages.
+/// Draws nothing for fewer than two pages.
 pub fn page_switch_ui(ui: &mut Ui, tabs: &[PageTab], palette: &Palette) -> Option<usize> {
     if tabs.len() < 2 {
         return None;
@@ -84,8 +84,8 @@ pub fn page_switch_ui(ui: &mut Ui, tabs: &[PageTab], palette: &Palette) -> Optio
     clicked
 }
 
-/// Returns the index of the page `by` places further, wrapping around; `None` for fewer than two
-/// pages.
+/// Returns the index of the page `by` places after the shown page, wrapping around; `None` for
+/// fewer than two pages.
 pub fn neighbouring_page(shown: &[bool], by: isize) -> Option<usize> {
     if shown.len() < 2 {
         return None;

@@ -6,8 +6,8 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
 use super::elision::elided;
 use super::palette::Palette;
 
-/// Position, for [`painted_text`], of text that ends at the right edge of its row: negative, so that
-/// it counts from that edge, and too small to be seen.
+/// Position for [`painted_text`] at which text ends at its row's right edge: negative, so that it
+/// counts from that edge, and too small to be seen.
 pub const AT_RIGHT_END: f32 = -0.01;
 
 /// Paints text at `x` points from the row's left edge (from its right edge if negative), vertically
@@ -27,7 +27,7 @@ pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color3
     painted_text(ui, row, x, text, FontId::proportional(size), color)
 }
 
-/// Horizontal room for text, measured from the left edge of the row \[pt\].
+/// Horizontal room for text, measured from the row's left edge \[pt\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
     pub left: f32,

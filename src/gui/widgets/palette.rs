@@ -1,5 +1,5 @@
-//! Window colours, dark and light, and font sizes by use. `palette/plot_style.rs` adapts the
-//! colours of curves, `palette/egui_style.rs` sets colours and fonts in egui.
+//! Window colours, dark and light, and font sizes by use. `palette/plot_style.rs` adapts curve
+//! colours, `palette/egui_style.rs` sets colours and fonts in egui.
 
 mod egui_style;
 mod plot_style;
@@ -11,13 +11,13 @@ use gdcm_plot::figure::drawing::AirspeedPlace;
 pub use egui_style::apply;
 pub use plot_style::{CurveColors, PlotStyle};
 
-/// Font size of captions: axes, units, bars, table headings, chips, status \[pt\].
+/// Font size for captions: axes, units, bars, table headings, chips, status \[pt\].
 pub const SMALL_SIZE: f32 = 11.0;
-/// Font size of running text: rows, controls, sentences \[pt\].
+/// Font size for running text: rows, controls, sentences \[pt\].
 pub const BODY_SIZE: f32 = 12.5;
-/// Font size of titles and of the counts in the verdict \[pt\].
+/// Font size for titles and for the counts in the verdict \[pt\].
 pub const TITLE_SIZE: f32 = 15.0;
-/// Font size of the heading of the start page \[pt\].
+/// Font size for the start page's heading \[pt\].
 pub const DISPLAY_SIZE: f32 = 20.0;
 
 /// Returns the medium-weight font, used for section headings, selection, constrained values and
@@ -46,16 +46,16 @@ const fn hex(rgb: u32) -> Color32 {
 /// Values of J between which [`Palette::heat`] is interpolated.
 pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
-/// Colours of a theme, each with a single meaning.
+/// Theme colours, each with a single meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
     /// Whether the theme has light text on a dark background.
     pub is_dark: bool,
-    /// Background of plots and text fields.
+    /// Background in plots and text fields.
     pub background: Color32,
-    /// Background of side panels and bars.
+    /// Background in side panels and bars.
     pub panel: Color32,
-    /// Background of elements on a panel: buttons, legends, tooltips.
+    /// Background for elements on a panel: buttons, legends, tooltips.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
@@ -65,7 +65,7 @@ pub struct Palette {
     pub text: Color32,
     /// Captions and units.
     pub dim_text: Color32,
-    /// Background of a selection.
+    /// Background behind a selection.
     pub selected: Color32,
     /// Nominal physics model.
     pub nominal: Color32,
@@ -83,19 +83,19 @@ pub struct Palette {
     pub warning: Color32,
     /// Met requirements.
     pub good: Color32,
-    /// Background of an unmet verdict and of an invalid region.
+    /// Background for an unmet verdict and an invalid region.
     pub warning_ground: Color32,
-    /// Background of a met verdict.
+    /// Background for a met verdict.
     pub good_ground: Color32,
-    /// Text of zero values and of excluded names.
+    /// Text for zero values and excluded names.
     pub quiet_text: Color32,
-    /// Marks of low emphasis: bars, and check marks in boxes.
+    /// Marks with low emphasis: bars, and check marks in boxes.
     pub quiet_mark: Color32,
-    /// Colours of J at [`HEAT_COSTS`]: a single hue with increasing contrast to the background.
+    /// Colours for J at [`HEAT_COSTS`]: a single hue with increasing contrast to the background.
     pub heat: [Color32; 5],
-    /// Colours of airspeeds, from the lowest to the highest; no role has them.
+    /// Colours for airspeeds, from the lowest to the highest; no role has these colours.
     pub airspeeds: [Color32; 5],
-    /// Factor on the widths of curves.
+    /// Factor on curve widths.
     pub line_width: f32,
 }
 
@@ -199,7 +199,7 @@ impl Palette {
         color.lerp_to_gamma(self.text, amount)
     }
 
-    /// Returns the colour of a value of J in a heat map; constant beyond the last of
+    /// Returns the colour for a value of J in a heat map; constant beyond the last value in
     /// [`HEAT_COSTS`].
     pub fn heat_color(&self, cost: f64) -> Color32 {
         const LAST: usize = HEAT_COSTS.len() - 1;
@@ -214,19 +214,20 @@ impl Palette {
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
 
-    /// Returns the colour of an airspeed, from 0 at the lowest to 255 at the highest.
+    /// Returns the colour for an airspeed; `step` is 0 at the lowest airspeed and 255 at the
+    /// highest.
     pub fn airspeed_color(&self, step: u8) -> Color32 {
         let place = AirspeedPlace::new(step);
         let below = self.airspeeds[place.stop];
         below.lerp_to_gamma(self.airspeeds[place.stop + 1], place.part as f32)
     }
 
-    /// Returns the colour of a name beside a curve of colour `curve`.
+    /// Returns the colour for a name beside a curve with the colour `curve`.
     pub fn label_color(&self, curve: Color32) -> Color32 {
         self.towards_text(curve, 0.3)
     }
 
-    /// Returns the colour of text on the accent colour.
+    /// Returns the colour for text on the accent colour.
     pub fn on_accent(&self) -> Color32 {
         if self.is_dark {
             self.background

@@ -1,10 +1,10 @@
-//! Layout within panels: content in a line, and the default size of a panel.
+//! Layout within panels: content in a line, and restoring a panel's default size.
 
 use egui::containers::panel::PanelState;
 use egui::{Align, InnerResponse, Layout, Rect, Ui, UiBuilder};
 
-/// Restores the default size of a named panel after a double click on its edge; call it before the
-/// panel is drawn.
+/// Restores a named panel's default size after a double click on its edge; call it before the panel
+/// is drawn.
 pub fn restore_panel_size(ui: &Ui, name: &str) {
     let panel = ui.scope_id().with(name);
     if ui

@@ -1,11 +1,11 @@
-//! Order of the rows of a table: a click on a heading sorts by its column, numbers by value.
+//! Row order in a table: a click on a heading sorts by its column, numbers by value.
 
 use std::cmp::Ordering;
 
 use gdcm_model::number_format::NO_VALUE;
 use gdcm_words::Table;
 
-/// Order of a table's rows; the default is the original order.
+/// Row order; the default is the original order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sorting {
     key: Option<SortKey>,
@@ -78,7 +78,7 @@ impl Sorting {
         }
     }
 
-    /// Returns the sort mark in the heading of a column.
+    /// Returns the sort mark in a column's heading.
     pub fn mark(self, column: usize) -> &'static str {
         match self.direction(column) {
             Some(SortDirection::Descending) => " ▼",
@@ -95,7 +95,7 @@ pub enum SortDirection {
     Descending,
 }
 
-/// Content of a cell, by which its row is sorted.
+/// Cell content by which the row is sorted.
 enum SortedCell {
     Number(f64),
     Text(String),

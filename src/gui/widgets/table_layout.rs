@@ -1,7 +1,7 @@
-//! Measured layout of a table: alignment and width of the columns, height of the rows.
+//! Measured table layout: column alignments and widths, row heights.
 //!
-//! A column of numbers is right-aligned, heading included, and its numbers share the place of the
-//! decimal point; any other column is left-aligned.
+//! A number column is right-aligned, heading included, and its numbers are aligned at the decimal
+//! point; any other column is left-aligned.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -14,15 +14,15 @@ use gdcm_words::Table;
 use super::palette::small;
 use super::sorting::{is_missing, number_in};
 
-/// Height of a row with one line of text \[pt\].
+/// Height of a row with a single text line \[pt\].
 pub(super) const ROW_HEIGHT: f32 = 20.0;
-/// Height of the headings \[pt\].
+/// Heading height \[pt\].
 pub(super) const HEADING_HEIGHT: f32 = 22.0;
-/// Gap between two columns; it has room for the mark of the sorted column \[pt\].
+/// Gap between two columns; it has room for the sort mark \[pt\].
 pub(super) const COLUMN_GAP: f32 = 18.0;
 /// Margin before the first column and after the last one \[pt\].
 const MARGIN: f32 = 6.0;
-/// Minimum width of a last column whose text is wrapped \[pt\].
+/// Minimum width for a last column whose text is wrapped \[pt\].
 const LEAST_WRAPPED: f32 = 140.0;
 /// Space above and below wrapped text \[pt\].
 const WRAPPED_PAD: f32 = 3.0;
@@ -32,8 +32,8 @@ pub(super) fn shown_text(cell: &str) -> &str {
     if is_missing(cell) { NO_VALUE } else { cell }
 }
 
-/// Returns the part of a cell before the decimal point of its first number, or the whole number if
-/// it has none: "−2" of "−2.54 ± j1.26", "120" of "120 kt".
+/// Returns the part of a cell before the decimal point in its first number, or the whole number if
+/// it has none: "−2" in "−2.54 ± j1.26", "120" in "120 kt".
 fn before_point(cell: &str) -> &str {
     let word = cell.split_whitespace().next().unwrap_or(cell);
     match word.find('.') {
@@ -42,10 +42,10 @@ fn before_point(cell: &str) -> &str {
     }
 }
 
-/// Returns whether all values of a column are numbers, with at most three words such as a unit
-/// after them, and there is at least one.
+/// Returns whether all values in a column are numbers, with at most three words such as a unit
+/// after them, and there is at least one value.
 fn is_numeric(table: &Table, column: usize) -> bool {
-    /// Maximum number of words: "1.20 ± 0.05 ms".
+    /// Maximum count of words, the number included: "1.20 ± 0.05 ms".
     const MOST_WORDS: usize = 4;
     let mut has_number = false;
     for row in &table.rows {
@@ -61,17 +61,17 @@ fn is_numeric(table: &Table, column: usize) -> bool {
     has_number
 }
 
-/// Column of a table as it is drawn.
+/// Measured column: position, width, and alignment at the decimal point.
 pub(super) struct TableColumn {
     /// Left edge, relative to the table \[pt\].
     pub left: f32,
     pub width: f32,
-    /// Distance of the decimal point from the left edge \[pt\]; `None` for a column of text.
+    /// Distance from the left edge to the decimal point \[pt\]; `None` for a text column.
     point: Option<f32>,
 }
 
 impl TableColumn {
-    /// Alignment of the heading, and of the cells as a block.
+    /// Returns the alignment for the heading, and for the cells as a block.
     pub fn align(&self) -> Align {
         if self.point.is_some() {
             Align::Max
@@ -80,13 +80,14 @@ impl TableColumn {
         }
     }
 
-    /// Horizontal range from the table's left edge \[pt\], with half of the gap on both sides.
+    /// Returns the horizontal range from the table's left edge \[pt\], with half the gap on both
+    /// sides.
     pub fn range_with_gap(&self) -> Range<f32> {
         let half = 0.5 * COLUMN_GAP;
         self.left - half..self.left + self.width + half
     }
 
-    /// Returns the place of a cell's text, relative to the column's left edge \[pt\].
+    /// Returns the left end of a cell's text, relative to the column's left edge \[pt\].
     fn text_start(&self, ui: &Ui, cell: &str) -> f32 {
         match self.point {
             Some(point) => point - text_width(ui, before_point(cell), &small()),
@@ -95,20 +96,21 @@ impl TableColumn {
     }
 }
 
-/// Layout of a table, in the order in which its rows are drawn.
+/// Table layout, with the rows in drawing order.
 pub(super) struct TableLayout {
     pub columns: Vec<TableColumn>,
-    /// Upper edges of the rows below the headings, and the lower edge of the last one \[pt\].
+    /// Upper edges of the rows, and the lower edge of the last row, measured from the headings'
+    /// lower edge \[pt\].
     pub row_edges: Vec<f32>,
     /// Total width \[pt\].
     pub width: f32,
-    /// Width to which the text of the last column is wrapped; `None` if it fits.
+    /// Width to which the last column's text is wrapped \[pt\]; `None` if it fits.
     wrapped: Option<f32>,
 }
 
 impl TableLayout {
-    /// Measures a table whose rows are drawn in the given order. If it is wider than `room` points
-    /// and ends in a column of text, this column is wrapped.
+    /// Measures a table whose rows are drawn in the given order. If the table is wider than `room`
+    /// points and its last column is text, that column is wrapped.
     pub fn new(ui: &Ui, table: &Table, order: &[usize], room: f32) -> Self {
         let mut columns = Vec::new();
         let mut left = MARGIN;
@@ -159,7 +161,7 @@ impl TableLayout {
         edges
     }
 
-    /// Lays out the text of a cell, without its colour.
+    /// Lays out a cell's text, without its colour.
     pub fn cell_text(&self, ui: &Ui, cell: &str, column: usize) -> Arc<Galley> {
         let text = shown_text(cell).to_owned();
         let placeholder = Color32::PLACEHOLDER;
@@ -171,13 +173,13 @@ impl TableLayout {
         }
     }
 
-    /// Returns the horizontal place of a cell's text, relative to the table's left edge \[pt\].
+    /// Returns the left end of a cell's text, relative to the table's left edge \[pt\].
     pub fn text_left(&self, ui: &Ui, cell: &str, column: usize) -> f32 {
         let column = &self.columns[column];
         column.left + column.text_start(ui, shown_text(cell))
     }
 
-    /// Height of all rows, without the headings \[pt\].
+    /// Returns the total row height, without the headings \[pt\].
     pub fn height(&self) -> f32 {
         self.row_edges.last().copied().unwrap_or_default()
     }
@@ -214,7 +216,7 @@ fn measured_column(ui: &Ui, table: &Table, index: usize, heading: &str, left: f3
     }
 }
 
-/// Returns the width of a text in one line \[pt\].
+/// Returns the text width on a single line \[pt\].
 fn text_width(ui: &Ui, text: &str, font: &FontId) -> f32 {
     let color = Color32::PLACEHOLDER;
     let galley = ui

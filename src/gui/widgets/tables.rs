@@ -1,4 +1,4 @@
-//! Tables of the window. A click on a heading sorts (`sorting.rs`); the menu and Ctrl+C copy, the
+//! Tables in the window. A click on a heading sorts (`sorting.rs`); the menu and Ctrl+C copy, the
 //! menu saves; the arrow keys move through the cells. `table_layout.rs` measures the columns.
 
 use std::sync::Arc;
@@ -16,7 +16,6 @@ pub use super::sorting::Sorting;
 use super::sorting::{SortDirection, is_missing};
 use super::table_layout::{COLUMN_GAP, HEADING_HEIGHT, ROW_HEIGHT, TableLayout, shown_text};
 
-/// Clicked cell of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableClick {
     /// Row index in the original order.
@@ -24,9 +23,9 @@ pub struct TableClick {
     pub column: usize,
 }
 
-/// Colours of the cells, and the rows in focus.
+/// Cell colours, and the rows in focus.
 pub struct TableLook<'a> {
-    /// Text colour of a cell, by row and column; `None` for the default colour.
+    /// Text colour for a cell, by row and column; `None` for the default colour.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
     /// Whether a row is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,
@@ -49,13 +48,13 @@ pub enum TableRequest {
     Save(Arc<Table>),
 }
 
-/// Returns the height of a table with rows of one line, and of the scroll bar below it \[pt\].
+/// Returns the height of a table with single-line rows, including the scroll bar below it \[pt\].
 pub fn table_height(ui: &Ui, rows: usize) -> f32 {
     HEADING_HEIGHT + ROW_HEIGHT * rows as f32 + ui.spacing().scroll.allocated_width()
 }
 
-/// Draws a table that scrolls if it is too large; its headings stay in sight. They sort it; the
-/// menu copies or saves it.
+/// Draws a table that scrolls if it is too large; its headings stay in sight. A click on a heading
+/// sorts; the menu copies or saves.
 pub fn table_ui<C: From<TableRequest>>(
     ui: &mut Ui,
     table: &Table,
@@ -109,7 +108,7 @@ pub fn table_grid_ui<C: From<TableRequest>>(
 }
 
 /// Draws a table at full height, for a page that scrolls; a table that is too wide scrolls
-/// sideways. The window keeps the order of its rows until it is closed.
+/// sideways. The window keeps the row order until it is closed.
 pub fn table_block_ui<C: From<TableRequest>>(
     ui: &mut Ui,
     table: &Table,
@@ -134,20 +133,20 @@ pub fn table_block_ui<C: From<TableRequest>>(
     click
 }
 
-/// A table with its places on the screen.
+/// Table with its position on the screen.
 struct DrawnTable<'a> {
     id: Id,
     table: &'a Table,
-    /// Index of the table's row in each row on the screen.
+    /// Table row index for each row on the screen.
     order: &'a [usize],
     layout: &'a TableLayout,
     rect: Rect,
-    /// Place of the headings.
     heading: Rect,
     palette: &'a Palette,
 }
 
-/// Place of a cell on the screen: the keyboard enters the table there.
+/// Row and column of a cell, counted on the screen. The cell at which the keyboard enters the table
+/// is stored as such a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct CellPlace {
     row: usize,
@@ -188,13 +187,13 @@ impl CellPlace {
 }
 
 impl DrawnTable<'_> {
-    /// Returns the horizontal range of a column on the screen, with half of the gap on both sides.
+    /// Returns a column's horizontal range on the screen, with half the gap on both sides.
     fn column_range(&self, column: usize) -> Rangef {
         let range = self.layout.columns[column].range_with_gap();
         Rangef::new(self.rect.left() + range.start, self.rect.left() + range.end)
     }
 
-    /// Returns the vertical range of a row on the screen.
+    /// Returns a row's vertical range on the screen.
     fn row_range(&self, row: usize) -> Rangef {
         let top = self.rect.top() + HEADING_HEIGHT;
         let edges = &self.layout.row_edges;
@@ -311,7 +310,7 @@ impl DrawnTable<'_> {
         self.id.with((at.row, at.column))
     }
 
-    /// Paints the background of a row, unless it is out of sight.
+    /// Paints a row's background, unless the row is out of sight.
     fn paint_row(&self, ui: &Ui, place: usize, is_selected: bool) {
         let rect = Rect::from_x_y_ranges(self.rect.x_range(), self.row_range(place));
         if !ui.is_rect_visible(rect) {
@@ -329,7 +328,7 @@ impl DrawnTable<'_> {
         ui.painter().rect_filled(rect, 0.0, fill);
     }
 
-    /// Draws a cell. The tab key stops at one cell of a table only.
+    /// Draws a cell. The Tab key stops at only one cell in a table.
     fn cell_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,
@@ -427,7 +426,7 @@ impl DrawnTable<'_> {
         }
     }
 
-    /// Draws the menu of a heading, or of a cell with this text.
+    /// Draws the menu for a heading, or for a cell with this text.
     fn menu_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,

@@ -3,7 +3,7 @@
 
 use egui::{Id, Key, Response, Role, TextEdit, Ui, WidgetInfo, vec2};
 
-/// Height of a text entry \[pt\].
+/// Text entry height \[pt\].
 const ENTRY_HEIGHT: f32 = 20.0;
 
 /// Draws a single-line text field with an accessible name.

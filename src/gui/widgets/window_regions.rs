@@ -26,14 +26,14 @@ pub enum Region {
     Models,
 }
 
-/// Regions and selected rows of the last frames, kept in egui's memory.
+/// Regions and selected rows from the last frames, kept in egui's memory.
 #[derive(Clone, Default)]
 struct Regions {
     drawn: BTreeMap<Region, DrawnRegion>,
     selected: SelectedRows,
 }
 
-/// Selected rows: the focus enters an unvisited region at its selected row.
+/// Selected rows. The focus enters an unvisited region at its selected row.
 #[derive(Clone, Default)]
 struct SelectedRows {
     /// egui pass in which the rows were drawn.
@@ -41,7 +41,7 @@ struct SelectedRows {
     rows: Vec<Id>,
 }
 
-/// A region as last drawn.
+/// Region as last drawn.
 #[derive(Clone, Default)]
 struct DrawnRegion {
     /// egui pass in which the region was last drawn.
@@ -54,12 +54,12 @@ struct DrawnRegion {
     place: Option<Rect>,
 }
 
-/// Key of [`Regions`] in egui's memory.
+/// Key for [`Regions`] in egui's memory.
 fn key() -> Id {
     Id::unique("regions")
 }
 
-/// Draws a region, or a further piece of a region, and records its focusable controls. Scrolls to a
+/// Draws a region, or another piece of a region, and records its focusable controls. Scrolls to a
 /// control focused by the keyboard.
 pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layer = ui.layer_id();
@@ -108,7 +108,7 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
     inner
 }
 
-/// Marks a row as the selected row of its list, in each frame that draws it.
+/// Marks a row as selected in its list; called in each frame that draws the row.
 pub fn mark_selected_row(ctx: &Context, row: Id) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
@@ -121,7 +121,7 @@ pub fn mark_selected_row(ctx: &Context, row: Id) {
     });
 }
 
-/// Returns the visible rectangle of a region; `None` if it has not been drawn.
+/// Returns a region's visible rectangle; `None` if it has not been drawn.
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     let place = ctx.data_mut(|data| {
         data.get_temp_mut_or_default::<Regions>(key())
@@ -152,7 +152,7 @@ pub fn leave_region(ctx: &Context, forward: bool) {
         (None, true) => 0,
         (None, false) => last,
         (Some(here), true) => (here + 1) % targets.len(),
-        // One step back: `last` is the number of regions minus 1.
+        // A step back: `last` is the region count minus 1.
         (Some(here), false) => (here + last) % targets.len(),
     };
     let target = targets[next];

@@ -23,19 +23,19 @@ const AGAIN_AFTER: Duration = Duration::from_secs(10);
 /// Decisions that are not yet in the recovery file.
 struct Pending {
     unsaved: Box<Unsaved>,
-    /// Time of the latest of these decisions.
+    /// Time of the latest pending decision.
     decided: SystemTime,
     due: Instant,
 }
 
-/// State of the recovery thread.
+/// State in the recovery thread.
 pub(super) struct Keeper {
-    /// Folder of the recovery files; with `None`, decisions remain pending.
+    /// Folder for recovery files; with `None`, decisions remain pending.
     folder: Option<PathBuf>,
     /// Time between the first pending decision and the writing.
     keep_after: Duration,
     replies: ReplySender,
-    /// File of this window, named at the first writing.
+    /// This window's file, named at the first writing.
     file: Option<RecoveryFile>,
     pending: Option<Pending>,
     /// Decisions in the file, shared with the window.
@@ -113,7 +113,7 @@ impl Keeper {
         });
     }
 
-    /// Deletes the recovery file, and those of restored decisions.
+    /// Deletes this window's recovery file, and those with restored decisions.
     fn clear(&mut self) -> Result<(), FileError> {
         self.pending = None;
         *locked(&self.kept) = None;
@@ -177,7 +177,7 @@ impl Keeper {
     }
 }
 
-/// Failure of the recovery thread.
+/// Failure in the recovery thread.
 enum KeepFailure {
     /// The decisions are not in the recovery file.
     Writing(FileError),

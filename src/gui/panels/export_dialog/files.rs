@@ -1,5 +1,5 @@
-//! The files that an export writes, with the head of the selected one, and what they omit or
-//! approximate.
+//! The files that an export writes, with the first lines of the selected file, and what the files
+//! omit or approximate.
 
 use egui::{Button, Frame, Label, RichText, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, vec2};
 
@@ -17,14 +17,14 @@ use crate::gui::widgets::elision::{end_elided, text_width};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium};
 
-/// Height of the row of a file \[pt\].
+/// Row height for a file \[pt\].
 const ROW: f32 = 24.0;
-/// Maximum height of the list of files \[pt\].
+/// Maximum height of the file list \[pt\].
 const FILES: f32 = 7.0 * ROW;
-/// Height of the head of a file \[pt\].
+/// Height of the area with a file's first lines \[pt\].
 const HEAD: f32 = 104.0;
 
-/// Draws the files with their sizes, and the head of the selected file.
+/// Draws the files with their sizes, and the first lines of the selected file.
 pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let plan = state.forms.export.plan.as_ref().map(|(_, plan)| plan);
     let is_current = state.current_export_plan().is_some();
@@ -91,7 +91,7 @@ fn heading_ui(ui: &mut Ui, text: &str, remark: &str, palette: &Palette) {
     painted_text(ui, line, AT_RIGHT_END, &remark, body(), palette.dim_text);
 }
 
-/// Draws the row of a file; returns whether it was clicked.
+/// Draws a file's row; returns whether it was clicked.
 fn file_ui(ui: &mut Ui, file: &PlannedFile, is_selected: bool, palette: &Palette) -> bool {
     let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let fill = if is_selected {
@@ -125,7 +125,7 @@ fn file_ui(ui: &mut Ui, file: &PlannedFile, is_selected: bool, palette: &Palette
     is_clicked
 }
 
-/// Draws the row of the report, which is written after the other files.
+/// Draws the report's row; the report is written after the other files.
 fn report_ui(ui: &mut Ui, name: &str, palette: &Palette) {
     let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     let inner = row.shrink2(vec2(8.0, 0.0));
@@ -166,7 +166,7 @@ fn head_ui(ui: &mut Ui, file: &PlannedFile, palette: &Palette) {
     });
 }
 
-/// Draws what the files omit or approximate, with a remedy where there is one.
+/// Draws what the files omit or approximate, with remedies if there are any.
 pub(super) fn notes_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((_, plan)) = &state.forms.export.plan else {
         return;
@@ -193,7 +193,7 @@ pub(super) fn notes_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: 
         });
 }
 
-/// Draws a note: what it states with its remedy, and the files concerned with the reason.
+/// Draws a note: its statement and remedy, the files concerned, and the reason.
 fn note_ui(
     ui: &mut Ui,
     planned: &PlannedNote,
@@ -243,7 +243,8 @@ fn note_ui(
     });
 }
 
-/// Lists the files of a note: "every file", or their extensions where these tell them apart.
+/// Lists the files to which a note refers: "every file", or extensions where these identify a file,
+/// else names.
 fn file_words(planned: &PlannedNote, plan: &ExportPlan) -> String {
     if planned.files.len() == plan.files.len() && plan.files.len() > 1 {
         return "every file".to_owned();

@@ -21,15 +21,15 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 use crate::gui::widgets::panel_layout::in_line_ui;
 use crate::gui::widgets::text_fields::{is_entered, name_text_field};
 
-/// Height of a line with a check box \[pt\].
+/// Height of a check box line \[pt\].
 const ROW: f32 = 24.0;
-/// Height of the heading of a group \[pt\].
+/// Height of a group heading \[pt\].
 const GROUP: f32 = 25.0;
-/// Width of the fields \[pt\].
+/// Field width \[pt\].
 const FIELD: f32 = 148.0;
-/// Maximum height of the conditions \[pt\].
+/// Maximum height of the area with condition buttons \[pt\].
 const CONDITIONS: f32 = 104.0;
-/// Size of the button of a condition \[pt\].
+/// Size of a condition button \[pt\].
 const CHIP: [f32; 2] = [20.0, 22.0];
 
 /// Draws the formats by purpose, each with its file extension.
@@ -50,7 +50,7 @@ pub(super) fn formats_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     });
 }
 
-/// Texts of the check box of a format.
+/// Texts on a format's check box.
 struct FormatRow {
     /// Name among the choices.
     name: &'static str,
@@ -93,7 +93,7 @@ fn group_heading_ui(ui: &mut Ui, text: &str, palette: &Palette) {
     painted_text(ui, text_line, 0.0, text, body(), palette.dim_text);
 }
 
-/// Draws the check box of a format, with its extension at the right.
+/// Draws a format's check box, with the file extension at the right.
 fn format_ui(ui: &mut Ui, form: &mut ExportForm, row: FormatRow, palette: &Palette) {
     let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     let extension = format!(".{}", row.extension);
@@ -229,7 +229,7 @@ fn correction_ui(ui: &mut Ui, form: &mut ExportForm, palette: &Palette) {
     });
 }
 
-/// Draws the choice of the physics model of each condition.
+/// Draws the choice of each condition's physics model.
 fn model_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let mut names = vec![
         ExportChoices::NOMINAL.to_owned(),
@@ -253,7 +253,7 @@ fn model_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     });
 }
 
-/// Draws the airspeeds of the tables; returns whether Enter was pressed.
+/// Draws the field for the airspeeds in the exported tables; returns whether Enter was pressed.
 fn breakpoints_ui(ui: &mut Ui, state: &mut State, palette: &Palette) -> bool {
     let form = &mut state.forms.export;
     let hint = airspeeds_words(&form.default_breakpoints_kt);
@@ -274,8 +274,8 @@ fn breakpoints_ui(ui: &mut Ui, state: &mut State, palette: &Palette) -> bool {
     is_submitted
 }
 
-/// Draws the folder with the button that opens the desktop's dialog; returns whether Enter was
-/// pressed.
+/// Draws the folder field with the button that opens the desktop's dialog; returns whether Enter
+/// was pressed.
 fn folder_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -299,7 +299,7 @@ fn folder_ui(
     is_submitted
 }
 
-/// Draws the beginning of the file names; returns whether Enter was pressed.
+/// Draws the field for the file-name prefix; returns whether Enter was pressed.
 fn prefix_ui(ui: &mut Ui, state: &mut State, palette: &Palette) -> bool {
     let mut is_submitted = false;
     let prefix = &mut state.forms.export.prefix;
@@ -311,7 +311,7 @@ fn prefix_ui(ui: &mut Ui, state: &mut State, palette: &Palette) -> bool {
     is_submitted
 }
 
-/// Draws the treatment of existing files, and announces them.
+/// Draws the choice of how existing files are treated, and how many exist.
 fn existing_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let announced = existing_words(state);
     let choices = &mut state.forms.export.choices;
@@ -322,7 +322,7 @@ fn existing_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     ui.checkbox(remembers, "Remember for this study");
 }
 
-/// States how many of the files exist, and what happens to them.
+/// States how many files exist already, and what happens to them.
 fn existing_words(state: &State) -> String {
     let Some(plan) = state.current_export_plan() else {
         return String::new();

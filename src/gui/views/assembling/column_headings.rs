@@ -1,4 +1,4 @@
-//! Column headings of a table, and the units that follow neither from headings nor from values.
+//! Column headings in a table, and the units that follow neither from headings nor from values.
 
 use egui::{Grid, RichText, Role, Ui};
 
@@ -9,7 +9,7 @@ use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::text_fields::entry_ui;
 
 const HEADING_WIDTH: f32 = 180.0;
-/// Maximum number of displayed columns; a note gives the number of further columns.
+/// Maximum count of displayed columns; a note counts the others.
 const MOST_COLUMNS: usize = 60;
 
 /// Shows a field for each column heading; after a change the file is read again.
@@ -47,7 +47,7 @@ pub(super) fn column_headings_ui(
     }
 }
 
-/// Shows buttons with the possible units of a column whose unit is unknown.
+/// Shows buttons with the possible units for a column whose unit is unknown.
 fn possible_units_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

@@ -1,4 +1,4 @@
-//! Factors of conversions between units that the units themselves do not determine.
+//! Conversion factors that do not follow from the units.
 
 use egui::{RichText, Ui};
 
@@ -11,7 +11,7 @@ use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// A conversion between units whose factor does not follow from the units.
+/// Unit conversion whose factor does not follow from the units.
 #[derive(PartialEq)]
 struct Conversion {
     channel: String,

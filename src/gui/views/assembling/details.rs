@@ -1,4 +1,4 @@
-//! Details of the displayed model: role, settings, file columns, and notes.
+//! Details about the displayed model: role, settings, file columns, and notes.
 
 use egui::{Grid, RichText, Ui};
 
@@ -50,7 +50,7 @@ pub(super) fn details_ui(
     notes_ui(ui, part, palette);
 }
 
-/// Draws the selector of the model's role in its condition.
+/// Draws the selector for the model's role in its condition.
 fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Vec<Command>) {
     ui.label("role");
     let mut role = part.row.role;

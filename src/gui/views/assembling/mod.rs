@@ -1,5 +1,5 @@
 //! Importing models from several files: sources above; on the left a table with a row per model,
-//! and the list of problems; on the right the selected model and the channels.
+//! and the problem list; on the right the selected model and the channels.
 
 mod channels;
 mod column_headings;

@@ -1,4 +1,4 @@
-//! Text fields of the displayed model: condition, flight state, channels, sample time, trim.
+//! Text fields for the displayed model: condition, flight state, channels, sample time, trim.
 
 use egui::{Role, Ui};
 
@@ -19,8 +19,8 @@ use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 200.0;
 
-/// How the text of a field changes the rule of a model. The first three kinds return the place in
-/// the rule that receives the parsed text; an empty text removes the setting.
+/// How a field's text changes a model's rule. The first three kinds return the place in the rule
+/// that receives the parsed text; an empty text removes the setting.
 enum Effect {
     Text(fn(&mut RowRule) -> &mut Option<String>),
     Number(fn(&mut RowRule) -> &mut Option<f64>),
@@ -29,7 +29,7 @@ enum Effect {
     Parsed(fn(&mut RowRule, &str) -> Result<(), String>),
 }
 
-/// A field: its name, its current text, and its effect on the rule.
+/// Field with its name, current text, and effect on the rule.
 struct Field {
     name: &'static str,
     value: String,
@@ -117,7 +117,7 @@ pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
         .clicked()
 }
 
-/// Returns the fields of condition and flight state.
+/// Returns the fields for condition and flight state.
 fn condition_fields(part: &Part) -> Vec<Field> {
     let row = &part.row;
     vec![
@@ -218,8 +218,8 @@ fn sample_time_field(part: &Part) -> Field {
     )
 }
 
-/// Returns the field of the origin: the method of an identified model, or the offset of a physics
-/// model from trim.
+/// Returns the field for the origin: an identified model's method, or a physics model's offset from
+/// trim.
 fn origin_field(part: &Part) -> Field {
     let row = &part.row;
     if row.role == Some(RowRole::Identified) {
@@ -239,8 +239,8 @@ fn origin_field(part: &Part) -> Field {
     }
 }
 
-/// Returns the channel names in the order of the file, from the rule or else from the file; "?" for
-/// unnamed channels.
+/// Returns the channel names in file order, from the rule or else from the file; "?" for unnamed
+/// channels.
 fn channel_names(labels: &[ChannelLabel], rule_names: Option<&Vec<String>>) -> String {
     if let Some(names) = rule_names {
         return names.join(", ");

@@ -16,7 +16,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
 /// Index of the column in which incomplete models are marked.
 const FILE: usize = COLUMNS.len() - 1;
-/// Distance of a heading and of its cells from the left edge of their column \[pt\].
+/// Left padding in headings and cells \[pt\].
 const CELL_PAD: f32 = 3.0;
 
 /// Draws the table; only visible rows are laid out.
@@ -47,7 +47,7 @@ pub(super) fn table_ui(
         });
 }
 
-/// Draws the headings above the left ends of their cells; a click sorts the table.
+/// Draws the headings, left-aligned with their cells; a click sorts the table.
 fn headings_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -87,9 +87,9 @@ fn incomplete_parts(assembly: &AssemblyState) -> Vec<usize> {
 struct Table<'a> {
     assembly: &'a AssemblyState,
     parts: &'a [Part],
-    /// Index of the model in each row.
+    /// Model index in each row.
     order: Vec<usize>,
-    /// Indices of the models with a problem.
+    /// Indices of models with a problem.
     incomplete: Vec<usize>,
     /// Row width \[pt\].
     width: f32,
@@ -126,8 +126,8 @@ impl Table<'_> {
         response.asks(AssemblingCommand::Select(index), commands);
     }
 
-    /// Paints the texts of a row; shortened texts keep the part that distinguishes them from the
-    /// rows above and below.
+    /// Paints a row's texts; shortened texts keep the part that distinguishes them from the rows
+    /// above and below.
     fn paint_cells(&self, ui: &Ui, rect: Rect, row: usize, part: &Part) {
         let is_incomplete = self.incomplete.contains(&self.order[row]);
         let neighbours = [
@@ -152,8 +152,8 @@ impl Table<'_> {
         }
     }
 
-    /// Returns the colour of a cell: warning for unknown values and marked files, quiet for models
-    /// that are left out.
+    /// Returns a cell's colour: warning for unknown values and marked files, quiet for models that
+    /// are left out.
     fn cell_color(&self, text: &str, part: &Part, is_marked: bool) -> Color32 {
         if text == "?" {
             self.palette.warning

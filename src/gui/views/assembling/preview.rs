@@ -1,4 +1,4 @@
-//! Preview of the displayed model: selector of its responses, and the Bode plot of one.
+//! Preview of the displayed model: a response selector, and a Bode plot of the selected response.
 
 use egui::Ui;
 
@@ -14,7 +14,7 @@ use crate::gui::state::assembling::{AssemblyState, DrawnPreview, Preview};
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Shows the Bode plot of a response, and a selector of all responses of the model.
+/// Shows the selected response as a Bode plot, with a selector for all responses in the model.
 pub(super) fn preview_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -94,7 +94,7 @@ fn response_name(found: &FoundModel, response: usize) -> String {
     )
 }
 
-/// Returns the name of a channel; without a name, its side and its number, counted from 1.
+/// Returns a channel's name; without a name, its side and its number, counted from 1.
 fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
     if let Some(label) = labels.get(index)
         && let Some(name) = &label.name

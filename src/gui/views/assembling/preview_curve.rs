@@ -1,4 +1,4 @@
-//! Curve of a response of a model found in a file: measured, or computed from the state space.
+//! Curve for a response in a model file: measured, or computed from the state space.
 
 use std::sync::Arc;
 
@@ -11,13 +11,13 @@ use gdcm_model::response::{FrequencyGrid, PreparedModel};
 
 use crate::gui::plot::{BodeCurve, CurveId, Role};
 
-/// Number of points on the curve of a model.
+/// Points on a state-space model's curve.
 const POINTS: usize = 300;
 
 /// Factor by which the curve extends beyond the comparison band at either end.
 const BEYOND: f64 = 3.0;
 
-/// Returns the curve of a response, given by its index; `None` if it cannot be computed.
+/// Returns the curve for a response index; `None` if it cannot be computed.
 pub(super) fn curve(found: &FoundModel, response: usize, band: (f64, f64)) -> Option<BodeCurve> {
     let PairResponse { omega, values } = match found.response() {
         Some(_) => measured_response(found, response)?,
@@ -39,20 +39,20 @@ pub(super) fn curve(found: &FoundModel, response: usize, band: (f64, f64)) -> Op
     })
 }
 
-/// Returns the pair of a response, whose index is `output * inputs + input`.
+/// Returns the pair for a response index, which is `output * inputs + input`.
 pub(super) fn pair(found: &FoundModel, response: usize) -> Pair {
     let inputs = found.inputs.len().max(1);
     Pair::new(response / inputs, response % inputs)
 }
 
-/// Response of a pair.
+/// Response from an input to an output.
 struct PairResponse {
     /// Frequencies \[rad/s\].
     omega: Vec<f64>,
     values: Vec<Complex<f64>>,
 }
 
-/// Returns a response measured in the file, in which the values of each pair are contiguous and the
+/// Returns a response measured in the file, in which each pair's values are contiguous and the
 /// pairs are ordered as in [`pair`]; `None` without measured responses.
 fn measured_response(found: &FoundModel, response: usize) -> Option<PairResponse> {
     let measured = found.response()?;
@@ -67,7 +67,7 @@ fn measured_response(found: &FoundModel, response: usize) -> Option<PairResponse
     })
 }
 
-/// Computes the response of a state-space model over the extended band; `None` if the matrices are
+/// Computes a state-space model's response over the extended band; `None` if the matrices are
 /// incomplete or inconsistent.
 fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
     let [a, b, c, d] = found.draft.matrices.clone();

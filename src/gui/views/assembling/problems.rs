@@ -8,10 +8,10 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Maximum number of displayed lines; a note gives the number of further lines.
+/// Maximum count of displayed lines; a note counts the others.
 const MOST_LINES: usize = 200;
-/// Maximum number of displayed tables without models. Further tables are shown when these have been
-/// read as models.
+/// Maximum count of displayed tables without models. Others are shown once these have been read as
+/// models.
 const MOST_TABLES: usize = 5;
 
 /// Shows a line for each incomplete item; a click displays its model.
@@ -40,7 +40,7 @@ pub(super) fn problems_ui(
                 let part = caution.parts.first().copied();
                 line_ui(ui, palette.small_warning(words), part, commands);
             }
-            // Without models every property of the dataset is missing: no list says so.
+            // Without models every dataset property is missing, so a list would be useless.
             let listed = if assembly.parts().is_empty() {
                 &[]
             } else {

@@ -74,7 +74,7 @@ impl AssemblyState {
     }
 }
 
-/// Returns the folder of a model; empty at the top level.
+/// Returns a model's folder; empty at the top level.
 fn folder(part: &Part) -> &str {
     match part.found.file().rsplit_once('/') {
         Some((folder, _)) => folder,

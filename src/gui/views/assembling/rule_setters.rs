@@ -1,4 +1,4 @@
-//! Setters of a model's rule: each parses a typed text, or returns the reason for refusing it. An
+//! Setters for a model's rule: each parses a typed text, or returns the reason for refusing it. An
 //! empty text removes the setting, except the offsets from trim, which then become an empty list.
 
 use gdcm_model::assembly::RowRule;
@@ -27,8 +27,7 @@ pub(super) fn set_signs(rule: &mut RowRule, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Sets units and removes the factors of the same channels: a channel has either a unit or a
-/// factor.
+/// Sets units and removes factors for the same channels: a channel has either a unit or a factor.
 pub(super) fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
     let units = typed_units(text)?;
     if let Some(factors) = &mut rule.factors {
@@ -38,8 +37,7 @@ pub(super) fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Sets factors and removes the units of the same channels: a channel has either a unit or a
-/// factor.
+/// Sets factors and removes units for the same channels: a channel has either a unit or a factor.
 pub(super) fn set_factors(rule: &mut RowRule, text: &str) -> Result<(), String> {
     let factors = typed_factors(text)?;
     if let Some(units) = &mut rule.units {

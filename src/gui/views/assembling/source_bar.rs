@@ -57,7 +57,7 @@ fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>
     }
 }
 
-/// Shows the reading progress, or the number of included models.
+/// Shows the reading progress, or the count of included models.
 fn reading_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

@@ -74,7 +74,7 @@ pub(super) fn typed_trim(text: &str) -> Result<BTreeMap<String, f64>, String> {
     numbers_by_name(text, "a coordinate and a number as in \"roll_deg 5\"")
 }
 
-/// Parses pairs of a name and a number; `expected` describes such a pair in the error message.
+/// Parses pairs such as "LON 8"; `expected` describes such a pair in the error message.
 fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, String> {
     let mut numbers = BTreeMap::new();
     for part in comma_separated(text) {

@@ -1,4 +1,4 @@
-//! Responses and poles of the condition in front, before and after the parameters.
+//! Responses and poles in the displayed condition, without and with the physics parameters.
 
 use egui::{RichText, Ui, Vec2, vec2};
 
@@ -14,7 +14,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 const LEAST_PLOT: Vec2 = vec2(90.0, 60.0);
 /// Width that a plot needs to be readable \[pt\].
 const READABLE: f32 = 150.0;
-/// Most responses shown.
+/// Maximum count of responses shown.
 const MOST: f32 = 6.0;
 
 /// Draws the most improved responses, as many as fit, and the poles.
@@ -25,7 +25,7 @@ pub(super) fn change_ui(
     palette: &Palette,
 ) {
     let condition = state.condition().id();
-    // One of the plots shows the poles.
+    // One plot shows the poles.
     let most = (ui.available_width() / READABLE - 1.0).clamp(1.0, MOST) as usize;
     let figure = physics_change_figure(
         assessment,

@@ -1,5 +1,5 @@
-//! Correlation of the physics parameters with one another, and the share of each that gains and
-//! delays of the channels can take (M18.3).
+//! Correlation between the physics parameters, and the share of each parameter's effect that
+//! channel gains and delays can take (M18.3).
 
 use egui::{Align2, Color32, Rect, Sense, Ui, pos2, vec2};
 
@@ -11,23 +11,23 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Correlation from which the number is written.
+/// Least correlation whose number is written into its cell.
 const WRITTEN: f64 = 0.3;
-/// Largest side of a cell \[pt\].
+/// Maximum cell side \[pt\].
 const LARGEST_CELL: f32 = 26.0;
-/// Room for the numbers of rows and columns \[pt\].
+/// Room for row and column numbers \[pt\].
 const MARGIN: f32 = 18.0;
-/// Gap before the column about the channels \[pt\].
+/// Gap before the column for the channels' share \[pt\].
 const CHANNEL_GAP: f32 = 10.0;
 
-/// Triangle of the correlations, and a column about the channels.
+/// Triangle of correlations, and a column for the channels' share.
 pub(super) struct CorrelationMatrix<'a> {
     pub(super) findings: &'a PhysicsFindings,
     pub(super) palette: &'a Palette,
 }
 
 impl CorrelationMatrix<'_> {
-    /// Draws the matrix in the order of the ranking; a click on a row selects its parameter.
+    /// Draws the matrix in ranking order; a click on a row selects its parameter.
     pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let ranked = self.fitted();
         let count = ranked.len();
@@ -79,7 +79,7 @@ impl CorrelationMatrix<'_> {
         ui.allocate_rect(room.with_max_y(end), Sense::hover());
     }
 
-    /// Returns the fitted parameters in the order of the ranking.
+    /// Returns the fitted parameters in ranking order.
     fn fitted(&self) -> Vec<usize> {
         let fitted = &self.findings.diagnosis.fit.fitted;
         let mut ranked = self.findings.ranked();
@@ -102,7 +102,7 @@ impl CorrelationMatrix<'_> {
         }
     }
 
-    /// Paints a cell: the stronger, the brighter; orange above `limit`.
+    /// Paints a cell, brighter for a stronger correlation; orange above `limit`.
     fn cell_ui(&self, ui: &Ui, place: Rect, value: f64, limit: f64) {
         let inner = place.shrink(1.0);
         let strength = value.abs().clamp(0.0, 1.0) as f32;
@@ -125,7 +125,8 @@ impl CorrelationMatrix<'_> {
         }
     }
 
-    /// Names a cell, explains it under the pointer, and selects its parameter on a click.
+    /// Gives a cell an accessible name, explains it under the pointer, and selects its parameter on
+    /// a click.
     fn words_ui(
         &self,
         ui: &mut Ui,
@@ -167,7 +168,7 @@ impl CorrelationMatrix<'_> {
     }
 }
 
-/// Writes a number of magnitude below 1 with two digits: ".71", "−.55".
+/// Writes a number between −1 and 1 with two digits: ".71", "−.55".
 fn short_number(value: f64) -> String {
     let digits = format!("{:.2}", value.abs());
     let digits = digits.strip_prefix('0').unwrap_or(&digits);

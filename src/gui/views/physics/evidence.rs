@@ -1,5 +1,5 @@
-//! Evidence for the selected parameter, the effect of the parameters on the correction, and the
-//! cautions about the diagnosis.
+//! Evidence for the selected parameter, the parameters' effect on the correction, and cautions
+//! about the diagnosis.
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
@@ -24,10 +24,10 @@ use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Width of a number field \[pt\].
+/// Number field width \[pt\].
 const FIELD: f32 = 70.0;
 
-/// Draws the evidence below the verdict of the window.
+/// Draws the evidence in the right panel, below the verdict.
 pub fn physics_evidence_ui(
     ui: &mut Ui,
     state: &State,
@@ -61,12 +61,12 @@ pub fn physics_evidence_ui(
         });
 }
 
-/// The diagnosis, and the parameter shown.
+/// Diagnosis, and the selected parameter.
 struct Evidence<'a> {
     state: &'a State,
     assessment: &'a PhysicsAssessment,
     findings: &'a PhysicsFindings,
-    /// Index among the parameters that are on.
+    /// Index among the parameters that are switched on.
     selected: usize,
     palette: &'a Palette,
 }
@@ -81,8 +81,8 @@ impl Evidence<'_> {
         ui.add(Label::new(self.palette.small(text)).wrap());
     }
 
-    /// Draws the selected parameter: value, sources of its interval, what it can be confused with,
-    /// and the fields that change its prior and its value.
+    /// Draws the selected parameter: value, sources of its variance, parameters with a similar
+    /// effect, and the fields for its prior and its value.
     fn parameter_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let (Some(parameter), Some(diagnosis)) = (
             self.findings.parameters.get(self.selected),
@@ -135,7 +135,7 @@ impl Evidence<'_> {
         });
     }
 
-    /// Draws mean J and the delays of the channels without and with the parameters.
+    /// Draws mean J and the channel delays without and with the parameters.
     fn effect_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = self.assessment.correction.name();
         self.heading_ui(ui, &format!("Effect of {name} on the correction"));
@@ -227,7 +227,6 @@ fn decision(name: &str, decision: ParameterDecision) -> Command {
     .into()
 }
 
-/// Tabulates the evidence for a parameter.
 fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings) -> Table {
     let diagnosis = diagnosed.diagnosis;
     let mut table = Table::new("Evidence", ["quantity", "value"]);
@@ -276,7 +275,7 @@ fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings
     table
 }
 
-/// Returns the sources of the variance with their shares in percent.
+/// Returns the variance sources with their shares \[%\].
 fn variance_shares(variance: ValueVariance) -> Vec<(&'static str, f64)> {
     let total = variance.total();
     let sources = [

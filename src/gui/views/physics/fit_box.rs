@@ -1,4 +1,4 @@
-//! Box that switches a parameter on or off.
+//! Check box that takes a physics parameter into the fit.
 
 use egui::{Color32, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -9,10 +9,10 @@ use crate::gui::commands::command::Command;
 use crate::gui::widgets::controls::{Asks, named_switch};
 use crate::gui::widgets::palette::Palette;
 
-/// Side of the box \[pt\].
+/// Box side \[pt\].
 const SIDE: f32 = 12.0;
 
-/// Draws the box of the parameter `name` in a row, with its left edge at `left`.
+/// Draws the box for the parameter `name` in a row, with its left edge at `left`.
 pub(super) fn fit_box_ui(
     ui: &mut Ui,
     row: Rect,

@@ -1,5 +1,5 @@
-//! Named physics parameters: which of them would have to move, and by how much, so that the physics
-//! models meet flight in all conditions at once (M18).
+//! Physics parameters: which would have to change, and by how much, so that the physics models
+//! match flight in all conditions at once (M18).
 //!
 //! | file | content |
 //! |---|---|
@@ -48,19 +48,19 @@ pub use evidence::physics_evidence_ui;
 pub use parameter_list::parameter_list_ui;
 pub use use_parameters::{physics_header_ui, physics_job, unused_named};
 
-/// Height of the sentence with the verdict \[pt\].
+/// Height of the verdict sentence's box \[pt\].
 const SENTENCE: f32 = 52.0;
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 120.0);
-/// Width of the correlation matrix, as a share of the view's width.
+/// Width for the correlation matrix, as a share of the view width.
 const CORRELATION_PART: f32 = 0.33;
-/// Height of the plots of the selected parameter, as a share of the height below the ranking; the
-/// responses before and after have the rest.
+/// Height for the selected parameter's plots, as a share of the height below the ranking; the plots
+/// before and after have the rest.
 const CONDITIONS_PART: f32 = 0.46;
-/// Minimum height of the view that shows everything at once \[pt\].
+/// Minimum view height for showing everything at once \[pt\].
 const LEAST_WHOLE: f32 = 640.0;
 
-/// Returns the pages of the view; none in a window that shows everything at once.
+/// Returns the pages; none in a window that shows everything at once.
 pub fn physics_pages(state: &State) -> Vec<PageEntry> {
     if state.display.physics.shows_everything {
         return Vec::new();
@@ -98,7 +98,8 @@ pub fn physics_pages(state: &State) -> Vec<PageEntry> {
     pages
 }
 
-/// Draws verdict, ranking, correlation and plots; in a low window one page of them.
+/// Draws verdict, ranking, correlation and plots; in a low window, only the part on the selected
+/// page.
 pub fn physics_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -180,7 +181,7 @@ fn ranking_ui(ui: &mut Ui, ranking: &Ranking<'_>, height: f32, commands: &mut Ve
         .show(ui, |ui| ranking.ui(ui, commands));
 }
 
-/// Draws the verdict in a box of constant height.
+/// Draws the verdict in a box with constant height.
 fn sentence_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
     let frame = Frame::new()
         .fill(palette.raised)
@@ -195,7 +196,7 @@ fn sentence_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
     });
 }
 
-/// Says why there is no diagnosis, and how to supply what is missing.
+/// Draws why there is no diagnosis, and how to supply what is missing.
 fn failure_ui(ui: &mut Ui, failure: &PhysicsFailure, palette: &Palette) {
     ui.add_space(8.0);
     ui.add(Label::new(RichText::new(failure.to_string()).size(BODY_SIZE)).wrap());

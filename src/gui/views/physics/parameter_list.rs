@@ -1,5 +1,5 @@
-//! Parameters of the dataset in the left panel: whether each is fitted, its plausible change, and its
-//! runs in the condition.
+//! The dataset's physics parameters in the left panel: whether each is fitted, its plausible
+//! change, and how many model runs change it in the condition.
 
 use egui::{Button, RichText, ScrollArea, Sense, Ui, vec2};
 
@@ -19,13 +19,13 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Left edge of the names \[pt\].
 const NAME: f32 = 24.0;
-/// Width of the column of runs \[pt\].
+/// Width of the "runs" column \[pt\].
 const RUNS: f32 = 34.0;
-/// Width of the column of plausible changes \[pt\].
+/// Width of the "plausible" column \[pt\].
 const PLAUSIBLE: f32 = 62.0;
 
-/// Draws the parameters of the dataset, in its order. A click on a row shows the parameter, a click
-/// on its box takes it into the fit or out of it.
+/// Draws the parameters in dataset order. A click on a row shows the parameter, a click on its box
+/// takes it into the fit or out of it.
 pub fn parameter_list_ui(
     ui: &mut Ui,
     state: &State,
@@ -106,7 +106,7 @@ fn row_ui(
     painted_text(ui, row, AT_RIGHT_END, &runs.to_string(), body(), color);
 }
 
-/// Counts the runs of a parameter in the condition.
+/// Counts the model runs that change a parameter in the condition.
 fn runs_of(state: &State, name: &str) -> usize {
     let mut runs = 0;
     for model in state.condition().moved_models() {

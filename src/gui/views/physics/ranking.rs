@@ -1,5 +1,5 @@
-//! Ranking of the physics parameters: change with its interval, place among the plausible changes,
-//! share of the misfit that each explains, and what the data tell about it (M18.4).
+//! Ranking of the physics parameters: change with its interval, position on an axis of plausible
+//! changes, share of the misfit that each explains, and verdict (M18.4).
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 
@@ -16,29 +16,29 @@ use crate::gui::widgets::list_row::RowLook;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, Room, painted_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Height of a row \[pt\].
+/// Row height \[pt\].
 pub(super) const ROW: f32 = 24.0;
 /// Height of the headings \[pt\].
 const HEADINGS: f32 = 20.0;
-/// Length of the bar of the parameter that explains most alone \[pt\].
+/// Bar length for the parameter that explains most alone \[pt\].
 const FULL_BAR: f32 = 56.0;
-/// Least share that a full bar stands for, so that negligible shares stay short.
+/// Least share that a full bar represents, so that bars for negligible shares stay short.
 const LEAST_FULL: f32 = 0.1;
-/// Plausible standard deviations shown on each side of the nominal value.
+/// Axis length on each side of the nominal value, in plausible standard deviations.
 const SHOWN_SD: f32 = GREATEST_VALUE as f32;
 /// Radius of the dot at the value \[pt\].
 const DOT: f32 = 3.5;
 
-/// Left edges and widths of the columns \[pt\].
+/// Horizontal positions of the columns \[pt\]; left edges unless noted.
 #[derive(Clone, Copy, Debug)]
 struct Columns {
     check: f32,
     number: f32,
     name: Room,
-    /// Right edge of the change.
+    /// Right edge of the column with the change.
     change: f32,
     half_width: f32,
-    /// Centre and half-length of the axis of plausible standard deviations.
+    /// Centre and half-length of the axis in plausible standard deviations.
     axis: [f32; 2],
     bar: f32,
     percent: f32,
@@ -46,7 +46,7 @@ struct Columns {
 }
 
 impl Columns {
-    /// Divides the width of the rows.
+    /// Divides the row width among the columns.
     fn new(width: f32) -> Self {
         let name = Room {
             left: 42.0,
@@ -75,12 +75,12 @@ impl Columns {
     }
 }
 
-/// Axis of plausible standard deviations in a row.
+/// Axis in plausible standard deviations, in a row.
 #[derive(Clone, Copy, Debug)]
 struct SdAxis {
-    /// Place of the nominal value on the screen \[pt\].
+    /// Horizontal screen position for the nominal value \[pt\].
     middle: f32,
-    /// Length of a plausible standard deviation \[pt\].
+    /// Length per plausible standard deviation \[pt\].
     per_sd: f32,
 }
 
@@ -93,16 +93,16 @@ impl SdAxis {
         }
     }
 
-    /// Returns the place of a change on the screen; beyond the ends of the axis, that of the end.
+    /// Returns the horizontal screen position for a change `z`, clamped to the axis.
     fn place(self, z: f32) -> f32 {
         self.middle + self.per_sd * z.clamp(-SHOWN_SD, SHOWN_SD)
     }
 }
 
-/// Ranking of the parameters that are on, then those that are off.
+/// Ranking of the parameters that are switched on, then those that are off.
 pub(super) struct Ranking<'a> {
     pub(super) findings: &'a PhysicsFindings,
-    /// Index of the selected parameter among those that are on.
+    /// Index of the selected parameter among those switched on.
     pub(super) selected: usize,
     /// Whether the rows have the boxes that switch parameters on and off; the parameter list at the
     /// left has them if it is shown.
@@ -214,7 +214,7 @@ impl Ranking<'_> {
         row_text_within(ui, row, columns.verdict, words, BODY_SIZE, color);
     }
 
-    /// Draws the axis of plausible standard deviations with the value and its interval.
+    /// Draws the axis in plausible standard deviations with the value and its interval.
     fn axis_ui(&self, ui: &Ui, row: Rect, columns: Columns, diagnosed: &DiagnosedParameter<'_>) {
         let axis = SdAxis::new(row, columns);
         let plausible = Rect::from_x_y_ranges(
@@ -252,7 +252,7 @@ impl Ranking<'_> {
         }
     }
 
-    /// Returns the share that a full bar stands for: the largest that a parameter explains alone.
+    /// Returns the share that a full bar represents: the largest that a parameter explains alone.
     fn full_share(&self) -> f32 {
         let mut full = LEAST_FULL;
         for parameter in &self.findings.diagnosis.parameters {
@@ -263,8 +263,8 @@ impl Ranking<'_> {
         full
     }
 
-    /// Draws what the parameter explains: alone (pale), and by its step of the stepwise list
-    /// (solid).
+    /// Draws the share of the misfit that a parameter explains: alone (pale), and by its step in
+    /// the stepwise list (solid).
     fn explained_ui(&self, ui: &Ui, row: Rect, columns: Columns, index: usize) {
         let diagnosis = &self.findings.diagnosis.parameters[index];
         let Some(ratio_alone) = diagnosis.ratio_alone else {
@@ -299,7 +299,8 @@ impl Ranking<'_> {
     }
 }
 
-/// Colour of the words about a parameter: orange where it would have to move beyond the plausible.
+/// Returns the colour for a parameter's verdict: orange if the parameter would have to change
+/// implausibly.
 fn verdict_color(diagnosed: &DiagnosedParameter<'_>, palette: &Palette) -> Color32 {
     match diagnosed.diagnosis.why_not_named {
         None => palette.text,

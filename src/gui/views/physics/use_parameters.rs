@@ -36,7 +36,7 @@ pub fn unused_named(state: &State) -> usize {
     }
 }
 
-/// Draws the choice of the parameters applied, and the button that applies the named ones.
+/// Draws the selector for the applied parameters, and the button that applies the named ones.
 pub fn physics_header_ui(
     ui: &mut Ui,
     state: &State,

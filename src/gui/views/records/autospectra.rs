@@ -1,4 +1,4 @@
-//! Autospectra of the inputs of a record.
+//! Autospectra of a record's inputs.
 
 use std::sync::Arc;
 
@@ -6,16 +6,17 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_sysid::spectra::spectrum::spectra;
 
-/// Number of adjacent spectral lines averaged into one point.
+/// Adjacent spectral lines averaged into one point.
 const SMOOTHED: usize = 5;
 
-/// Autospectrum of each input: frequency \[rad/s\] and level \[dB of the squared unit per Hz\].
+/// Autospectrum for each input: frequency \[rad/s\] and level \[dB, relative to the squared unit
+/// per Hz\].
 pub(super) type Autospectra = Vec<Arc<[[f64; 2]]>>;
 
-/// Computes the one-sided power spectral density `G` of each input about its mean, up to twice the
-/// band end `highest` \[rad/s\].
+/// Computes each input's one-sided power spectral density `G` about its mean, up to twice the upper
+/// band edge `highest` \[rad/s\].
 ///
-/// With the input u, the sample time dt and the length T of the record \[s\]:
+/// With the input u, the sample time dt and the record length T \[s\]:
 ///
 /// ```text
 /// U(ω) = dt / sqrt(T) Σ u exp(-j ω t)    computed by `spectra`
@@ -25,9 +26,9 @@ pub(super) type Autospectra = Vec<Arc<[[f64; 2]]>>;
 /// The integral of `G` over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data,
 /// 5.2.2).
 ///
-/// The chart shows which frequencies an input excites, and simplifies for this purpose: the record
-/// is treated as uniformly sampled, and a missing sample counts as zero even before the mean is
-/// removed, so that a gap becomes a step to minus the mean.
+/// The chart only has to show which frequencies an input excites, so the computation is simplified:
+/// the record is treated as uniformly sampled, and a missing sample counts as zero even before the
+/// mean is removed, so that a gap becomes a step to minus the mean.
 pub(super) fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     let Some(sample_time_s) = middle_step(&flight.time_s) else {
         return Vec::new();
@@ -61,7 +62,7 @@ pub(super) fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
 }
 
 /// Returns the time step in the middle of the record \[s\], which is the sample time if sampling is
-/// uniform; steps that are not positive are skipped. `None` without positive steps.
+/// uniform; skips steps that are not positive. `None` without positive steps.
 fn middle_step(time_s: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = time_s
         .windows(2)

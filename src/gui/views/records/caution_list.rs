@@ -23,27 +23,27 @@ use crate::gui::widgets::elision::{elided, text_width};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, SMALL_SIZE, body, medium, small};
 
-/// Height of the heading \[pt\].
+/// Heading height \[pt\].
 const HEADING: f32 = 20.0;
-/// Height of a caution \[pt\].
+/// Caution height \[pt\].
 const ENTRY: f32 = 36.0;
-/// Room of the caution sign \[pt\].
+/// Width reserved for the caution sign \[pt\].
 const SIGN: f32 = 20.0;
 /// Width of the menu with further remedies \[pt\].
 const MENU: f32 = 20.0;
 const BUTTON_HEIGHT: f32 = 22.0;
 
-/// A caution with its remedies.
+/// Caution with its remedies.
 struct Entry {
     title: String,
     detail: String,
-    /// The whole text.
+    /// Complete text, shown as a tooltip.
     text: String,
     remedies: Vec<Remedy>,
 }
 
-/// Lists the cautions. Those of outdated models remain, since several remedies may be applied one
-/// after another.
+/// Lists the cautions. Cautions about outdated models remain, since several remedies may be applied
+/// one after another.
 pub(super) fn caution_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let palette = page.palette;
     let entries = entries(ui, page);
@@ -88,8 +88,8 @@ fn entries(ui: &Ui, page: Page<'_>) -> Vec<Entry> {
     entries
 }
 
-/// Returns a caution about a channel that is delayed equally in all records, which only a comparison
-/// with a physics model can reveal.
+/// Returns a caution about a channel that is delayed equally in all records, which only a
+/// comparison with a physics model can reveal.
 fn late_channel(ui: &Ui, page: Page<'_>) -> Option<Entry> {
     let Page { state, records, .. } = page;
     let (job, outcome) = records.found.as_ref()?;
@@ -159,7 +159,7 @@ fn entry_ui(
                 remedies_ui(ui, &entry.remedies, commands);
             });
         });
-        // The buttons end above the lower edge of the entry.
+        // The buttons end above the entry's lower edge.
         ui.advance_cursor_after_rect(rect);
     }
 }

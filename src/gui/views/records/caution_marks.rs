@@ -1,4 +1,4 @@
-//! Short marks of the cautions about a channel.
+//! Short marks for the cautions about a channel.
 
 use super::page::Page;
 

@@ -1,4 +1,4 @@
-//! Buttons that remove the cause of a caution.
+//! Buttons that remove a caution's cause.
 
 use egui::Ui;
 
@@ -18,17 +18,17 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 
-/// Number of periods of the lowest frequency that the longest record must contain: slightly more
-/// than five, so that rounding does not cause the same caution again.
+/// Periods at the lowest frequency that the longest record must contain: slightly more than five,
+/// so that rounding does not cause the same caution again.
 const PERIODS: f64 = 5.001;
-/// Maximum number of buttons for references.
+/// Maximum count of buttons for references.
 const MOST_REFERENCES: usize = 3;
 
-/// A button that removes the cause of a caution.
+/// Button that removes a caution's cause.
 pub(super) struct Remedy {
-    /// Text of the button.
+    /// Button text.
     pub(super) short: String,
-    /// The whole effect, in menus and as the accessible name.
+    /// Complete description, in menus and as the accessible name.
     pub(super) label: String,
     pub(super) command: Command,
 }
@@ -70,7 +70,7 @@ pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option
     }
 }
 
-/// Returns the remedies of a caution; none if only another flight helps.
+/// Returns the remedies for a caution; none if only another flight helps.
 pub(super) fn caution_remedies(
     ui: &Ui,
     records: &ConditionRecords,
@@ -130,7 +130,7 @@ pub(super) fn caution_remedies(
     }
 }
 
-/// Returns the remedies of a caution about the records themselves.
+/// Returns the remedies for a caution about the records themselves.
 fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Remedy> {
     match caution {
         RecordCaution::SampleHold { signal, hold_s, .. } => hold_remedies(signal, *hold_s),
@@ -172,8 +172,8 @@ fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     remedies
 }
 
-/// Returns remedies for contradicting records: first the repair of each identified fault, then
-/// buttons that leave a record out.
+/// Returns remedies for contradicting records: first repairs for identified faults, then buttons
+/// that leave a record out.
 fn contradiction_remedies(
     records: &ConditionRecords,
     contradicting: &[ContradictingRecord],
@@ -188,7 +188,7 @@ fn contradiction_remedies(
     remedies
 }
 
-/// Returns a remedy that repairs the identified fault of a record, in addition to earlier remedies.
+/// Returns a remedy that repairs a record's identified fault, in addition to earlier remedies.
 fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Option<Remedy> {
     let row = records.row_of_record(contradicting.record)?;
     let fault = contradicting.fault.as_ref()?;
@@ -266,8 +266,8 @@ fn use_band(band: [f64; 2]) -> Remedy {
     )
 }
 
-/// Returns a remedy that raises the lower end of the band so that the longest record contains
-/// [`PERIODS`] periods; at the frequency `once` \[rad/s\], it contains a single period.
+/// Returns a remedy that raises the lower band edge so that the longest record contains [`PERIODS`]
+/// periods; at the frequency `once` \[rad/s\], it contains a single period.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;

@@ -21,7 +21,7 @@ use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::number_entry::number_entry_ui;
 
 const FIELD_WIDTH: f32 = 90.0;
-/// Width of the fields that apply to the displayed record only \[pt\].
+/// Width of fields that apply only to the displayed record \[pt\].
 const RECORD_FIELD_WIDTH: f32 = 60.0;
 
 const HEADINGS: [(&str, &str); 6] = [
@@ -174,9 +174,8 @@ fn channel_rows_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &
     }
 }
 
-/// A channel in the displayed record.
+/// Channel in the displayed record.
 struct ChannelRow<'a> {
-    /// Record index.
     record: usize,
     row: &'a LaidOutRecord,
     signal: Signal,
@@ -310,7 +309,7 @@ impl ChannelRow<'_> {
     }
 }
 
-/// Draws a selector of columns; returns a changed selection.
+/// Draws a column selector; returns a changed selection.
 fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>) -> Option<usize> {
     let columns = (0..row.table.columns.len())
         .map(|column| (column, chosen == Some(column), column_text(row, column)));
@@ -326,7 +325,7 @@ fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>
     list.ui(ui, columns)
 }
 
-/// Returns the name of a column with its unit in the file; "?" if there is no such column.
+/// Returns a column's name with its unit in the file; "?" if there is no such column.
 fn column_text(row: &LaidOutRecord, index: usize) -> String {
     let Some(column) = row.table.columns.get(index) else {
         return "?".to_owned();

@@ -1,6 +1,6 @@
-//! Section *Columns and units*: a row for each group of records with the same columns, over all
-//! conditions. Most records share a group, so that columns and units are set once; exceptions are
-//! further rows.
+//! Section *Columns and units*: a row for each group of records that have the same columns, over
+//! all conditions. Most records share a group, so that columns and units are set once; exceptions
+//! are further rows.
 
 use egui::{Label, Ui};
 

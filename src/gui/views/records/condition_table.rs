@@ -8,9 +8,9 @@ use crate::gui::state::condition_fit::FitStatus;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 
-/// Builds a table of the conditions with records: numbers of records, state of the fit, model
-/// order, χ²/dof of fitted and held-out records, numbers of models and cautions, and computing
-/// time. Before an identification, cells are empty.
+/// Tabulates the conditions with records: record counts, fit state, model order, χ²/dof for fitted
+/// and held-out records, model and caution counts, and computing time. Before an identification,
+/// cells are empty.
 pub fn condition_table(state: &State) -> Table {
     let columns = [
         "condition",

@@ -1,4 +1,4 @@
-//! Curves of an identified response: measured points, models and their confidence bands.
+//! Curves for an identified response: measured points, models and their confidence bands.
 
 use nalgebra::Complex;
 
@@ -14,7 +14,7 @@ use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
 use crate::gui::plot::BodeCurve;
 
-/// Number of points on the curve of a model.
+/// Points on a model's curve.
 const POINTS: usize = 200;
 /// Factor by which curves extend beyond the band.
 const BEYOND: f64 = 2.0;
@@ -27,7 +27,7 @@ pub(super) enum BodePart {
 }
 
 impl BodePart {
-    /// Returns the maximum half-length of bars and bands \[dB, deg\]. Longer ones are cut, because
+    /// Returns the maximum half-length for bars and bands \[dB, deg\]. Longer ones are cut, because
     /// they would hide other curves.
     fn most_half(self) -> f64 {
         match self {
@@ -43,7 +43,7 @@ impl BodePart {
         }
     }
 
-    /// Returns the half-width of the 95 % interval \[dB, deg\].
+    /// Returns the 95 % interval's half-width \[dB, deg\].
     pub(super) fn half_interval(self, sd: StandardDeviation) -> f64 {
         TWO_SIDED_95
             * match self {
@@ -52,13 +52,13 @@ impl BodePart {
             }
     }
 
-    /// Returns the half-width of the 95 % interval \[dB, deg\], limited to the drawn length.
+    /// Returns the 95 % interval's half-width \[dB, deg\], limited to the maximum drawn length.
     pub(super) fn drawn_half_interval(self, sd: StandardDeviation) -> f64 {
         self.half_interval(sd).min(self.most_half())
     }
 }
 
-/// A response value; the phase is unwrapped.
+/// Response value; the phase is unwrapped.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePoint {
     /// Frequency \[rad/s\].
@@ -90,12 +90,12 @@ pub(super) struct MeasuredPoint {
     pub(super) is_trusted: bool,
     /// Partial coherence, 0 to 1.
     pub(super) coherence: f64,
-    /// Phase of the measured point minus that of the recommended model, in standard deviations of
-    /// the measured point; `None` without a model or a standard deviation.
+    /// Measured phase minus the recommended model's phase, in standard deviations of the measured
+    /// point; `None` without a model or a standard deviation.
     pub(super) phase_residual: Option<f64>,
 }
 
-/// Band and method of a measured response.
+/// Band and method for a measured response.
 #[derive(Clone, Copy)]
 pub(super) struct MeasuredBand {
     /// Identification band \[rad/s\].
@@ -104,17 +104,17 @@ pub(super) struct MeasuredBand {
     pub(super) by_reference: bool,
 }
 
-/// Curves and intervals of a response, to be drawn in both halves of a Bode plot.
+/// Curves and intervals for a response, to be drawn in both halves of a Bode plot.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,
-    /// Curve of the refined model, over the band and slightly beyond.
+    /// Refined model's curve, over the band and slightly beyond.
     pub(super) refined: Vec<CurvePoint>,
-    /// Curve of the refined model, at the frequencies of its confidence band.
+    /// Refined model's curve, at the frequencies of its confidence band.
     pub(super) recommended: Vec<CurvePoint>,
     /// Standard deviation at each point of the recommended curve.
     pub(super) recommended_sds: Vec<StandardDeviation>,
-    /// Curve of the first model, which is drawn while that model is refined.
+    /// First model's curve, which is drawn while that model is refined.
     pub(super) unrefined: Vec<CurvePoint>,
     /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
     /// (M14.17).
@@ -132,8 +132,8 @@ impl DrawnResponse {
         }
     }
 
-    /// Returns the curves of an identification. The phases of the models are on the branch of the
-    /// first trusted measured point, the anchor.
+    /// Returns an identification's curves. The models' phases are on the branch of the first
+    /// trusted measured point, the anchor.
     pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
         let points = &found.measured.points;
         let measured = measured_points(points, pair);
@@ -174,7 +174,8 @@ impl DrawnResponse {
         drawn
     }
 
-    /// Returns the points of a curve from another source, its phase on the branch of these curves.
+    /// Returns the points on a curve from another source, with its phase shifted to the branch of
+    /// these curves.
     pub(super) fn aligned(&self, curve: &BodeCurve) -> Vec<CurvePoint> {
         let anchor = self
             .measured
@@ -219,7 +220,7 @@ impl DrawnResponse {
     }
 }
 
-/// Returns the phase residual of a measured point with respect to a model's curve at the measured
+/// Returns a measured point's phase residual with respect to a model's curve at the measured
 /// frequencies, within half a turn.
 fn phase_residual(measured: &MeasuredPoint, at_points: &[CurvePoint]) -> Option<f64> {
     let model = at_points
@@ -233,7 +234,7 @@ fn phase_residual(measured: &MeasuredPoint, at_points: &[CurvePoint]) -> Option<
     Some(wrapped / measured.sd.deg)
 }
 
-/// Returns the measured points of a pair. A point is trusted if its partial coherence reaches
+/// Returns a pair's measured points. A point is trusted if its partial coherence reaches
 /// [`TRUSTED_COHERENCE`] and its window is narrow.
 fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
     let at = (pair.output, pair.input);
@@ -297,7 +298,7 @@ fn unexcited(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
     intervals
 }
 
-/// Computes the response of a model over the band and slightly beyond.
+/// Computes a model's response over the band and slightly beyond.
 fn model_curve(
     model: &StateSpace,
     band: [f64; 2],
@@ -308,7 +309,7 @@ fn model_curve(
     curve(model, &omega, pair, anchor)
 }
 
-/// Computes the response of a model at frequencies \[rad/s\]; omits values that are not finite.
+/// Computes a model's response at frequencies \[rad/s\]; omits values that are not finite.
 fn curve(
     model: &StateSpace,
     frequencies: &[f64],
@@ -327,8 +328,8 @@ fn curve(
     shape(omega, &values, anchor)
 }
 
-/// Returns the curve with magnitude and unwrapped phase, on the branch nearest to `anchor`, a
-/// point of another curve.
+/// Returns the curve with magnitude and unwrapped phase, on the branch nearest to `anchor`, a point
+/// on another curve.
 fn shape(omega: Vec<f64>, values: &[Complex<f64>], anchor: Option<CurvePoint>) -> Vec<CurvePoint> {
     let ResponseShape {
         magnitude_db,
@@ -349,8 +350,8 @@ fn shape(omega: Vec<f64>, values: &[Complex<f64>], anchor: Option<CurvePoint>) -
     curve
 }
 
-/// Returns the shift by whole turns \[deg\] that brings the phase closest to the phase of
-/// `anchor`, compared at the nearest frequency.
+/// Returns the shift by whole turns \[deg\] that brings the phase closest to the anchor's phase,
+/// compared at the nearest frequency.
 fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], anchor: CurvePoint) -> f64 {
     let nearest = (0..omega.len()).min_by(|a, b| {
         let distance_a = (omega[*a] / anchor.omega).ln().abs();

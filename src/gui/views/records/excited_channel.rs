@@ -1,4 +1,4 @@
-//! The input drawn over time: the one that the displayed record excites most.
+//! Selection of the input drawn over time: the one that the displayed record excites most.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::frame_cache::{Source, cached};
 use super::page::Page;
 use crate::gui::state::excited_input::Excitation;
 
-/// Returns the index of the input in focus if the displayed record excites it, otherwise of the input
+/// Returns the index of the input in focus if the displayed record excites it, otherwise the input
 /// that it excites most, compared with the other records.
 pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
     displayed_excited_input(ui, page).unwrap_or(page.state.display.selection.pair.input)

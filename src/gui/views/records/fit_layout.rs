@@ -1,45 +1,45 @@
-//! Places on the page Fit: time charts above the response, with fixed heights of the texts and
-//! proportional heights of the charts.
+//! Layout of the page Fit: time charts above the response. Texts have fixed heights, charts share
+//! the remaining height.
 
 use egui::{Rect, pos2};
 
-/// Height of the chips \[pt\].
+/// Chip height \[pt\].
 const CHIPS: f32 = 28.0;
-/// Height of the lane with the parts of the record \[pt\].
+/// Height of the lane with the record's parts \[pt\].
 const LANE: f32 = 22.0;
 /// Gap between charts \[pt\].
 const GAP: f32 = 6.0;
-/// Height of the tick labels of a horizontal axis \[pt\].
+/// Height of tick labels on a horizontal axis \[pt\].
 pub(super) const TICKS: f32 = 15.0;
 /// Gap between the time charts and the response \[pt\].
 const SEPARATION: f32 = 10.0;
-/// Height of the heading of the response \[pt\].
+/// Height of the response heading \[pt\].
 const HEADING: f32 = 22.0;
 /// Height of a caption above a chart \[pt\].
 const CAPTION: f32 = 16.0;
-/// Usual height of the chart of the excited input \[pt\].
+/// Usual chart height for the excited input \[pt\].
 const INPUT: f32 = 62.0;
-/// Usual height of the chart of the output in focus \[pt\].
+/// Usual chart height for the output in focus \[pt\].
 const OUTPUT: f32 = 118.0;
-/// Usual height of the chart of a further output \[pt\].
+/// Usual chart height for an additional output \[pt\].
 const MORE_OUTPUT: f32 = 78.0;
-/// Usual height of magnitude and phase \[pt\].
+/// Usual chart height for magnitude and phase \[pt\].
 const BODE: f32 = 196.0;
-/// Usual height of partial coherence and phase residual \[pt\].
+/// Usual chart height for partial coherence and phase residual \[pt\].
 const STRIP: f32 = 40.0;
-/// Height below which there is a single output and no phase residual \[pt\].
+/// Page height below which only one output and no phase residual are drawn \[pt\].
 const LEAST_FULL: f32 = 660.0;
 /// Gap between magnitude and phase \[pt\].
 const BODE_GAP: f32 = 16.0;
-/// Number of further outputs.
+/// Maximum count of additional outputs.
 const MORE_OUTPUTS: usize = 2;
 
-/// Places of everything on the page.
+/// Areas on the page.
 #[derive(Clone, Debug)]
 pub(super) struct FitLayout {
     pub(super) chips: Rect,
     pub(super) lane: Rect,
-    /// Charts over time: input, output in focus, further outputs. The last includes its tick
+    /// Charts over time: input, output in focus, additional outputs. The last includes its tick
     /// labels.
     pub(super) time: Vec<Rect>,
     /// Vertical position of the line between time charts and response.
@@ -48,7 +48,7 @@ pub(super) struct FitLayout {
     pub(super) response: ResponseLayout,
 }
 
-/// Places of the response, captions included.
+/// Areas for the response, captions included.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ResponseLayout {
     pub(super) magnitude: CaptionedChart,
@@ -58,12 +58,11 @@ pub(super) struct ResponseLayout {
     pub(super) residual: Option<CaptionedChart>,
 }
 
-/// A chart below its caption.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CaptionedChart {
     pub(super) caption: Rect,
     pub(super) chart: Rect,
-    /// Whether the chart includes the tick labels of its horizontal axis.
+    /// Whether the chart includes tick labels on its horizontal axis.
     pub(super) has_ticks: bool,
 }
 

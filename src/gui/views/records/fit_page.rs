@@ -17,7 +17,7 @@ use crate::gui::state::records::RecordsPage;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::palette::body;
 
-/// Draws the page; `curves` are the curves of the response in focus in the Bode view.
+/// Draws the page; `curves` are the Bode view's curves for the response in focus.
 pub(super) fn fit_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -63,7 +63,7 @@ fn message_ui(ui: &Ui, page: Page<'_>, area: Rect, text: &str) {
     named(response, Role::Label, text);
 }
 
-/// Says in the place of the time charts that the columns of the record are not assigned.
+/// Draws, instead of the time charts, a message that the record's columns are not assigned.
 fn unassigned_ui(ui: &mut Ui, page: Page<'_>, layout: &FitLayout, commands: &mut Vec<Command>) {
     let mut area = layout.lane;
     for place in &layout.time {

@@ -1,5 +1,5 @@
-//! Summary of the identification of the displayed condition: costs and order of the recommended
-//! model, its use, and progress or failure.
+//! Summary of the displayed condition's identification: the recommended model's costs and order,
+//! its use, and progress or failure.
 
 use egui::{Color32, Label, ProgressBar, Rect, RichText, Role, Sense, Ui, UiBuilder, vec2};
 
@@ -20,16 +20,16 @@ use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Height of the summary, which does not depend on its content \[pt\].
+/// Summary height \[pt\], independent of the content.
 const SUMMARY: f32 = 4.0 * LINE + USE_LINE + 8.0;
-/// Height of a line \[pt\].
+/// Line height \[pt\].
 const LINE: f32 = 20.0;
-/// Height of the line with the use of the models \[pt\].
+/// Height of the line about use in the study \[pt\].
 const USE_LINE: f32 = 26.0;
-/// Tooltip of the cost of held-out records.
+/// Tooltip on the held-out records' cost.
 const HELD_OUT_HINT: &str = "χ²/dof of the held-out records for the model as it is";
 
-/// Shows the summary; only the reason of a failure may need more than the reserved height.
+/// Shows the summary; only the reason for a failure may need more than the reserved height.
 pub(super) fn fit_summary_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let size = vec2(ui.available_width(), SUMMARY);
     ui.allocate_ui(size, |ui| {
@@ -97,7 +97,7 @@ fn line_ui(ui: &mut Ui, height: f32) -> Rect {
     ui.allocate_exact_size(size, Sense::hover()).0
 }
 
-/// A figure of the summary in half a line.
+/// Number in the summary, drawn in half a line.
 struct Figure<'a> {
     name: &'a str,
     value: String,
@@ -220,7 +220,8 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     });
 }
 
-/// Shows the identification band; an own band has a button that returns to the study's.
+/// Shows the identification band; if it differs from the study's band, also a button that returns
+/// to that band.
 fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -251,7 +252,8 @@ fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     }
 }
 
-/// Shows the completed share and the current step, or the condition that is identified first.
+/// Shows the completed share and the current step or, while waiting, which condition is identified
+/// first.
 fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     let Page { state, palette, .. } = page;
     let news = job.news();

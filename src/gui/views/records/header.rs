@@ -17,7 +17,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Width of the progress bar \[pt\].
 const BAR: f32 = 72.0;
-/// Room for the words about the progress \[pt\].
+/// Width for the progress text \[pt\].
 const BAR_WORDS: f32 = 112.0;
 const IDENTIFY_HINT: &str =
     "Identifies models from the records: CT-PBSID, refined, with confidence bands (M14)";
@@ -42,8 +42,8 @@ fn more_ui(ui: &mut Ui, name: &str, entries: Vec<(String, Command)>, commands: &
     named(response, Role::Button, name);
 }
 
-/// Draws the command that takes all finished fits, and a menu with other models; the fit of the
-/// displayed condition alone is used in the right panel.
+/// Draws the command that uses all finished fits, and a menu with other models. (The right panel
+/// has the command that uses only the displayed condition's fit.)
 fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut Vec<Command>) {
     if fits.is_empty() {
         return;

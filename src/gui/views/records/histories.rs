@@ -1,4 +1,4 @@
-//! Charts of the displayed record over time: the excited input, the output in focus and further
+//! Charts of the displayed record over time: the excited input, the output in focus and additional
 //! outputs, with the models' responses, on a common time axis and with a common cursor.
 
 use std::sync::Arc;
@@ -29,14 +29,15 @@ use crate::gui::widgets::palette::{Palette, small};
 
 /// Opacity of samples outside the parts in use.
 const OUTSIDE: f32 = 0.4;
-/// Factor by which a model's response may extend the range of the samples; a diverging model is cut.
+/// Share of the samples' range by which a model's response may extend the axis at either end; a
+/// diverging model is cut.
 const MOST_EXTENSION: f64 = 0.5;
-/// Radius of the dots at the cursor \[pt\].
+/// Radius of dots at the cursor \[pt\].
 const DOT: f32 = 2.8;
 
-/// Horizontal axis and cursor of the charts.
+/// Horizontal axis and cursor, common to the charts.
 pub(super) struct TimeView {
-    /// Transform of the charts; only its horizontal axis is common to all.
+    /// Transform in one chart; only its horizontal axis is common to all charts.
     pub(super) transform: PlotTransform,
     /// Time at the cursor \[s\].
     pub(super) cursor_s: f64,
@@ -60,7 +61,7 @@ pub(super) fn histories_ui(
     charts.show(ui, places)
 }
 
-/// Returns the marked time spans: modes of the logging system, and gaps.
+/// Returns the marked time spans: logging-system modes, and gaps.
 fn marked_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Some(row) = page.records.rows.get(page.records.chosen) else {
         return Vec::new();
@@ -70,7 +71,8 @@ fn marked_spans(page: Page<'_>) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the indices of the outputs over time: the output in focus, then the further outputs.
+/// Returns the indices of outputs drawn over time: the output in focus, then the additional
+/// outputs.
 pub(super) fn shown_outputs(page: Page<'_>) -> Vec<usize> {
     let count = page.state.dataset().outputs().len();
     let focus = page.state.display.selection.pair.output;
@@ -88,7 +90,7 @@ pub(super) fn shown_outputs(page: Page<'_>) -> Vec<usize> {
     outputs
 }
 
-/// A channel that is drawn over time.
+/// Channel drawn over time.
 #[derive(Clone, Copy)]
 struct DrawnChannel<'a> {
     channel: &'a Channel,
@@ -98,7 +100,6 @@ struct DrawnChannel<'a> {
     output: Option<usize>,
 }
 
-/// A chart as drawn.
 struct DrawnChart<'a> {
     channel: DrawnChannel<'a>,
     transform: PlotTransform,
@@ -107,7 +108,6 @@ struct DrawnChart<'a> {
     place: Rect,
 }
 
-/// Charts of a record.
 struct TimeCharts<'a> {
     page: Page<'a>,
     record: &'a RecordSpan,
@@ -120,7 +120,7 @@ impl<'a> TimeCharts<'a> {
     fn show(&self, ui: &mut Ui, places: &[Rect]) -> Option<TimeView> {
         let channels = self.channels(ui);
         let with_spectrogram = self.page.state.records.spectrogram.is_some();
-        // The spectrogram takes the room of the further outputs, or of the input.
+        // The spectrogram replaces the two additional outputs or, if there are fewer, the input.
         let spectrogram_place = match places {
             [.., first, last] if places.len() > 3 && with_spectrogram => Some(first.union(*last)),
             [first, ..] if with_spectrogram => Some(*first),
@@ -165,7 +165,7 @@ impl<'a> TimeCharts<'a> {
         })
     }
 
-    /// Returns the channels in the order of the places.
+    /// Returns the channels in the same order as `places`.
     fn channels(&self, ui: &Ui) -> Vec<DrawnChannel<'a>> {
         let dataset = self.page.state.dataset();
         let inputs = dataset.inputs();
@@ -247,8 +247,8 @@ impl<'a> TimeCharts<'a> {
         }
     }
 
-    /// Returns the range of a channel: that of the samples, extended by the models' responses
-    /// whether they are shown or not, so that the chips never move the axis.
+    /// Returns a channel's value range: the samples' range, extended by all models' responses, even
+    /// hidden ones, so that showing or hiding a model never moves the axis.
     fn value_range(
         &self,
         ui: &Ui,
@@ -286,8 +286,8 @@ impl<'a> TimeCharts<'a> {
         rounded_range(range)
     }
 
-    /// Returns the time under the pointer \[s\]; without a pointer, that of the largest sample of the
-    /// output in focus.
+    /// Returns the time under the pointer \[s\]; without a pointer, the time at which the output in
+    /// focus deviates most from its mean.
     fn cursor_s(&self, ui: &Ui, places: &[Rect], drawn: &[DrawnChart<'_>]) -> f64 {
         let pointer = ui.input(|input| input.pointer.hover_pos());
         if let Some(pointer) = pointer
@@ -317,7 +317,7 @@ impl<'a> TimeCharts<'a> {
         }
     }
 
-    /// Draws the cursor of a chart, and the values there in the margin.
+    /// Draws a chart's cursor, and the values at the cursor in the margin.
     fn cursor_ui(&self, ui: &mut Ui, chart: &DrawnChart<'_>, cursor_s: f64) {
         let palette = self.page.palette;
         let frame = *chart.transform.frame();

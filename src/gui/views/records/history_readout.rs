@@ -1,5 +1,5 @@
-//! Read-out at the right of a time chart: name and unit of the channel, fit of the identified
-//! model, and the value of each role at the cursor.
+//! Read-out at the right of a time chart: channel name and unit, the identified model's fit, and
+//! each role's value at the cursor.
 
 use egui::{Grid, Rect, RichText, Role as WidgetRole, Sense, Stroke, Ui, pos2, vec2};
 
@@ -16,17 +16,17 @@ use crate::gui::widgets::controls::named;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
-/// Height of the line with the name \[pt\].
+/// Height of the name line \[pt\].
 const NAME: f32 = 16.0;
-/// Usual height of the line of a role \[pt\].
+/// Usual line height for a role \[pt\].
 const LINE: f32 = 15.0;
-/// Length of the sample of a curve \[pt\].
+/// Length of a curve sample \[pt\].
 const SAMPLE: f32 = 10.0;
 const SAMPLE_GAP: f32 = 6.0;
-/// Limit of Theil's coefficient below which the fit of a model counts as good (M14, section 6).
+/// Theil's coefficient below which a model's fit counts as good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
-/// Value of a role at the cursor.
+/// A role's value at the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RoleValue {
     pub(super) role: TimeRole,
@@ -34,14 +34,14 @@ pub(super) struct RoleValue {
     pub(super) value: Option<f64>,
 }
 
-/// Read-out of a channel.
+/// Read-out for a channel.
 pub(super) struct ChannelReadout<'a> {
     pub(super) channel: &'a Channel,
-    /// Index of the output; `None` for an input.
+    /// Output index; `None` for an input.
     pub(super) output: Option<usize>,
-    /// Range of the value axis, which determines the number of decimals.
+    /// Range on the value axis, which determines how many decimals are shown.
     pub(super) range: Range,
-    /// In the order of the chips.
+    /// Values, in the order of the role chips.
     pub(super) values: Vec<RoleValue>,
     pub(super) models: &'a [Simulated<'a>],
     pub(super) page: Page<'a>,
@@ -89,7 +89,7 @@ impl ChannelReadout<'_> {
         }
     }
 
-    /// Returns the fit of the identified model \[%\].
+    /// Returns the identified model's fit \[%\].
     fn identified_fit(&self) -> Option<f64> {
         let output = self.output?;
         self.models
@@ -112,7 +112,7 @@ impl ChannelReadout<'_> {
         )
     }
 
-    /// Shows fit and Theil's coefficient of every model, and χ²/dof of the output.
+    /// Shows every model's fit and Theil's coefficient, and the output's χ²/dof.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let Some(output) = self.output else { return };
         for mark in channel_caution_marks(self.page, &self.channel.name) {

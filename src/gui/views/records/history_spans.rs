@@ -1,4 +1,4 @@
-//! Time spans marked in the charts of a record: modes of the logging system, and gaps.
+//! Time spans marked in a record's charts: logging-system modes, and gaps.
 
 use gdcm_sysid::records::ModeSpan;
 use gdcm_sysid::spectra::gap::{Gap, Treatment};
@@ -7,7 +7,7 @@ use super::page::Page;
 use crate::gui::plot::chart::ChartSpan;
 use crate::gui::widgets::palette::Palette;
 
-/// Returns the time spans of the logging system's modes, shaded lightly and darkly in turn.
+/// Returns the time spans of the logging system's modes, with alternating light and dark shading.
 pub(super) fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     let mut spans = Vec::new();
     for (index, mode) in modes.iter().enumerate() {

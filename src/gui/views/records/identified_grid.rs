@@ -1,5 +1,5 @@
-//! Identified responses on the grid of the constraint matrix: one standard deviation of magnitude
-//! and phase, and the partial coherence as a bar.
+//! Identified responses on the constraint matrix's grid: standard deviation in magnitude and phase,
+//! and partial coherence as a bar.
 
 use egui::{Align2, Color32, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -17,23 +17,23 @@ use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Height of the heading, and of the names of the inputs \[pt\].
+/// Heights of the heading and of the row with input names \[pt\].
 const HEADING: f32 = 20.0;
 const INPUT_NAMES: f32 = 16.0;
-/// Width of the names of the outputs \[pt\].
+/// Width of the column with output names \[pt\].
 const OUTPUT_NAMES: f32 = 28.0;
-/// Greatest and least height of a cell \[pt\].
+/// Greatest and least cell height \[pt\].
 const CELL: [f32; 2] = [27.0, 19.0];
-/// Least width of a cell \[pt\].
+/// Least cell width \[pt\].
 const LEAST_WIDTH: f32 = 58.0;
 const GAP: f32 = 3.0;
-/// Meaning of the cells; the first note that fits is shown.
+/// Notes that explain the cells; the first note that fits is shown.
 const NOTES: [&str; 2] = ["± 1 σ, dB and deg; bar: coherence", "± 1 σ, dB and deg"];
-/// Thickness of the bar of the coherence \[pt\].
+/// Thickness of the coherence bar \[pt\].
 const BAR: f32 = 2.5;
 
-/// Values of an identified response: standard deviations in the middle of the band, which decide
-/// whether it is identified, and the median partial coherence.
+/// Values for an identified response: mid-band standard deviations, which decide whether the
+/// response is identified, and median partial coherence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct PairFigures {
     sd_db: Option<f64>,
@@ -118,11 +118,10 @@ pub(super) fn identified_grid_ui(
         });
 }
 
-/// Grid on the screen.
 struct Grid<'a> {
     page: Page<'a>,
     area: Rect,
-    /// Size of a cell \[pt\].
+    /// Cell size \[pt\].
     cell: egui::Vec2,
 }
 
@@ -238,7 +237,7 @@ impl Grid<'_> {
 }
 
 impl PairFigures {
-    /// Describes the figures: "± 0.5 dB and ± 3° in the middle of the band, …".
+    /// Describes the values: "± 0.5 dB and ± 3° in the middle of the band, …".
     fn words(&self) -> String {
         let mut words = format!(
             "± {} dB and ± {}° in the middle of the band, median partial coherence {}",

@@ -7,8 +7,8 @@ use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartMarks};
 use crate::gui::widgets::palette::Palette;
 
-/// Returns the stabilisation diagram: pole moduli over frequency, a row for each order. Crosses mark
-/// poles that agree with a pole of the model whose order is lower by two.
+/// Returns the stabilisation diagram: pole moduli over frequency, a row for each order. Crosses
+/// mark poles that agree with a pole in the model whose order is lower by two.
 pub(super) fn stabilisation_chart<'a>(
     page: Page<'_>,
     found: &Identification,
@@ -38,8 +38,7 @@ pub(super) fn stabilisation_chart<'a>(
     chart
 }
 
-/// Returns the nonzero poles that agree with a pole of the lower-order model, or the poles that do
-/// not.
+/// Returns the nonzero poles that agree with a pole in the lower-order model, or those that do not.
 fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     for point in &found.stabilisation {
@@ -61,7 +60,7 @@ fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palett
     }
 }
 
-/// Returns the chart of the poles in the s-plane, each with an error bar.
+/// Returns the chart with the poles in the s-plane, each with an error bar.
 pub(super) fn poles_chart<'a>(page: Page<'_>, found: &Identification) -> Chart<'a> {
     let Page {
         records, palette, ..

@@ -1,4 +1,4 @@
-//! Page with the excitation of the inputs: a chart for each input, with its autospectrum in every
+//! Page about the inputs' excitation: a chart for each input, with its autospectrum in every
 //! record.
 
 use std::sync::Arc;
@@ -17,7 +17,6 @@ use crate::gui::widgets::palette::Palette;
 /// Minimum chart height \[pt\].
 const LEAST_HEIGHT: f32 = 140.0;
 
-/// Autospectra of a record.
 struct RecordSpectra {
     /// Whether the record is displayed.
     is_chosen: bool,
@@ -25,7 +24,7 @@ struct RecordSpectra {
 }
 
 impl RecordSpectra {
-    /// Returns the line of an input: bright and thick for the displayed record.
+    /// Returns an input's line: bright and thick for the displayed record.
     fn line(&self, input: usize, palette: &Palette) -> Option<ChartLine> {
         let points = Arc::clone(self.inputs.get(input)?);
         Some(if self.is_chosen {
@@ -46,7 +45,7 @@ impl RecordSpectra {
     }
 }
 
-/// Shows a chart of each input with its spectrum in every record, the displayed record on top.
+/// Shows a chart for each input with its spectrum in every record, the displayed record on top.
 pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
     let band = shown_band(page);
     let charts = InputCharts {
@@ -60,7 +59,7 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         .show(ui, |ui| charts.show(ui));
 }
 
-/// Charts of the inputs with an autospectrum of each record, in up to two columns.
+/// Charts for the inputs with an autospectrum from each record, in up to two columns.
 struct InputCharts<'a> {
     page: Page<'a>,
     spectra: Vec<RecordSpectra>,
@@ -108,7 +107,7 @@ impl InputCharts<'_> {
     }
 }
 
-/// Returns the identification band of the condition, or else the band of the study.
+/// Returns the condition's identification band, or else the study's band.
 fn shown_band(page: Page<'_>) -> Band {
     let study_band = page.state.study.settings.band;
     match page.records.band {
@@ -117,7 +116,7 @@ fn shown_band(page: Page<'_>) -> Band {
     }
 }
 
-/// Computes the autospectra of every record with assigned columns.
+/// Computes autospectra for every record with assigned columns.
 fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
     let records = page.records;
     let mut spectra = Vec::new();

@@ -1,5 +1,5 @@
-//! Lower part of the left panel while the view is in front: records of the displayed condition, the
-//! displayed record, and folded sections.
+//! Lower part of the left panel in the Records view: the displayed condition's records, details
+//! about the displayed record, and folded sections.
 
 use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
@@ -19,9 +19,9 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Height of the line that folds and unfolds a section \[pt\].
+/// Height of a line that folds and unfolds a section \[pt\].
 const FOLD: f32 = 32.0;
-/// Greatest height of an unfolded section \[pt\].
+/// Maximum height of an unfolded section \[pt\].
 const OPEN: f32 = 230.0;
 const FOLDS: [RecordsFold; 2] = [RecordsFold::Columns, RecordsFold::Settings];
 
@@ -97,7 +97,7 @@ fn page_of<'a>(state: &'a State, nothing: &'a ConditionRecords, palette: &'a Pal
     }
 }
 
-/// "Records of 10                8 used, 1 held out".
+/// Draws the heading: "Records of 10", and at the right "8 used, 1 held out".
 fn heading_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,

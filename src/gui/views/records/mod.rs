@@ -1,6 +1,6 @@
-//! Flight records of all conditions and the models identified from them: records in the left panel
-//! of the window (`list_panel.rs`), a page about the displayed condition in the middle, and its fit
-//! in the right panel (`side_column.rs`).
+//! Flight records for all conditions and the models identified from them: records in the left panel
+//! (`list_panel.rs`), a page about the displayed condition in the middle, and its fit in the right
+//! panel (`side_column.rs`).
 
 mod autospectra;
 mod caution_list;

@@ -1,4 +1,4 @@
-//! Tables of the intervals that further sweeps of each input would bring.
+//! Tables of the intervals that additional sweeps on each input would bring.
 
 use egui::{Grid, RichText, Ui};
 
@@ -56,7 +56,7 @@ fn table_ui(ui: &mut Ui, table: &Table) {
         });
 }
 
-/// Returns names and units of the channels of a dataset, in its order.
+/// Returns the dataset's channel names and units, in dataset order.
 pub(super) fn planned_channels(dataset: &Dataset) -> PlannedChannels {
     let mut channels = PlannedChannels::default();
     for input in dataset.inputs() {

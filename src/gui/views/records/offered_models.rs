@@ -1,10 +1,10 @@
-//! The identified models that can replace the present models of a condition.
+//! Menu with the identified models that can replace a condition's present models.
 
 use egui::Ui;
 
 use gdcm_study::decisions::adopted_models::OfferedModels;
 
-/// A choice of models, and its name in menus.
+/// Choice of models, and its name in menus.
 #[derive(Clone, Copy)]
 pub(super) struct Offer {
     pub(super) words: &'static str,

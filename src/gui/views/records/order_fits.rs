@@ -1,4 +1,4 @@
-//! Fit over the model order: χ²/dof of the fitted and of the held-out records.
+//! Fit over the model order: χ²/dof for the fitted and for the held-out records.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use gdcm_sysid::identification::{Identification, OrderFit};
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartMarks};
 use crate::gui::widgets::palette::Palette;
 
-/// Returns the chart of χ²/dof over the order, with the chosen order marked.
+/// Returns the chart with χ²/dof over the order, with the chosen order marked.
 pub(super) fn order_chart<'a>(found: &Identification, palette: &Palette) -> Chart<'a> {
     let mut chart = Chart::new("χ²/dof over the order", ChartAxis::Linear, "order", "");
     if !held_out_points(found).is_empty() {
@@ -18,7 +18,7 @@ pub(super) fn order_chart<'a>(found: &Identification, palette: &Palette) -> Char
     chart
 }
 
-/// Adds the lines and the mark of the chosen order to a chart.
+/// Adds the lines and the mark at the chosen order to a chart.
 pub(super) fn add_order_fits(chart: &mut Chart<'_>, found: &Identification, palette: &Palette) {
     chart.lines.push(ChartLine {
         points: held_out_points(found).into(),

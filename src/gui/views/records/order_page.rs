@@ -1,5 +1,5 @@
-//! Page Order: fit over the model order, stabilisation diagram, poles, and what further sweeps would
-//! bring.
+//! Page Order: fit over the model order, stabilisation diagram, poles, and the intervals that
+//! additional sweeps would bring.
 
 use egui::{Rect, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
@@ -9,12 +9,12 @@ use super::order_fits::order_chart;
 use super::page::Page;
 use crate::gui::plot::chart_view::chart_ui;
 
-/// Share of the height that the stabilisation diagram and the poles take.
+/// Share of the height for the stabilisation diagram and the poles.
 const UPPER: f32 = 0.58;
 /// Gap between charts \[pt\].
 const GAP: f32 = 12.0;
 
-/// Draws the page; without an identification, the reason.
+/// Draws the page; without an identification, a message that says why there is none.
 pub(super) fn order_ui(ui: &mut Ui, page: Page<'_>) {
     let Some(found) = page.identification_ui(ui) else {
         return;

@@ -1,5 +1,5 @@
-//! Context for drawing the record list and the pages: state, records of the displayed condition,
-//! and palette.
+//! Context for drawing the record list and the pages: state, the displayed condition's records, and
+//! palette.
 
 use std::sync::Arc;
 

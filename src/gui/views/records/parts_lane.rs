@@ -1,5 +1,5 @@
-//! Lane above the time charts with the parts of the displayed record: their ends can be dragged, and
-//! a drag over free room makes a new part.
+//! Lane above the time charts with the displayed record's parts: their ends can be dragged, and a
+//! drag over free space makes a new part.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{
@@ -22,23 +22,23 @@ use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// Height of the bar of a part \[pt\].
+/// Bar height \[pt\].
 const BAR: f32 = 14.0;
-/// Width of a handle \[pt\].
+/// Handle width \[pt\].
 const HANDLE: f32 = 4.0;
 /// Width of the area in which a handle can be caught \[pt\].
 const HANDLE_AREA: f32 = 12.0;
-/// Length of the shortest part that a drag makes \[s\].
+/// Length of the shortest part that a drag can make \[s\].
 const LEAST_PART_S: f64 = 0.5;
 
-/// A drag in the lane, kept between frames.
+/// Drag in the lane, kept between frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LaneDrag {
     /// Row of the part whose end is dragged; `None` for a new part.
     row: Option<usize>,
-    /// End that stays \[s\].
+    /// Time at the end that stays \[s\].
     fixed_s: f64,
-    /// End that is dragged \[s\].
+    /// Time at the dragged end \[s\].
     moved_s: f64,
 }
 
@@ -51,7 +51,6 @@ impl LaneDrag {
     }
 }
 
-/// A bar of the lane.
 #[derive(Clone, Copy, Debug)]
 struct Bar {
     /// Row of the part; `None` for the whole record.
@@ -61,7 +60,7 @@ struct Bar {
     is_chosen: bool,
 }
 
-/// Draws the lane, the menu at its left and the time at the cursor at its right.
+/// Draws the lane, the menu at its left, and the cursor's time at its right.
 pub(super) fn parts_lane_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -91,7 +90,7 @@ pub(super) fn parts_lane_ui(
     painted_text(ui, right, 0.0, &text, small(), page.palette.text);
 }
 
-/// Draws the menu with the typed ends of a part.
+/// Draws the menu in which a part's ends are typed.
 fn menu_ui(ui: &mut Ui, page: Page<'_>, place: Rect, commands: &mut Vec<Command>) {
     let builder = UiBuilder::new().max_rect(place);
     ui.scope_builder(builder, |ui| {
@@ -199,7 +198,7 @@ impl Lane<'_> {
         )
     }
 
-    /// Makes a new part of a drag over the lane.
+    /// Makes a new part from a drag over free space.
     fn free_room_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let response = ui.interact(self.place, self.id.with("room"), Sense::drag());
         let response = named(response, Role::Button, "Lane of the parts")
@@ -223,7 +222,7 @@ impl Lane<'_> {
         self.follow(ui, &response, commands);
     }
 
-    /// Moves the dragged end to the pointer, and emits the command at the end of the drag.
+    /// Moves the dragged end to the pointer, and pushes the command when the drag ends.
     fn follow(&self, ui: &Ui, response: &egui::Response, commands: &mut Vec<Command>) {
         if !response.dragged() && !response.drag_stopped() {
             return;
@@ -320,7 +319,7 @@ impl Lane<'_> {
         }
     }
 
-    /// Draws the areas at the ends of a bar in which its handles are caught.
+    /// Adds the areas at a bar's ends in which its handles are caught.
     fn handles_ui(&self, ui: &Ui, bar: Bar, commands: &mut Vec<Command>) {
         for (end, words) in ["start", "end"].into_iter().enumerate() {
             let time_s = bar.ends_s[end];

@@ -1,4 +1,5 @@
-//! Three lines on the displayed record: manoeuvre and length; gaps and limits; fit of the others.
+//! Three lines about the displayed record: manoeuvre and length; gaps and limits; fit to the other
+//! records.
 
 use std::sync::Arc;
 
@@ -19,10 +20,10 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::choices::DropDown;
 use crate::gui::widgets::palette::{BODY_SIZE, medium};
 
-/// Distance from the maximum of an autospectrum within which an input counts as excited \[dB\].
+/// Distance below an autospectrum's maximum within which an input counts as excited \[dB\].
 const EXCITED_DB: f64 = 20.0;
 
-/// Shows the name of the displayed record, its problems, and three lines about it.
+/// Shows the displayed record's name, its problems, and three lines about it.
 pub(super) fn record_details_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -74,7 +75,7 @@ fn kind_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<
     });
 }
 
-/// "of LON, 0.3 to 13 rad/s".
+/// Formats "of LON, 0.3 to 13 rad/s".
 fn excitation_words(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> String {
     let mut parts = Vec::new();
     if let Some(input) = displayed_excited_input(ui, page) {
@@ -94,7 +95,7 @@ fn excitation_words(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> Stri
     parts.join(", ")
 }
 
-/// "60 s at 50 Hz"; `None` without increasing stamps.
+/// Formats "60 s at 50 Hz"; `None` without increasing time stamps.
 fn length_words(flight: &FlightRecord) -> Option<String> {
     let first_s = flight.time_s.first()?;
     let last_s = flight.time_s.last()?;
@@ -122,8 +123,8 @@ fn excited_band(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     Some([first, last])
 }
 
-/// "no gap, no clipping": what the identification found in the record, and cautions about its
-/// columns.
+/// Describes the data quality: gaps and clipping that the identification found, and cautions about
+/// the columns.
 fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
     let mut parts = Vec::new();
     if let Some(found) = page.current_identification()
@@ -160,8 +161,8 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
     parts.join(", ")
 }
 
-/// Returns χ²/dof of the other fitted records, with the model that is fitted to all of them; `None`
-/// for a held-out record, without a current identification, or without other records.
+/// Returns χ²/dof over the other fitted records, for the model fitted to all records; `None` for a
+/// held-out record, without a current identification, or without other fitted records.
 fn cost_of_others(page: Page<'_>, row: &LaidOutRecord) -> Option<f64> {
     let found = page.current_identification()?;
     let own = page.records.record_of_name(&row.table.name)?;

@@ -50,7 +50,7 @@ fn add_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     );
 }
 
-/// Shows a caution about assumed units, over the records of all conditions.
+/// Shows a caution about assumed units, for the records in all conditions.
 fn assumed_units_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Some(units) = page.state.records.assumed_units() else {
         return;
@@ -80,7 +80,7 @@ fn assumed_units_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
 }
 
 /// Offers to make a dataset from records that lack the open dataset's channels, or that belong to
-/// no condition of it.
+/// none of its conditions.
 pub(super) fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let unassigned = &page.state.records.unassigned;
     let has_missing =

@@ -1,5 +1,5 @@
-//! Records of the displayed condition: a row for each record and each part, with its use, its
-//! length and the fit of the model.
+//! The displayed condition's records: a row for each record and each part, with its use, its length
+//! and the model's fit.
 
 use std::sync::Arc;
 
@@ -18,21 +18,21 @@ use crate::gui::widgets::list_row::{ROW_HEIGHT, RowLook};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Tooltip of fit costs.
+/// Tooltip on fit costs.
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
 
-/// Left edge of the name of a record \[pt\].
+/// Left edge of record names \[pt\].
 const NAME: f32 = 20.0;
-/// Indentation of the parts of a record \[pt\].
+/// Indentation of parts below their record \[pt\].
 const INDENT: f32 = 18.0;
-/// Distances of the columns from the right edge of a row \[pt\].
+/// Column distances from a row's right edge \[pt\].
 const LENGTH_END: f32 = 88.0;
 const COST_END: f32 = 46.0;
 const CAUTION_CENTER: f32 = 36.0;
 const LOCK_CENTER: f32 = 20.0;
 const REMOVE_CENTER: f32 = 5.0;
-/// Width of the column of lengths \[pt\].
+/// Width of the length column \[pt\].
 const LENGTH_WIDTH: f32 = 26.0;
 
 /// Shows a row for each record, its parts below it.
@@ -53,7 +53,7 @@ pub(super) fn record_rows_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     }
 }
 
-/// Names of the whole records, in the order of the rows.
+/// Returns the names of whole records (not of parts), in row order.
 fn whole_names(page: Page<'_>) -> Vec<&str> {
     let mut names = Vec::new();
     for row in &page.records.rows {
@@ -64,8 +64,8 @@ fn whole_names(page: Page<'_>) -> Vec<&str> {
     names
 }
 
-/// Returns the beginning that all names share, up to a separator; empty for a single name. No name
-/// consists of the beginning alone.
+/// Returns the prefix that all names share, up to a separator; empty for a single name. No name
+/// consists of the prefix alone.
 fn common_prefix<'n>(names: &[&'n str]) -> &'n str {
     const SEPARATORS: [char; 6] = ['_', '-', ' ', '.', '/', ','];
     let [first, rest @ ..] = names else {
@@ -89,8 +89,7 @@ fn common_prefix<'n>(names: &[&'n str]) -> &'n str {
     &first[..end]
 }
 
-/// Returns the name of a record without the common beginning, or "4 to 52 s" for a
-/// part.
+/// Returns a record's name without the common prefix, or "4 to 52 s" for a part.
 fn shown_name(row: &LaidOutRecord, prefix: &str) -> String {
     if let Some([from, to]) = row.table.part_s {
         return format!("{} to {} s", number(from), number(to));
@@ -132,12 +131,12 @@ fn heads_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
     });
 }
 
-/// Row of a record.
+/// Row for a record or a part.
 struct RecordRow<'a> {
     page: Page<'a>,
     index: usize,
     row: &'a LaidOutRecord,
-    /// Name without the beginning that all records share.
+    /// Name without the prefix that all records share.
     shown_name: String,
 }
 
@@ -197,7 +196,7 @@ impl RecordRow<'_> {
         }
     }
 
-    /// Draws the box that uses the record.
+    /// Draws the check box that takes the record into use.
     fn use_ui(&self, ui: &mut Ui, rect: Rect, commands: &mut Vec<Command>) {
         let name = &self.row.table.name;
         let mut used = self.row.used && self.row.flight.is_some();
@@ -225,7 +224,7 @@ impl RecordRow<'_> {
         painted_text(ui, upto, AT_RIGHT_END, &words, body(), palette.dim_text);
     }
 
-    /// Paints χ²/dof of the record: dim if outdated, in the warning colour if the fit is bad.
+    /// Paints the record's χ²/dof: dim if outdated, in the warning colour if the fit is bad.
     fn cost_ui(&self, ui: &Ui, rect: Rect) {
         let Page {
             palette, records, ..
@@ -273,7 +272,8 @@ impl RecordRow<'_> {
         );
     }
 
-    /// Draws the lock that holds the record out; only a held-out record always shows it.
+    /// Draws the lock that holds the record out of the fit; a row that is not held out shows it
+    /// only under the pointer or with the focus.
     fn hold_out_ui(&self, ui: &Ui, rect: Rect, commands: &mut Vec<Command>) {
         if self.row.flight.is_none() {
             return;
@@ -301,7 +301,7 @@ impl RecordRow<'_> {
         });
     }
 
-    /// Draws the button that removes a part of a record.
+    /// Draws the button that removes a part.
     fn remove_ui(&self, ui: &Ui, rect: Rect, commands: &mut Vec<Command>) {
         if !self.is_part() {
             return;

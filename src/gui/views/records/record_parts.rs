@@ -1,5 +1,5 @@
-//! Parts of a record that are used as separate records: the typed part, and the time span of the
-//! displayed record. Parts are dragged in `parts_lane.rs`.
+//! Record parts that are used as separate records: the field for typed parts, and the displayed
+//! record's time span. Parts are dragged in `parts_lane.rs`.
 
 use egui::{Label, Ui};
 
@@ -58,8 +58,8 @@ fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     }
 }
 
-/// Shows the time span of the displayed record on its time axis, and counted from the start of the
-/// whole record.
+/// Shows the displayed record's time span on its time axis, and counted from the whole record's
+/// start.
 pub(super) fn span_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         records, palette, ..

@@ -1,16 +1,16 @@
-//! Sentences about the problems of a record: problems of the same kind with several channels share
-//! a sentence, "no column for P, Q; …" instead of one sentence for P and one for Q.
+//! Sentences about a record's problems: problems of the same kind with several channels share a
+//! sentence, "no column for P, Q; …" instead of one sentence for P and one for Q.
 
 use gdcm_sysid::records::LayoutProblem;
 use gdcm_sysid::records::record_table::shortened_list;
 
-/// Describes problems of a record; several missing columns share one sentence, as do several
-/// unknown units.
+/// Describes a record's problems; several missing columns share one sentence, as do several unknown
+/// units.
 pub(super) fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     let mut missing = ChannelProblems::default();
     let mut without_unit = ChannelProblems::default();
     let mut others = Vec::new();
-    // The same columns for every channel, because all channels belong to one record.
+    // The columns are the same for every channel, because all channels belong to one record.
     let mut columns = String::new();
     for problem in problems {
         match problem {
@@ -40,7 +40,7 @@ pub(super) fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
 #[derive(Default)]
 struct ChannelProblems<'a> {
     channels: Vec<&'a str>,
-    /// Message of the first problem.
+    /// First problem's message.
     first: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The displayed record as a whole, and the parts of it that are in use.
+//! The displayed record as a whole, and its parts.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use gdcm_model::simulation::FlightRecord;
 
 use super::page::Page;
 
-/// A part of the displayed record.
+/// Part of the displayed record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RecordPart {
-    /// Row of the part.
+    /// Row index.
     pub(super) row: usize,
     /// Start and end \[s\].
     pub(super) ends_s: [f64; 2],
@@ -21,14 +21,14 @@ pub(super) struct RecordPart {
 /// The displayed record as a whole.
 #[derive(Clone, Debug)]
 pub(super) struct RecordSpan {
-    /// Samples of the whole record.
+    /// Samples in the whole record.
     pub(super) flight: Arc<FlightRecord>,
-    /// Row of the whole record, or of the displayed part if the whole is not loaded.
+    /// Row index of the whole record, or of the displayed part if the whole record is not loaded.
     pub(super) whole_row: usize,
     pub(super) is_whole_used: bool,
-    /// First and last sample \[s\].
+    /// Times of the first and last sample \[s\].
     pub(super) span_s: [f64; 2],
-    /// Parts, in the order of the rows.
+    /// Parts, in row order.
     pub(super) parts: Vec<RecordPart>,
 }
 
@@ -63,8 +63,8 @@ impl RecordSpan {
         })
     }
 
-    /// Returns the time spans \[s\] drawn in full strength: the displayed part, or all used parts of
-    /// the displayed record; the whole record if it is used, or if no part of it is.
+    /// Returns the time spans \[s\] drawn at full opacity: the displayed part, or all used parts of
+    /// the displayed record; the whole record if it is used, or if none of its parts is.
     pub(super) fn bright_s(&self) -> Vec<[f64; 2]> {
         if let Some(part) = self.parts.iter().find(|part| part.is_chosen) {
             return vec![part.ends_s];

@@ -1,4 +1,4 @@
-//! Samples of a channel as lines, within the parts in use and outside them.
+//! A channel's samples as lines, within the parts in use and outside them.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use gdcm_model::simulation::FlightRecord;
 use super::frame_cache::cached;
 use super::record_span::RecordSpan;
 
-/// Samples of a channel as lines, interrupted where samples are missing.
+/// A channel's samples as lines, interrupted where samples are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct RecordedLines {
     /// Within the parts in use.
@@ -25,7 +25,7 @@ impl RecordedLines {
     }
 }
 
-/// Returns the samples of a channel; `index` counts inputs, then outputs.
+/// Returns a channel's samples; `index` counts inputs, then outputs.
 pub(super) fn recorded_lines(ui: &Ui, record: &RecordSpan, index: usize) -> Arc<RecordedLines> {
     let bright_s = record.bright_s();
     let key: Vec<[u64; 2]> = bright_s.iter().map(|ends| ends.map(f64::to_bits)).collect();
@@ -50,8 +50,8 @@ fn samples(flight: &FlightRecord, index: usize) -> Vec<[f64; 2]> {
     points
 }
 
-/// Splits samples into lines at missing samples and at the ends of the parts. A line outside the
-/// parts begins and ends with a sample of the part, so that it joins the line inside.
+/// Splits samples into lines at missing samples and at part ends. A line outside the parts begins
+/// and ends with a neighbouring part's sample, so that it joins the line inside.
 fn split_lines(points: &[[f64; 2]], parts_s: &[[f64; 2]]) -> RecordedLines {
     let is_inside = |time_s: f64| {
         parts_s

@@ -14,14 +14,14 @@ use crate::gui::widgets::controls::named;
 /// Name by which cautions refer to this setting.
 pub(super) const REFERENCES: &str = "references";
 
-/// A column that may hold a reference.
+/// Column that may hold a reference.
 pub(super) struct PossibleReference {
     pub(super) column: String,
     /// Whether the column's name suggests a reference.
     pub(super) is_suggested: bool,
 }
 
-/// Draws the selector of the columns that hold recorded references.
+/// Draws the selector for the columns that hold recorded references.
 pub(super) fn references_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -57,7 +57,7 @@ pub(super) fn references_ui(
     ui.end_row();
 }
 
-/// Lists the chosen references that are not columns of the first used record, then every possible
+/// Lists the chosen references that are not columns in the first used record, then every possible
 /// column.
 fn reference_list_ui(ui: &mut Ui, records: &ConditionRecords, commands: &mut Vec<Command>) {
     let possible = possible_references(ui, records);
@@ -100,7 +100,7 @@ fn reference_ui(
     }
 }
 
-/// Returns the columns of the first used record that may hold references, suggested ones first.
+/// Returns the columns in the first used record that may hold references, suggested ones first.
 pub(super) fn possible_references(
     ui: &Ui,
     records: &ConditionRecords,

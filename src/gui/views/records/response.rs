@@ -1,5 +1,5 @@
-//! The response in focus: measured points, identified model with its confidence band, physics and
-//! corrected models; below, partial coherence and phase residual.
+//! Charts of the response in focus: measured points, identified model with its confidence band,
+//! physics and corrected models; below, partial coherence and phase residual.
 
 use std::sync::Arc;
 
@@ -24,26 +24,26 @@ use crate::gui::widgets::elision::{elided, text_width};
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
-/// Substitute band \[rad/s\] for an identification without a job.
+/// Substitute band \[rad/s\] if no identification has run.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half-height of the marks along the curve of the recommended model \[dB\] and \[deg\].
+/// Half-height of marks along the recommended model's curve \[dB\] and \[deg\].
 const MARK_DB: f64 = 2.0;
 const MARK_DEG: f64 = 15.0;
-/// Width of the value axes \[pt\].
+/// Value axis width \[pt\].
 const VALUE_AXIS: f32 = 40.0;
 /// Factors by which the visible frequencies extend beyond the band.
 const BEYOND: [f64; 2] = [1.4, 1.7];
-/// Highest value of the coherence axis.
+/// Upper limit of the coherence axis.
 const HIGHEST_COHERENCE: f64 = 1.08;
-/// Half-width of the shaded band of the phase residual, in standard deviations.
+/// Half-width of the shaded band in the phase-residual chart, in standard deviations.
 const RESIDUAL_BAND: f64 = 2.0;
-/// Limits of the axis of the phase residual, in standard deviations.
+/// Least and greatest limit of the phase-residual axis, in standard deviations.
 const RESIDUAL_LIMITS: [f64; 2] = [4.0, 10.0];
-/// Share of the range of the curves within the band by which error bars may extend the axis.
+/// Share of the curves' range within the band by which error bars may extend the axis.
 const MOST_EXTENSION: f64 = 0.3;
 
-/// Draws the heading, magnitude and phase, and the strips below; before an identification, the
-/// reason why there is none.
+/// Draws the heading, magnitude and phase, and the coherence and residual strips below; without a
+/// response, the reason.
 pub(super) fn response_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -87,7 +87,7 @@ pub(super) fn response_ui(
     }
 }
 
-/// Returns the meaning of bands and bars.
+/// Returns a text that explains bands and bars.
 fn heading_words(drawn: &DrawnResponse) -> String {
     if drawn.refined.is_empty() {
         return "first model, being refined".to_owned();
@@ -102,7 +102,7 @@ fn heading_words(drawn: &DrawnResponse) -> String {
     words
 }
 
-/// Draws empty frames with the reason why there is no response.
+/// Draws the reason why there is no response.
 fn empty_ui(ui: &Ui, page: Page<'_>, layout: &ResponseLayout) {
     let Page { state, palette, .. } = page;
     let text = if state.records.job_of(state.condition().id()).is_some() {
@@ -129,8 +129,8 @@ fn empty_ui(ui: &Ui, page: Page<'_>, layout: &ResponseLayout) {
     named(response, WidgetRole::Label, text);
 }
 
-/// Returns the curves of the pair in focus: of the first model while it is refined, otherwise of
-/// the finished identification, if any.
+/// Returns the curves for the response in focus: from the first model while it is refined,
+/// otherwise from the finished identification, if any.
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
@@ -160,7 +160,7 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     }))
 }
 
-/// Returns the band of the identification that is drawn \[rad/s\].
+/// Returns the drawn identification's band \[rad/s\].
 fn job_band(page: Page<'_>) -> [f64; 2] {
     let Page { state, records, .. } = page;
     if let Some(job) = state.records.job_of(state.condition().id()) {
@@ -172,15 +172,13 @@ fn job_band(page: Page<'_>) -> [f64; 2] {
     }
 }
 
-/// Charts of the response in focus.
 struct ResponseCharts<'a> {
     page: Page<'a>,
     drawn: &'a DrawnResponse,
-    /// Curves of the Bode view.
+    /// Curves drawn in the Bode view, from which the physics curves are taken.
     curves: &'a [BodeCurve],
-    /// Name of the response.
     name: &'a str,
-    /// Band of the identification \[rad/s\].
+    /// Identification band \[rad/s\].
     band: [f64; 2],
 }
 
@@ -206,7 +204,7 @@ impl ResponseCharts<'_> {
         chart
     }
 
-    /// Draws a chart below its caption, with the unit of the frequencies at its lower left corner.
+    /// Draws a chart below its caption, with the frequency unit at its lower left corner.
     fn show(&self, ui: &mut Ui, place: CaptionedChart, caption: [&str; 2], chart: &Chart<'_>) {
         let palette = self.page.palette;
         let frame = *chart_ui(ui, place.chart, chart, palette).transform.frame();
@@ -249,7 +247,7 @@ impl ResponseCharts<'_> {
         self.show(ui, place, caption, &chart);
     }
 
-    /// Returns the notes in the accessible name: marks of the cautions about the response.
+    /// Returns the notes in the accessible name: marks for the cautions about the response.
     fn notes(&self) -> Vec<(String, Color32)> {
         let mut notes = Vec::new();
         for mark in caution_marks(self.page) {
@@ -262,7 +260,7 @@ impl ResponseCharts<'_> {
         !self.page.state.records.hidden_roles.contains(&role)
     }
 
-    /// Returns the curves of the physics representative and its correction.
+    /// Returns the curves for the physics representative, uncorrected and corrected.
     fn model_lines(&self, part: BodePart) -> Vec<ChartLine> {
         let mut lines = Vec::new();
         for (role, time_role) in [
@@ -284,7 +282,7 @@ impl ResponseCharts<'_> {
         lines
     }
 
-    /// Returns the range of the values within the band; trusted points and their bars may extend it.
+    /// Returns the value range within the band; trusted points and their bars may extend it.
     fn value_range(&self, part: BodePart, models: &[ChartLine]) -> Range {
         let [low, high] = self.band;
         let is_inside = |omega: f64| (low..=high).contains(&omega);
@@ -418,8 +416,8 @@ fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
     marks
 }
 
-/// Returns the intervals \[rad/s\] to which a caution refers: the lower end of the band for short
-/// records, or the ends of `band` that no input excites.
+/// Returns the intervals \[rad/s\] to which a caution refers: the lower end of the band if the
+/// records are short, or the parts of `band` outside the narrowed band.
 fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     match (note.code, note.band_rad_s) {
         ("short", Some(ends)) => vec![ends],
@@ -428,7 +426,7 @@ fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// Adds the curves and bands of the identified models to a chart.
+/// Adds the identified model's curve and bands to a chart.
 fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, page: Page<'_>) {
     let palette = page.palette;
     if !page
@@ -505,7 +503,7 @@ fn interval_mark(
     }
 }
 
-/// Returns the measured points with their 95 % intervals; trusted points are filled.
+/// Returns the trusted points (filled) or the other measured points, with their 95 % intervals.
 fn measured_marks(
     drawn: &DrawnResponse,
     part: BodePart,

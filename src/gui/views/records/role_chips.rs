@@ -1,4 +1,4 @@
-//! Row above the time charts: a chip for each role, and the selectors of outputs and spectrogram.
+//! Row above the time charts: a chip for each role, and the selectors for outputs and spectrogram.
 
 use egui::{Align, ComboBox, Layout, PopupCloseBehavior, Rect, Role as WidgetRole, Ui, UiBuilder};
 
@@ -17,11 +17,11 @@ use crate::gui::widgets::controls::named;
 
 /// Length of a curve sample \[pt\].
 const SAMPLE: f32 = 18.0;
-/// Width of the selector of outputs \[pt\].
+/// Width of the output selector \[pt\].
 const OUTPUTS_WIDTH: f32 = 128.0;
-/// Room of both selectors \[pt\].
+/// Width for both selectors \[pt\].
 const SELECTORS: f32 = 290.0;
-/// Number of outputs below the output in focus.
+/// Maximum count of outputs below the output in focus.
 const MOST_MORE: usize = 2;
 
 /// Draws the row; `models` are compared with the displayed record.
@@ -78,7 +78,7 @@ pub(super) fn role_chips_ui(
     });
 }
 
-/// Draws the selector of the outputs below the output in focus.
+/// Draws the selector for the outputs below the output in focus.
 fn outputs_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let channels = page.state.dataset().outputs();
     let shown: Vec<usize> = shown_outputs(page)
@@ -111,8 +111,8 @@ fn outputs_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         .on_hover_text("The output in focus, and up to two more");
 }
 
-/// Returns the further outputs with an output added or removed; the earliest gives way to one too
-/// many.
+/// Returns the additional outputs with `output` added or removed; above [`MOST_MORE`], the earliest
+/// is dropped.
 fn with_output(more: &[usize], output: usize, is_added: bool) -> Vec<usize> {
     let mut outputs: Vec<usize> = more
         .iter()

@@ -21,7 +21,7 @@ const FIELD_WIDTH: f32 = 150.0;
 /// Name by which cautions refer to the model orders.
 pub(super) const ORDERS: &str = "orders";
 
-/// A list setting; the identification tries every entry.
+/// List setting; the identification tries every entry.
 #[derive(Clone, Copy)]
 enum SearchList {
     Orders,
@@ -76,7 +76,7 @@ impl SearchList {
     }
 }
 
-/// Summarises the settings that differ from the defaults: "own band, own search".
+/// Names the kinds of settings that differ from the defaults: "own band, own search".
 pub(super) fn settings_summary(page: Page<'_>) -> FoldSummary {
     let records = page.records;
     let mut parts = Vec::new();
@@ -175,7 +175,6 @@ fn field_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, palette: &Palette)
     text
 }
 
-/// Returns the accessible name of a field.
 fn field_name(name: &str) -> String {
     format!("Identification: {name}")
 }

@@ -1,4 +1,4 @@
-//! Right column of the Records view, below the verdict: fit of the displayed condition, identified
+//! Right column of the Records view, below the verdict: the displayed condition's fit, identified
 //! responses, cautions, and small plots of orders and poles.
 
 use egui::{ScrollArea, Ui, vec2};
@@ -13,7 +13,7 @@ use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Height of the column below which there are no small plots \[pt\].
+/// Column height below which there are no small plots \[pt\].
 const LEAST_WITH_PLOTS: f32 = 540.0;
 /// Gap between sections \[pt\].
 const GAP: f32 = 8.0;

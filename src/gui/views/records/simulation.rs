@@ -14,13 +14,13 @@ use super::frame_cache::cached;
 use crate::gui::state::records::{ConditionRecords, TimeRole};
 use crate::gui::state::window_state::State;
 
-/// Points of a curve over time, as a line for each window.
+/// Points on a curve over time, as a line for each window.
 type Lines = Vec<Arc<[[f64; 2]]>>;
 
-/// A model compared with the displayed record.
+/// Model compared with the displayed record.
 pub(super) struct Simulated<'a> {
     pub(super) role: TimeRole,
-    /// Response of the model, or the reason for its absence; `None` while it is being computed.
+    /// Model response, or the reason for its absence; `None` while it is being computed.
     pub(super) result: Option<&'a Result<Arc<Validation>, SimulationFailure>>,
 }
 
@@ -33,7 +33,7 @@ impl Simulated<'_> {
         }
     }
 
-    /// Returns the fit of an output \[%\]; `None` if it is not available.
+    /// Returns an output's fit \[%\]; `None` if it is not available.
     pub(super) fn fit_percent(&self, output: usize) -> Option<f64> {
         self.validation()?
             .fit_percent
@@ -42,7 +42,7 @@ impl Simulated<'_> {
             .flatten()
     }
 
-    /// Returns Theil's coefficient of an output; `None` if it is not available.
+    /// Returns an output's Theil coefficient; `None` if it is not available.
     pub(super) fn theil(&self, output: usize) -> Option<f64> {
         self.validation()?.theil.get(output).copied().flatten()
     }
@@ -59,7 +59,7 @@ impl Simulated<'_> {
         }
     }
 
-    /// Returns the response of an output, a line per window, each from its own initial state.
+    /// Returns an output's response, a line per window, each from its own initial state.
     pub(super) fn lines(&self, ui: &Ui, output: usize) -> Arc<Lines> {
         let Some(validation) = self.validation() else {
             return Arc::default();
@@ -72,7 +72,7 @@ impl Simulated<'_> {
     }
 }
 
-/// Returns the value of a curve at a time \[s\], interpolated linearly; `None` outside its lines.
+/// Returns a curve's value at a time \[s\], interpolated linearly; `None` outside its lines.
 pub(super) fn value_at(lines: &[Arc<[[f64; 2]]>], time_s: f64) -> Option<f64> {
     for line in lines {
         let after = line.partition_point(|point| point[0] < time_s);
@@ -105,7 +105,7 @@ fn simulated_points(validation: &Validation, output: usize) -> Lines {
     lines
 }
 
-/// A model of the displayed condition, with the job that computes its response to the displayed
+/// Model in the displayed condition, with the job that computes its response to the displayed
 /// record.
 struct ModelJob {
     role: TimeRole,
@@ -163,15 +163,15 @@ pub(super) fn simulated(state: &State) -> Vec<Simulated<'_>> {
     models
 }
 
-/// Returns the state space of a model; `None` if the model is unavailable or not in continuous time
-/// without delays.
+/// Returns a model's state space; `None` if the model is unavailable, in discrete time, or has
+/// delays.
 fn state_space(state: &State, records: &ConditionRecords, role: TimeRole) -> Option<StateSpace> {
     if role == TimeRole::Identified {
         return records.identification()?.refined.state_space().cloned();
     }
     let analysis = state.shown()?;
     let name = analysis.representative_name(BundleKind::Physics);
-    // The models as compared and corrected: moved by the physics parameters, where there are any.
+    // These models are changed by the physics parameters, if any, as in comparison and correction.
     let physics = analysis
         .condition
         .model(BundleKind::Physics, name)?

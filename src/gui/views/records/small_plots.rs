@@ -1,5 +1,5 @@
-//! Small plots at the foot of the right column: fit over the order, and poles. A click opens the page
-//! Order.
+//! Small plots at the foot of the right column: fit over the order, and poles. A click opens the
+//! page Order.
 
 use egui::{CursorIcon, Rect, Role, Sense, Ui, pos2, vec2};
 
@@ -20,18 +20,18 @@ use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::small;
 
-/// Height of the captions \[pt\].
+/// Caption height \[pt\].
 const CAPTION: f32 = 16.0;
-/// Height of the plots with their tick labels \[pt\].
+/// Plot height, tick labels included \[pt\].
 const PLOT: f32 = 92.0;
-/// Height of captions and plots \[pt\].
+/// Total height \[pt\].
 pub(super) const SMALL_PLOTS_HEIGHT: f32 = CAPTION + PLOT;
 /// Gap between the plots \[pt\].
 const GAP: f32 = 12.0;
-/// Share of the modulus of the fastest determined pole by which the plot extends beyond it.
+/// Share of the fastest determined pole's modulus by which the plot extends beyond that pole.
 const EDGE: f64 = 0.15;
 
-/// Draws both plots; without an identification, only their captions and the reason.
+/// Draws both plots; without an identification, only their captions.
 pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let size = vec2(ui.available_width(), SMALL_PLOTS_HEIGHT);
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -82,7 +82,7 @@ fn small_chart(title: &str) -> Chart<'_> {
     chart
 }
 
-/// Returns the ranges of real and imaginary part that hold the determined poles.
+/// Returns ranges of real and imaginary part that contain the determined poles.
 fn pole_ranges(found: &Identification) -> Option<[Range; 2]> {
     let determined: Vec<_> = found.poles.iter().filter(|pole| pole.determined).collect();
     let real = Range::spanning(determined.iter().map(|pole| pole.pole.re))?.including(0.0);
@@ -97,7 +97,7 @@ fn pole_ranges(found: &Identification) -> Option<[Range; 2]> {
     ])
 }
 
-/// Draws a plot under an area that opens the page Order.
+/// Draws a plot, covered by an area that opens the page Order.
 fn plot_ui(
     ui: &mut Ui,
     page: Page<'_>,

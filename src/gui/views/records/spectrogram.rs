@@ -1,4 +1,4 @@
-//! Spectrogram of an input on the time axis of the charts.
+//! Spectrogram of an input on the charts' time axis.
 
 use std::sync::Arc;
 
@@ -19,13 +19,13 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::choices::DropDown;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
-/// A spectrogram with its picture on the graphics card.
+/// Spectrogram with its picture on the graphics card.
 struct PaintedSpectrogram {
     texture: TextureHandle,
     spectrogram: Spectrogram,
 }
 
-/// Draws the selector of the input whose spectrogram is shown; no input is an option.
+/// Draws the selector for the input whose spectrogram is shown; "no input" is an option.
 pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let state = page.state;
     let wanted = state.records.spectrogram;
@@ -48,8 +48,8 @@ pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut 
     }
 }
 
-/// Shows the spectrogram of the selected input up to twice the upper band limit, on the time axis
-/// of the charts.
+/// Shows the selected input's spectrogram up to twice the upper band limit, on the charts' time
+/// axis.
 pub(super) fn spectrogram_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -123,8 +123,8 @@ pub(super) fn spectrogram_ui(
     }
 }
 
-/// Computes the spectrogram of an input up to `highest` \[rad/s\] and uploads its picture; `None`
-/// if the record is too short or its sample rate too low.
+/// Computes an input's spectrogram up to `highest` \[rad/s\] and uploads its picture; `None` if the
+/// record is too short or its sample rate too low.
 fn paint(
     ui: &Ui,
     flight: &FlightRecord,

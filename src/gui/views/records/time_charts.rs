@@ -1,4 +1,4 @@
-//! Common to all charts over time: their axis, and the room beside their frames.
+//! Definitions common to all charts over time: their axis, and the margins beside their frames.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use egui::Id;
 
 use super::record_span::RecordSpan;
 
-/// Room for the read-out at the right of a chart \[pt\].
+/// Width for the read-out at the right of a chart \[pt\].
 pub(super) const READOUT_WIDTH: f32 = 150.0;
 /// Width of the value axis \[pt\].
 pub(super) const VALUE_AXIS: f32 = 46.0;

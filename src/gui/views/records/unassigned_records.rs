@@ -1,5 +1,5 @@
-//! Added records whose names match no condition: each with a choice of its condition. They do not
-//! block the other records.
+//! Added records whose names match no condition, each with a selector for its condition. They do
+//! not block the other records.
 
 use egui::{Align, Label, Layout, RichText, Role, Ui};
 

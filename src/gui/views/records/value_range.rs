@@ -1,10 +1,10 @@
-//! Ranges of value axes that end at round numbers, so that small changes of the data do not move
+//! Ranges of value axes that end at round numbers, so that small changes in the data do not move
 //! the axis.
 
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::Range;
 
-/// Number of steps within the range of the data, at least.
+/// Least count of steps within the data range.
 const LEAST_STEPS: f64 = 6.0;
 
 /// Returns the smallest range around `data` that begins and ends at multiples of a round step, 1, 2
@@ -31,13 +31,14 @@ fn round_step(most: f64) -> f64 {
     power
 }
 
-/// Returns the number of decimals that separates values in a range \[-\]: thousandths of its width.
+/// Returns how many decimals are needed to separate values in a range: to between a hundredth and a
+/// thousandth of its width.
 pub(super) fn decimals_in(range: Range) -> usize {
     let digit = range.width().max(f64::MIN_POSITIVE).log10().floor();
     (2.0 - digit).clamp(0.0, 6.0) as usize
 }
 
-/// Formats a value with a number of decimals; a missing value becomes a dash.
+/// Formats a value with `digits` decimals; a missing value becomes a dash.
 pub(super) fn value_text(value: Option<f64>, digits: usize) -> String {
     match value {
         Some(value) => decimals(value, digits),

@@ -71,7 +71,8 @@ impl Palette {
         }
     }
 
-    /// Returns the style of a control: button fill, fill of boxes and handles, outline.
+    /// Returns a control's style from the fill for buttons, the fill for boxes and handles, and the
+    /// outline.
     fn widget(&self, weak_bg_fill: Color32, bg_fill: Color32, outline: Color32) -> WidgetVisuals {
         WidgetVisuals {
             bg_fill,
@@ -170,7 +171,7 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-/// Sets this program's style for both themes of egui, so that egui's `set_theme` switches between
+/// Sets this program's style for both egui themes, so that egui's `set_theme` switches between
 /// them.
 pub fn apply(ctx: &Context) {
     ctx.set_fonts(fonts());

@@ -1,4 +1,4 @@
-//! Curve style chosen by the engineer: colours of the curve roles, and line width.
+//! Curve style chosen by the engineer: colours for the curve roles, and line width.
 
 use egui::Color32;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use super::{Palette, hex};
 #[serde(default)]
 pub struct PlotStyle {
     pub curve_colors: CurveColors,
-    /// Factor on the widths of curves.
+    /// Factor on curve widths.
     pub line_width: f32,
 }
 
@@ -60,7 +60,7 @@ impl Palette {
     }
 }
 
-/// Set of colours of the curve roles.
+/// Colour set for the curve roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
     /// Red, blue, amber, green.
@@ -74,7 +74,7 @@ impl CurveColors {
     /// Every choice, in menu order.
     pub const ALL: [Self; 2] = [Self::Standard, Self::ForAllEyes];
 
-    /// Returns the text of the menu entry.
+    /// Returns the menu entry's text.
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "Standard curve colours",
@@ -83,8 +83,8 @@ impl CurveColors {
     }
 }
 
-/// Colours of nominal, perturbed, identified and corrected models. Among all colours near
-/// vermilion, blue, yellow and green with a contrast of 3 to the background, they maximise the
+/// Returns the colours for nominal, perturbed, identified and corrected models. Among all colours
+/// near vermilion, blue, yellow and green with a contrast of 3 to the background, they maximise the
 /// minimum distance from each other and from grey over all kinds of colour vision.
 const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
     if is_dark {

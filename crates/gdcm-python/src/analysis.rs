@@ -1,4 +1,4 @@
-//! Analyses of studies.
+//! The class `Analysis`: an analysed study.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -17,15 +17,16 @@ use crate::work::carry_out;
 /// An analysed study.
 #[pyclass(frozen, module = "gdcm._gdcm")]
 pub(crate) struct Analysis {
-    /// Locked only without the interpreter's lock.
+    /// Locked only while the interpreter's lock is released, or both locks could wait for each
+    /// other.
     analysed: Mutex<AnalysedStudy>,
-    /// What the program reported, as JSON.
+    /// Messages that the program reported, as JSON.
     #[pyo3(get)]
     messages: String,
-    /// Printed summary of the command.
+    /// The summary that the command prints.
     #[pyo3(get)]
     summary: String,
-    /// The cautions of the summary, as JSON.
+    /// The cautions in the summary, as JSON.
     #[pyo3(get)]
     summary_messages: String,
 }
@@ -70,7 +71,7 @@ impl Analysis {
         })
     }
 
-    /// The study with the decisions of the analysis.
+    /// The study, with the decisions made for this analysis.
     fn data(&self, py: Python<'_>) -> PyResult<Data> {
         let opened = self.read(py, |analysed| Ok(analysed.data().clone()))?;
         Ok(Data::new(Called {

@@ -1,4 +1,4 @@
-//! Datasets and studies.
+//! The class `Data`: a dataset or a study.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -11,14 +11,14 @@ use crate::bytes::response_bytes;
 use crate::error::exception;
 use crate::work::carry_out;
 
-/// A dataset with the decisions of a study about it.
+/// A dataset with a study's decisions about it.
 #[pyclass(frozen, module = "gdcm._gdcm")]
 pub(crate) struct Data {
     pub(crate) opened: OpenedData,
-    /// What the program reported, as JSON.
+    /// Messages that the program reported, as JSON.
     #[pyo3(get)]
     messages: String,
-    /// Rules that the models were read by, as JSON; empty for a dataset that was not assembled.
+    /// Rules by which the models were read, as JSON; empty for a dataset that was not assembled.
     #[pyo3(get)]
     rules: Vec<u8>,
 }
@@ -79,7 +79,7 @@ impl Data {
         })
     }
 
-    /// Source of the dataset.
+    /// Where the dataset comes from.
     #[getter]
     fn source(&self) -> String {
         self.opened.source()

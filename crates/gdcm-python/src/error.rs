@@ -1,9 +1,9 @@
-//! Errors of calls as exceptions of the package.
+//! Converts errors from calls to the package's exceptions.
 
 use gdcm::cli::calls::CallError;
 use pyo3::prelude::*;
 
-/// Creates the exception `gdcm.Error` for the error of a call.
+/// Creates the exception `gdcm.Error` from a call's error.
 pub(crate) fn exception(py: Python<'_>, error: &CallError) -> PyErr {
     let fields = serde_json::Value::Object((*error.fields).clone()).to_string();
     let arguments = (

@@ -1,4 +1,4 @@
-//! Figures of analyses.
+//! The class `Figure`: a drawn figure.
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ impl Figure {
         self.drawn.title()
     }
 
-    /// Contents of a file of the figure: "svg", "png", "pdf" or "csv".
+    /// The figure as a file's contents, in the format "svg", "png", "pdf" or "csv".
     fn bytes<'py>(&self, py: Python<'py>, format: &str) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| self.drawn.bytes(figure_format_named(format)));
         let bytes = bytes.map_err(|error| exception(py, &error))?;

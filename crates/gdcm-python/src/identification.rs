@@ -1,4 +1,4 @@
-//! Identifications from flight records.
+//! The class `Identification`: models from flight records.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use crate::work::carry_out;
 #[pyclass(frozen, module = "gdcm._gdcm")]
 pub(crate) struct Identification {
     identified: IdentifiedRecords,
-    /// What the program reported, as JSON.
+    /// Messages that the program reported, as JSON.
     #[pyo3(get)]
     messages: String,
 }
@@ -32,7 +32,7 @@ impl Identification {
         })
     }
 
-    /// The results as the text of `identified.json`.
+    /// The results, as the text in `identified.json`.
     fn json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let text = py.detach(|| self.identified.json());
         let text = text.map_err(|error| exception(py, &error))?;

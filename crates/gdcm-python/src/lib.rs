@@ -1,8 +1,8 @@
-//! Compiled part of the Python package `gdcm`: the calls of the program for Python.
+//! Compiled part of the Python package `gdcm`: the program's calls for Python.
 //!
-//! The package beside it (`python/gdcm`) wraps these types; users see only the package. Results
-//! cross as the text of the program's own JSON formats, in which every number is exact, and
-//! responses as bytes of complex numbers. Work releases the interpreter's lock ([`work`]).
+//! The package beside it (`python/gdcm`) wraps these types; users see only the package. Results are
+//! passed as text in the program's own JSON formats, in which every number is exact, responses as
+//! the bytes of complex numbers. Long work releases the interpreter's lock ([`work`]).
 
 mod analysis;
 mod bytes;
@@ -24,7 +24,7 @@ use crate::identification::Identification;
 /// Module `gdcm._gdcm`.
 #[pymodule]
 fn _gdcm(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    // Results state the commit, as those of the program do.
+    // Results state the commit, as the program's own do.
     gdcm::version::set_commit();
     module.add("version", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<Data>()?;
@@ -37,20 +37,20 @@ fn _gdcm(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Runs the program with these arguments, of which the first is its name; returns the exit status.
+/// Runs the program with these arguments, the first being its name; returns the exit status.
 #[pyfunction]
 fn run(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| gdcm::run(arguments))
 }
 
-/// Returns the zip archive with the flight records of the example, or of the real aircraft.
+/// Returns the zip archive with the example's flight records, or the real aircraft's.
 #[pyfunction]
 fn example_records(is_real: bool) -> &'static [u8] {
     gdcm::cli::calls::example_records(is_real)
 }
 
-/// Returns the names of the options of a command: "analyze", "figure", "identify" or "assemble";
-/// none for another command.
+/// Returns a command's option names: "analyze", "figure", "identify" or "assemble"; none for
+/// another command.
 #[pyfunction]
 fn options(command: &str) -> Vec<String> {
     gdcm::cli::calls::option_names_of(command)

@@ -1,5 +1,5 @@
-//! Work that may take long: in a thread of its own, without the interpreter's lock, with progress
-//! and interruption.
+//! Carries out work that may take long: in a thread of its own, without the interpreter's lock,
+//! with progress and interruption.
 //!
 //! The calling thread waits. At every tick it takes the lock, lets Python handle its signals
 //! (Ctrl+C raises `KeyboardInterrupt`), and hands the progress to the callback. If either raises an
@@ -18,10 +18,10 @@ use pyo3::prelude::*;
 
 use crate::error::exception;
 
-/// Time between two looks at signals and progress.
+/// Time between two checks for signals and progress.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Progress of the work, written by its threads and read by the calling one.
+/// The work's progress, written by its threads and read by the calling thread.
 #[derive(Default)]
 struct Monitor {
     is_stopped: AtomicBool,
@@ -33,7 +33,6 @@ struct Monitor {
 struct State {
     /// Completed share of the present step, 0 to 1.
     fraction: f64,
-    /// Name of the present step.
     step: String,
 }
 
@@ -64,7 +63,7 @@ impl Progress for Monitor {
 /// calling thread while the work lasts, and with the fraction 1 once it has a result.
 ///
 /// # Errors
-/// The error of the work, the exception of the callback, or `KeyboardInterrupt`.
+/// The work's error, the callback's exception, or `KeyboardInterrupt`.
 pub(crate) fn carry_out<T: Send>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
@@ -109,7 +108,7 @@ pub(crate) fn carry_out<T: Send>(
     }
 }
 
-/// The callback, and what it was last told.
+/// The callback, and the progress that it last received.
 struct Listener {
     callback: Option<Py<PyAny>>,
     last: Option<State>,

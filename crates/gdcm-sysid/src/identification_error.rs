@@ -35,7 +35,7 @@ pub enum IdentificationError {
         longest_s: f64,
         /// Lower band end \[rad/s\].
         lowest: f64,
-        /// Required length of the longest record: 1.5 periods at the lower band end \[s\].
+        /// Required length for the longest record: 1.5 periods at the lower band end \[s\].
         needed_s: f64,
         /// Recommended length: 5 periods, or 3 for each input if several are moved in the same
         /// record \[s\].
@@ -53,7 +53,7 @@ pub enum IdentificationError {
         /// Number of real values in the lines.
         figures: usize,
         needed: usize,
-        /// Number of unknowns of a first-order model.
+        /// Number of unknowns in a first-order model.
         unknowns: usize,
     },
     /// The band ends are invalid or interchanged.
@@ -70,7 +70,7 @@ pub enum IdentificationError {
     SampledTooSlowly {
         /// Upper band end \[rad/s\].
         highest: f64,
-        /// Longest sample time of the records \[s\].
+        /// Longest sample time \[s\].
         sample_time_s: f64,
         /// Maximum possible upper band end \[rad/s\].
         limit: f64,
@@ -86,7 +86,7 @@ pub enum IdentificationError {
     OnlyReferences,
     #[error("record {} is to be held out, but there are only {records} records", record + 1)]
     HeldOutMissing {
-        /// Index of the record, counted from 0.
+        /// Record index, from 0.
         record: usize,
         records: usize,
     },
@@ -96,7 +96,7 @@ pub enum IdentificationError {
     /// Some inputs depend linearly on each other.
     #[error("{} move together in every record: leave out all but one, or move them independently", names(.0))]
     InputsDepend(Vec<Signal>),
-    /// The covariance of the noise of the outputs is singular.
+    /// The noise covariance of the outputs is singular.
     #[error(
         "the outputs depend on each other so closely that their noise covariance is singular: \
         leave out redundant outputs"
@@ -107,7 +107,7 @@ pub enum IdentificationError {
          widen the band, or leave out channels"
     )]
     NoModel {
-        /// Number of lines in all records.
+        /// Number of spectral lines in all records.
         lines: usize,
         /// Total record length \[s\].
         seconds: f64,

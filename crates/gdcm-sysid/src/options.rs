@@ -13,20 +13,20 @@ const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
 ///
-/// M14.9 states the defaults: chosen on five conditions of the example, and confirmed on the other
-/// six, on fresh noise and on half the data.
+/// M14.9 lists the defaults. They were chosen on five conditions of the example, and confirmed on
+/// the other six, on fresh noise and on half the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Lower and upper band end \[rad/s\].
     pub band: [f64; 2],
     /// The channels and their preparation.
     pub preparation: Preparation,
-    /// Number of references at the end of the inputs: recorded signals outside the model that drove
-    /// the loop from outside (M14.15).
+    /// How many references follow the model inputs: recorded signals that drove the loop from
+    /// outside and are no part of the model (M14.15).
     pub references: usize,
-    /// Indices, from 0, of the records reserved for validation: no model is fitted to them.
+    /// Records reserved for validation, by index from 0: no model is fitted to them.
     pub held_out: Vec<usize>,
-    /// Orders to try; `None` for all orders that the amount of data allows (M14.13).
+    /// Orders to try; `None` for all that the amount of data allows (M14.13).
     pub orders: Option<Vec<usize>>,
     /// Laguerre poles to try, relative to the upper band end.
     pub poles: Vec<f64>,
@@ -74,7 +74,7 @@ impl Options {
         }
     }
 
-    /// Returns the number of model inputs; references are not counted.
+    /// Counts the model inputs, without references.
     pub(crate) fn inputs(&self) -> usize {
         self.preparation
             .inputs
@@ -82,7 +82,7 @@ impl Options {
             .saturating_sub(self.references)
     }
 
-    /// Returns the names of the records to which models are fitted, without the record `without`.
+    /// Names the records to which models are fitted, without the record `without`.
     pub(crate) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
         let mut names = Vec::new();
         for (number, record) in records.iter().enumerate() {

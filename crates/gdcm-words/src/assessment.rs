@@ -1,4 +1,4 @@
-//! Sentences about assessments: effect of a correction, its origin, and why a condition or response
+//! Sentences about assessments: a correction's effect, its origin, and why a condition or response
 //! is left out (M12).
 
 use gdcm_model::dataset::{ConditionId, Dataset};
@@ -9,7 +9,7 @@ use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
 
 use crate::caution::{failure_text, undefined_text};
 
-/// Returns the origin of an assessed correction in words.
+/// Says where an assessed correction comes from.
 pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64) -> String {
     let at = format!("at {} kt", number(airspeed_kt));
     match correction {
@@ -62,9 +62,9 @@ pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     )
 }
 
-/// Compares the assessment of the held-out conditions with the assessment of the conditions in the
-/// fit: "held out (3, 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of
-/// 45 responses, mean ΔJ −15.0". `None` where no condition is held out.
+/// Compares the held-out conditions' assessment with that of the fitted conditions: "held out (3,
+/// 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45 responses, mean
+/// ΔJ −15.0". `None` where no condition is held out.
 pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
     let study = &analysis.study;
     let held_out: Vec<String> = study

@@ -6,7 +6,7 @@ use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{Caution, GainOutOfRange, NotFinite, USUAL_GAINS, Undefined};
 
-/// Range of computable gains in words.
+/// Range in which gains can be computed.
 const GAIN_RANGE: &str = "the computable range is 1e-50 to 1e50";
 
 /// Meaning of "numerically zero" (M6a).
@@ -115,7 +115,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
     }
 }
 
-/// Returns the names of responses, separated by commas.
+/// Lists response names, separated by commas.
 fn names(pairs: &[Pair], pair_name: &impl Fn(Pair) -> String) -> String {
     let names: Vec<String> = pairs.iter().map(|pair| pair_name(*pair)).collect();
     names.join(", ")
@@ -154,7 +154,7 @@ fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> Str
     )
 }
 
-/// Describes the gains between two models that are outside the computable range.
+/// Describes gains between two models that are outside the computable range.
 fn gains_out_of_range_text(
     physics: &str,
     identified: &str,
@@ -245,7 +245,7 @@ fn first_names(names: &[String]) -> String {
     }
 }
 
-/// Lists the numbers of omitted frequencies: "31 of PED → P, 12 of COL → Q, and some of 5 more".
+/// Counts omitted frequencies by response: "31 of PED → P, 12 of COL → Q, and some of 5 more".
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     let mut parts: Vec<String> = left_out
         .iter()

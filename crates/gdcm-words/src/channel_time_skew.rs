@@ -3,8 +3,7 @@
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 
-/// Returns the finding in words; `channel` and `physics` are the names of the channel and of the
-/// physics model.
+/// Returns the finding in words; `channel` and `physics` name the channel and the physics model.
 pub fn time_skew_text(skew: &ChannelTimeSkew, channel: &str, physics: &str) -> String {
     let delay_ms = telling(s_to_ms(skew.delay_s.abs()), 0);
     let direction = if skew.delay_s < 0.0 { "early" } else { "late" };

@@ -55,8 +55,8 @@ pub fn remedy_text(remedy: &Remedy, inputs: &[String], outputs: &[String]) -> St
     }
 }
 
-/// Describes the deviation of a constrained response; for a delay including the phase error that
-/// remains at `omega_top` \[rad/s\], the upper end of the band.
+/// Describes a constrained response's deviation; for a delay also the phase error that remains at
+/// `omega_top` \[rad/s\], the upper band end.
 pub fn miss_text(
     miss: &Unmatched,
     omega_top: f64,
@@ -102,7 +102,7 @@ fn delay_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     format!("{why}; a phase error of {left}° remains at {omega_top} rad/s.")
 }
 
-/// Returns the name of the values that are compared around a loop.
+/// Names the values that are compared around a loop.
 fn loop_values(quantity: Quantity) -> &'static str {
     if quantity.is_gain() {
         "ratios"
@@ -111,7 +111,7 @@ fn loop_values(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Formats the deviation of a loop, which is in dB or in seconds; seconds are displayed in ms.
+/// Formats a loop's deviation, which is in dB or in seconds; seconds are displayed in ms.
 fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
     if quantity.is_gain() {
         format!("{} dB", telling(mismatch.abs(), 1))
@@ -138,11 +138,11 @@ struct ConflictText<'a> {
 }
 
 impl ConflictText<'_> {
-    /// Remedies for insufficient lead other than a change of the bounds.
+    /// Remedies for insufficient lead, apart from changing the bounds.
     const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
-    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is the limit
-    /// of the bounds that the entries exceed, CHANGE a change of the bounds that is sufficient.
+    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is what the
+    /// bounds allow and the entries exceed, CHANGE a sufficient change in the bounds.
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);
@@ -206,7 +206,7 @@ impl ConflictText<'_> {
     }
 
     /// Describes a net value above its maximum: twice the upper bound, or its square for gains;
-    /// ends with a sufficient change of the bounds and "or".
+    /// ends with a sufficient change in the bounds and "or".
     fn maximum_and_change(&self, channels: [Channel; 2], asked: f64, upper: f64) -> String {
         let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.upper;
@@ -230,7 +230,7 @@ impl ConflictText<'_> {
     }
 
     /// Describes a net value below its minimum: twice the lower bound, or its square for gains;
-    /// ends with a sufficient change of the bounds, if there is one, and "or".
+    /// ends with a sufficient change in the bounds, if there is one, and "or".
     fn minimum_and_change(&self, channels: [Channel; 2], asked: f64, lower: Option<f64>) -> String {
         let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.lower;
@@ -259,7 +259,7 @@ impl ConflictText<'_> {
         }
     }
 
-    /// Describes a ratio of gains above the ratio of the bounds, without a change.
+    /// Describes a gain ratio above the ratio of the bounds; proposes no change.
     fn ratio_limit(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
@@ -272,8 +272,8 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a difference of delays above the difference of the bounds; ends with a sufficient
-    /// change of the bounds and "or".
+    /// Describes a delay difference above the bounds' difference; ends with a sufficient change in
+    /// the bounds and "or".
     fn difference_limit_and_change(
         &self,
         greater: Channel,
@@ -303,7 +303,7 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Returns the symbol of a channel's value: "k_LON", "tau_P".
+    /// Returns the symbol for a channel's value: "k_LON", "tau_P".
     fn symbol(&self, channel: Channel) -> String {
         let symbol = if self.conflict.quantity.is_gain() {
             "k"

@@ -6,10 +6,10 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::number_format::rounded_to_three_digits;
 use gdcm_study::results::convention_doubt::{Convention, ConventionDoubt};
 
-/// Maximum ratio between a factor and a listed conversion factor at which they match.
+/// Largest ratio between a factor and a listed conversion factor at which they match.
 const NEAR_FACTOR: f64 = 1.08;
 
-/// Conversion factors between common units, with the names of the units.
+/// Conversion factors between common units, with the unit names.
 const KNOWN_FACTORS: [(f64, &str); 6] = [
     (9.806_65, "g and m/s²"),
     (32.174, "g and ft/s²"),

@@ -1,4 +1,4 @@
-//! Sentences of the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
+//! Sentences for the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
 
 use std::collections::BTreeMap;
 
@@ -113,7 +113,7 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
     }
 }
 
-/// Returns why the poles of a physics model are unavailable.
+/// Returns why a physics model's poles are unavailable.
 pub fn no_poles_text(why: &NoPoles) -> String {
     match why {
         NoPoles::Measured => {
@@ -123,7 +123,7 @@ pub fn no_poles_text(why: &NoPoles) -> String {
     }
 }
 
-/// Names the source of the J by which the benefit is judged.
+/// Says where the J comes from that shows the benefit.
 fn source_words(source: CostSource) -> &'static str {
     match source {
         CostSource::LeftOut => "conditions left out of the fit",
@@ -211,7 +211,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare, meaning: Feedback
     )
 }
 
-/// Names the physical meaning of a feedback entry.
+/// Names what a feedback entry means physically.
 fn meaning_words(meaning: FeedbackMeaning) -> &'static str {
     match meaning {
         FeedbackMeaning::DirectionalStiffness => "directional stiffness",

@@ -1,4 +1,4 @@
-//! Tables of the values of couplings, their costs and their poles (M16.5).
+//! Tables of couplings, their costs and their poles (M16.5).
 
 use nalgebra::{Complex, DMatrix};
 
@@ -27,12 +27,11 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
     cost_table(&assessment.costs, AxisCost::default())
 }
 
-/// Headings of the table of J for narrow panels: "with" stands after each value without the
-/// correction.
+/// Headings of the table of J in narrow panels: each "with" refers to the column before it.
 pub const NARROW_COST_COLUMNS: [&str; 5] = ["mean J", "on-axis", "with", "others", "with"];
 
-/// Tabulates J on-axis and off-axis, without and with a correction; `with_uncorrected` is J of the
-/// models with it and without gains and delays.
+/// Tabulates J on-axis and off-axis, without and with a correction; `with_uncorrected` is J with
+/// it, but without gains and delays.
 pub(crate) fn cost_table(costs: &CorrectionCosts, with_uncorrected: AxisCost) -> Table {
     let columns = [
         "mean J",
@@ -102,7 +101,7 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
     tables
 }
 
-/// Appends the unit of each channel to its name: "LON [%]".
+/// Appends each channel's unit to its name: "LON [%]".
 fn with_units(names: &[String], channels: &[Channel]) -> Vec<String> {
     names
         .iter()
@@ -143,8 +142,7 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates the poles of each physics representative without and with couplings, largest shift
-/// first.
+/// Tabulates each physics representative's poles without and with couplings, largest shift first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",

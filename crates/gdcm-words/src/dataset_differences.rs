@@ -5,8 +5,7 @@ use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
 
 use crate::edit::carried_decision_text;
 
-/// Describes a difference between a dataset and an earlier state of it, with which a study was
-/// made.
+/// Describes a difference between a dataset and its earlier state, with which a study was made.
 pub fn dataset_difference_text(difference: &Difference) -> String {
     match difference {
         Difference::AnotherFile { expected, found } => format!(

@@ -14,7 +14,7 @@ use gdcm_study::decisions::setting_table::SETTINGS;
 /// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
-    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
+    /// What was decided: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
     /// Previous value: "1", "held", "rejected".
     pub before: String,
@@ -37,7 +37,7 @@ impl fmt::Display for DecisionDifference {
     }
 }
 
-/// Words for the two states of a decision.
+/// Words for a decision's two states.
 struct YesNo {
     yes: &'static str,
     no: &'static str,
@@ -122,7 +122,7 @@ fn sign_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     differences
 }
 
-/// Lists the differences of decisions about physics parameters (M18).
+/// Lists differences in decisions about physics parameters (M18).
 fn parameter_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let [was, is] = [before, after].map(|study| &study.settings.physics_parameters);
     let mut names: BTreeSet<&String> = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! Names of decisions, for the undo list and for decisions that no longer apply.
+//! Names decisions, for the undo list and for decisions that no longer apply.
 
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_study::Edit;

@@ -14,7 +14,7 @@ use super::schedule::delayed_channel_text;
 /// Maximum number of conditions that a note lists.
 const MOST_LISTED: usize = 6;
 
-/// Describes the contents of a file: "5 airspeeds, linear".
+/// Describes what a file contains: "5 airspeeds, linear".
 pub fn file_summary_text(summary: &FileSummary) -> String {
     match summary {
         FileSummary::Results {
@@ -179,7 +179,7 @@ pub fn export_note_detail(
     }
 }
 
-/// Names the button of a remedy: "Add 75 kt".
+/// Labels a remedy's button: "Add 75 kt".
 pub fn export_remedy_text(remedy: ExportRemedy) -> String {
     match remedy {
         ExportRemedy::ScheduleDelays | ExportRemedy::SignedDelaysOverAirspeed => {
@@ -206,7 +206,7 @@ fn delayed_channels_text(channels: &[DelayedChannel], dataset: &Dataset) -> Stri
     }
 }
 
-/// Lists conditions: "3, 5, 6"; of many, the first ones and the number of the others.
+/// Lists conditions: "3, 5, 6"; if there are many, the first ones and the count of the others.
 fn listed(conditions: &[ConditionId]) -> String {
     let shown: Vec<String> = conditions
         .iter()
@@ -220,7 +220,7 @@ fn listed(conditions: &[ConditionId]) -> String {
     }
 }
 
-/// Returns the greatest of some gains \[dB\], and at least 0.
+/// Returns the largest gain \[dB\], and at least 0.
 fn largest(gains_db: &[f64]) -> f64 {
     gains_db.iter().copied().fold(0.0, f64::max)
 }

@@ -1,4 +1,4 @@
-//! The next flight in words: tables of predicted intervals, advice, and ways to a target.
+//! The next flight in words: tables with predicted intervals, advice, and ways to a target.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::number_format::{counted, significant, telling};
@@ -14,19 +14,18 @@ use crate::table::Table;
 /// Half-width above which an interval only says that the response is not identified \[dB\].
 const UNKNOWN_DB: f64 = 20.0;
 
-/// Names and units of the channels for which flights are planned.
+/// Names and units of the channels, for sentences about planned flights.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PlannedChannels {
     pub inputs: Vec<PlannedInput>,
-    /// Names of the outputs.
     pub outputs: Vec<String>,
 }
 
-/// Name and unit of an input.
+/// An input's name and unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PlannedInput {
     pub name: String,
-    /// Empty if it is not known.
+    /// Empty if unknown.
     pub unit: String,
 }
 
@@ -37,13 +36,13 @@ impl PlannedChannels {
             .map_or("", |input| input.name.as_str())
     }
 
-    /// Returns a response: `PED → R`.
+    /// Names a response: `PED → R`.
     pub fn response(&self, pair: Pair) -> String {
         let output = self.outputs.get(pair.output).map_or("", String::as_str);
         format!("{} → {output}", self.input(pair.input))
     }
 
-    /// Returns an amplitude with the unit of its input: `5.0 %`.
+    /// Returns an amplitude with its input's unit: `5.0 %`.
     fn amplitude(&self, input: usize, amplitude: f64) -> String {
         let unit = self
             .inputs
@@ -54,7 +53,7 @@ impl PlannedChannels {
             .to_owned()
     }
 
-    /// Returns a sweep: `60 s sweep of PED (amplitude 5.0 %, 0.50 to 16 rad/s)`.
+    /// Describes a sweep: `60 s sweep of PED (amplitude 5.0 %, 0.50 to 16 rad/s)`.
     pub fn sweep(&self, sweep: &StandardSweep) -> String {
         let PlannedSweep {
             input,
@@ -78,8 +77,8 @@ impl PlannedChannels {
     }
 }
 
-/// Returns the predicted 95 % intervals of the responses to an input: now, and after numbers of
-/// sweeps.
+/// Tabulates the 95 % intervals of the responses to an input: now, and predicted for each sweep
+/// count.
 pub fn sweep_plan_table(plan: &SweepPlan, channels: &PlannedChannels) -> Table {
     let omega = plan.responses.first().map_or(0.0, |first| first.omega);
     let title = format!(
@@ -123,7 +122,7 @@ fn interval_text(half_db: f64) -> String {
     }
 }
 
-/// Returns a small number in words.
+/// Returns a number up to twelve as a word, a larger one in digits.
 fn number_word(number: usize) -> String {
     const WORDS: [&str; 12] = [
         "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
@@ -135,7 +134,7 @@ fn number_word(number: usize) -> String {
     }
 }
 
-/// Returns further sweeps of an input: `two more 60 s sweeps of PED`.
+/// Describes further sweeps of an input: `two more 60 s sweeps of PED`.
 fn more_sweeps(sweep: &PlannedSweep, repeats: usize, channels: &PlannedChannels) -> String {
     let noun = if repeats == 1 { "sweep" } else { "sweeps" };
     format!(
@@ -146,8 +145,8 @@ fn more_sweeps(sweep: &PlannedSweep, repeats: usize, channels: &PlannedChannels)
     )
 }
 
-/// Returns an advice as a sentence: "two more 60 s sweeps of PED with an amplitude of 5.0 % bring
-/// PED → R from ± 6.4 dB to ± 3.1 dB at 3.5 rad/s".
+/// Returns advice as a sentence: "two more 60 s sweeps of PED with an amplitude of 5.0 % bring PED
+/// → R from ± 6.4 dB to ± 3.1 dB at 3.5 rad/s".
 pub fn advice_text(advice: &SweepAdvice, channels: &PlannedChannels) -> String {
     let sweep = &advice.sweep.sweep;
     let amplitude = channels.amplitude(sweep.input, sweep.amplitude);

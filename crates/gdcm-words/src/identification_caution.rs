@@ -13,7 +13,7 @@ const LISTED_RESPONSES: usize = 2;
 /// A caution in two lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShortCaution {
-    /// What is in doubt.
+    /// The doubt, in a few words.
     pub title: String,
     /// Numbers, or the record concerned.
     pub detail: String,
@@ -233,7 +233,7 @@ fn band_text(band: [f64; 2]) -> String {
     format!("{:.2} to {:.1} rad/s", band[0], band[1])
 }
 
-/// Returns the name of a record, and the number of other records.
+/// Names a record, and counts the others.
 fn and_others(record: &str, records: usize) -> String {
     match records.saturating_sub(1) {
         0 => record.to_owned(),

@@ -1,4 +1,4 @@
-//! Sentences about the price of lead filters (M15.6).
+//! Sentences about the price that lead filters have (M15.6).
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::Pair;
@@ -12,8 +12,8 @@ pub fn limit_text(price: &LeadPrice) -> String {
     format!("not valid above {} rad/s", number(price.limit_rad_s))
 }
 
-/// Describes the frequency limit, and the gain of each channel with a filter: "not valid above 12
-/// rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
+/// Describes the frequency limit, and the gain that each filter adds to its channel: "not valid
+/// above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
 /// increases by the sum for its input and output".
 pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> String {
     let mut gains = Vec::new();
@@ -35,7 +35,7 @@ pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> S
     )
 }
 
-/// Describes the added gain of a response: "+18.9 dB at 120 rad/s"; `None` if it rounds to zero.
+/// Describes the gain added to a response: "+18.9 dB at 120 rad/s"; `None` if it rounds to zero.
 pub fn pair_price_text(price: &LeadPrice, pair: Pair) -> Option<String> {
     let gain_db = price.of_pair_db(pair);
     if gain_db > NOTHING_DB {

@@ -14,9 +14,9 @@ use gdcm_study::{ConditionAnalysis, Study};
 use crate::lead_price::pair_price_text;
 use crate::remark::remark_text;
 
-/// Describes the lead of responses and channels: "P from LAT needs 65 ms of lead over the band: 24
-/// on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB
-/// above the band". With `uncertainty`, the lead of a response has its error bar: "65 ± 4 ms"
+/// Describes the lead that responses and channels need: "P from LAT needs 65 ms of lead over the
+/// band: 24 on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s;
+/// +12.4 dB above the band". With `uncertainty`, a response's lead has its error bar: "65 ± 4 ms"
 /// (M13).
 pub fn lead_words(
     study: &Study,
@@ -54,7 +54,7 @@ pub fn lead_words(
     words
 }
 
-/// Describes the lead or delay that a response needs, and the contributions of its two channels.
+/// Describes the lead or delay that a response needs, and what its two channels contribute.
 fn wanted_lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -91,7 +91,7 @@ fn wanted_lead_words(
     Some(text)
 }
 
-/// Formats the absolute value of a delay in whole milliseconds.
+/// Formats a delay's absolute value in whole milliseconds.
 fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }
@@ -109,8 +109,8 @@ fn half_width_words(
     Some(format!(" ± {}", telling(s_to_ms(half_width_s), 0)))
 }
 
-/// Describes the number of states that the leads add, and the frequency up to which the corrected
-/// model is valid; `None` without leads.
+/// Describes how many states the leads add, and up to which frequency the corrected model is valid;
+/// `None` without leads.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let limit = number(LeadPrice::new(leads)?.limit_rad_s);

@@ -8,14 +8,14 @@
 //!
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for
-//! suspected faults; [`verdict`] for the held responses; [`missing_results`] for results that do not exist; [`coupling_error`],
-//! [`coupled_model_error`], [`coupling_remark`], [`couplings`], [`physics`], [`assessment`],
-//! [`schedule`], [`uncertainty`] for a study; [`edit`], [`decision_differences`] and [`dataset_differences`]; [`export`] for
-//! exported files; [`identification_caution`] for identified models,
-//! [`record_use`] for their records; [`flight_plan`] for further
-//! flights, [`suggested_runs`] for further runs of the physics model. Settings: [`setting_words`],
-//! [`gain_source`]. Tables: [`table`], [`requirements`], [`requirement_grid`], [`time_histories`].
-//! Explained results: [`derivation`].
+//! suspected faults; [`verdict`] for the constrained responses; [`missing_results`] for results
+//! that do not exist; [`coupling_error`], [`coupled_model_error`], [`coupling_remark`],
+//! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
+//! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files;
+//! [`identification_caution`] for identified models, [`record_use`] for their records;
+//! [`flight_plan`] for further flights, [`suggested_runs`] for further runs of the physics model.
+//! Settings: [`setting_words`], [`gain_source`]. Tables: [`table`], [`requirements`],
+//! [`requirement_grid`], [`time_histories`]. Explained results: [`derivation`].
 //!
 //! # Example
 //!

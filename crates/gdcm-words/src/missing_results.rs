@@ -12,7 +12,7 @@ use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::ReversedPhase;
 use gdcm_study::results::test_input_responses::NoTestAnswer;
 
-/// Returns why an analysis contains no result of a condition.
+/// Returns why an analysis contains no result for a condition.
 pub fn no_result_text(why: &NoResult) -> String {
     match why {
         NoResult::NotAnalysed => "it was not analysed".to_owned(),
@@ -72,7 +72,7 @@ fn not_compared_text(why: NotCompared) -> String {
     }
 }
 
-/// Returns why a record is not compared with the models of a condition.
+/// Returns why a record is not compared with a condition's models.
 pub fn no_record_history_text(why: &NoRecordHistory) -> String {
     match why {
         NoRecordHistory::NoResult(why) => no_result_text(why),
@@ -80,7 +80,7 @@ pub fn no_record_history_text(why: &NoRecordHistory) -> String {
     }
 }
 
-/// Returns why the comparison of a record lacks a model or a quantity.
+/// Returns why the comparison with a record lacks a model or a quantity.
 pub fn not_in_history_text(why: &NotInHistory) -> String {
     match why {
         NotInHistory::NoRoleModel(why) => no_role_model_text(why),
@@ -133,7 +133,7 @@ pub fn no_bandwidth_text(why: &NoBandwidth) -> String {
     }
 }
 
-/// Returns why a value of a mode is missing.
+/// Returns why a value for a mode is missing.
 pub fn no_mode_value_text(why: NoModeValue) -> &'static str {
     match why {
         NoModeValue::NotOscillating => "it does not oscillate",
@@ -150,7 +150,7 @@ pub fn no_summary_text(why: NoSummary) -> &'static str {
     }
 }
 
-/// Returns the caution that the phase of a response suggests a reversed channel.
+/// Returns the caution that a response's phase suggests a reversed channel.
 pub fn reversed_phase_text(phase: &ReversedPhase, dataset: &Dataset) -> String {
     let roles: Vec<&str> = phase
         .roles

@@ -1,7 +1,7 @@
 //! Sentences and tables about named physics parameters (M18.4 to M18.6).
 //!
-//! A parameter "would have to move by" an amount, or "acts like" another: the diagnosis never states
-//! a cause, because a parameter of like effect that was not offered cannot be excluded.
+//! A parameter "would have to move by" an amount, or "acts like" another: the diagnosis never
+//! states a cause, because a parameter with like effect that was not offered cannot be excluded.
 
 use gdcm_method::physics::identifiability::WeakDirection;
 use gdcm_method::physics::{OfferedParameter, RunRefusal, Verdict, WhyNotNamed};
@@ -17,17 +17,17 @@ use gdcm_study::results::rerun_check::{RerunCheck, RerunRefusal, RerunVerdict};
 use crate::couplings::cost_table;
 use crate::table::Table;
 
-/// Stands beside every verdict.
+/// Displayed beside every verdict.
 pub const LIKE_EFFECT: &str = "A parameter of like effect that was not offered cannot be excluded.";
 
-/// Said beside error bars where parameters are moved.
+/// Displayed beside error bars where parameters are moved.
 pub const BARS_KEEP_VALUES: &str =
     "error bars hold these values fixed: parameters are not fitted again for each swap of models";
 
-/// Most pulls that are listed.
+/// Maximum number of pulls that are listed.
 const LISTED_PULLS: usize = 3;
 
-/// Formats a change with its half-width in the unit of the parameter: "+1.6 ± 0.2 deg".
+/// Formats a change with its half-width in the parameter's unit: "+1.6 ± 0.2 deg".
 pub fn change_text(parameter: &OfferedParameter, change: f64, half_width: Option<f64>) -> String {
     let unit = unit_text(&parameter.unit);
     match half_width {
@@ -62,8 +62,8 @@ fn unit_text(unit: &str) -> String {
     }
 }
 
-/// Returns the number of decimals that shows a half-width with one significant digit, or two if the
-/// first is 1.
+/// Returns the decimals that a half-width needs for one significant digit, or two if the first is
+/// 1.
 fn interval_decimals(half_width: f64) -> usize {
     let exponent = half_width.log10().floor();
     let first_digit = half_width / 10_f64.powf(exponent);
@@ -91,7 +91,7 @@ pub fn applied_value_list(applied: &AppliedPhysics) -> Vec<String> {
     applied.values.iter().map(applied_value_text).collect()
 }
 
-/// States the verdict on the parameters, and that a parameter of like effect cannot be excluded.
+/// States the verdict on the parameters, and that a parameter with like effect cannot be excluded.
 pub fn verdict_text(findings: &PhysicsFindings) -> String {
     format!("{} {LIKE_EFFECT}", verdict_sentence(findings))
 }
@@ -141,7 +141,7 @@ fn percent(share: f64) -> String {
     format!("{} %", decimals((100.0 * share).max(0.0), 0))
 }
 
-/// States the moves of named parameters: "tail_lift would have to move by +10 ± 2 %".
+/// States how far named parameters would have to move: "tail_lift would have to move by +10 ± 2 %".
 fn moves_text(named: &[DiagnosedParameter<'_>]) -> String {
     let mut moves = Vec::new();
     for (index, found) in named.iter().enumerate() {
@@ -221,7 +221,7 @@ fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
 }
 
 /// Tabulates the parameters: change, half-width, plausible change, share explained alone, decrease
-/// of the ratio by its step, share that channels can take, verdict.
+/// in the ratio by its step, share that channels can take, verdict.
 pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
     let bar = format!("± {} %", number(100.0 * level));
     let columns = [
@@ -325,7 +325,7 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
 }
 
 fn weak_direction_text(weak: &WeakDirection, findings: &PhysicsFindings) -> String {
-    /// Least component that is listed.
+    /// Smallest component that is listed.
     const LISTED: f64 = 0.2;
     let mut parts = Vec::new();
     for (&parameter, &component) in findings.diagnosis.fit.fitted.iter().zip(&weak.direction) {
@@ -523,7 +523,7 @@ fn rerun_refusal_text(refusal: &RerunRefusal) -> String {
     }
 }
 
-/// Returns a block of text to paste into the input of the physics model: name, change, unit.
+/// Returns a text block to paste into the physics model's input: name, change, unit.
 pub fn paste_block(applied: &AppliedPhysics) -> String {
     let mut text = String::from("# parameter  change from nominal  unit\n");
     for value in &applied.values {

@@ -1,4 +1,4 @@
-//! Facts about the use of a record that are no cautions.
+//! Facts about how a record was used that are no cautions.
 
 use gdcm_sysid::spectra::record_use::RecordUse;
 

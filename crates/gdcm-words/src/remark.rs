@@ -1,5 +1,4 @@
-//! Sentences of the remarks on the result of a condition, identical in the window and in a
-//! terminal.
+//! Sentences for the remarks on a condition's result, identical in the window and in a terminal.
 
 use gdcm_method::correction::solution::Unmatched;
 use gdcm_model::dataset::Dataset;
@@ -214,7 +213,7 @@ pub fn lead_ms_text(lead_s: f64) -> String {
     telling(s_to_ms(lead_s), 0)
 }
 
-/// Formats the absolute value of a gain increase \[dB\].
+/// Formats a gain increase \[dB\] by its absolute value.
 pub fn raised_gain_text(rise_db: f64) -> String {
     telling(rise_db.abs(), 1)
 }

@@ -1,5 +1,4 @@
-//! The grid of the requirements in words: names, values, limits, verdicts, and the grid as a table
-//! (M17.5).
+//! The requirement grid in words: names, values, limits, verdicts, and the grid as a table (M17.5).
 
 use gdcm_method::requirements::level_boundary::AssessedLevel;
 use gdcm_method::requirements::mode_comparison::ModeTolerance;
@@ -17,7 +16,7 @@ use crate::missing_results::{no_bandwidth_text, no_summary_text};
 use crate::table::Table;
 use crate::time_histories::tolerance_text;
 
-/// Sign of a value that is not determined.
+/// Sign for a value that is not determined.
 pub const NONE: &str = "\u{2013}";
 /// Mark behind a value outside its limit, in tables without colours.
 pub const OUTSIDE_MARK: &str = "!";
@@ -49,7 +48,7 @@ impl RequirementNames<'_> {
         }
     }
 
-    /// Names the axis of a response; of several responses of the same output, also the input.
+    /// Names a response's axis; also its input if several responses have the same output.
     fn axis(&self, pair: Pair) -> String {
         let output = &self.dataset.outputs()[pair.output].name;
         let axis = match output.as_str() {
@@ -77,7 +76,7 @@ fn capitalized(words: &str) -> String {
     }
 }
 
-/// Names a group of requirements.
+/// Names a requirement group.
 pub fn group_name(group: RequirementGroup) -> &'static str {
     match group {
         RequirementGroup::Bandwidth => "Bandwidth",
@@ -87,7 +86,7 @@ pub fn group_name(group: RequirementGroup) -> &'static str {
     }
 }
 
-/// Describes what the values of a group are compared with.
+/// Describes what a group's values are compared with.
 pub fn group_description(group: RequirementGroup) -> &'static str {
     match group {
         RequirementGroup::Bandwidth => "difference from the identified model",
@@ -97,7 +96,7 @@ pub fn group_description(group: RequirementGroup) -> &'static str {
     }
 }
 
-/// Returns the unit of the values in a row, empty for a cost.
+/// Returns the unit for the values in a row, empty for a cost.
 pub fn unit_text(unit: RequirementUnit) -> &'static str {
     match unit {
         RequirementUnit::Percent => "%",
@@ -115,8 +114,8 @@ pub fn shown_value(unit: RequirementUnit, value: f64) -> f64 {
     }
 }
 
-/// Formats the value of a cell without decimals: a difference has a sign; an en dash stands for a
-/// missing value.
+/// Formats a cell's value without decimals: a difference has a sign; a missing value becomes an en
+/// dash.
 ///
 /// A value is rounded away from its limit where rounding would move it to the other side: 100.4 % of
 /// a tolerance is "101".
@@ -144,7 +143,7 @@ pub fn value_text(requirement: Requirement, cell: &RoleCell) -> String {
     }
 }
 
-/// Formats the value of a cell with its unit: "−12 %", "201 % of the tolerance".
+/// Formats a cell's value with its unit: "−12 %", "201 % of the tolerance".
 pub fn value_with_unit_text(requirement: Requirement, cell: &RoleCell) -> String {
     let value = value_text(requirement, cell);
     let unit = unit_text(requirement.unit());
@@ -168,7 +167,7 @@ pub fn level_text(level: Option<AssessedLevel>) -> String {
     }
 }
 
-/// Formats the limit of a row, short enough for its column: "±10", "±3 °/s", "2.d.3.a", "none".
+/// Formats a row's limit, short enough for its column: "±10", "±3 °/s", "2.d.3.a", "none".
 pub fn limit_text(requirement: Requirement, limit: &RequirementLimit) -> String {
     let unit = requirement.unit();
     match limit {
@@ -186,7 +185,7 @@ pub fn limit_text(requirement: Requirement, limit: &RequirementLimit) -> String 
     }
 }
 
-/// Describes the limit of a row in full: "±10 % or ±3 deg/s, whichever is wider (2.b.3.b, 2.d.1)".
+/// Describes a row's limit in full: "±10 % or ±3 deg/s, whichever is wider (2.b.3.b, 2.d.1)".
 pub fn limit_description(requirement: Requirement, limit: &RequirementLimit) -> String {
     match limit {
         RequirementLimit::Within(_)
@@ -221,7 +220,7 @@ fn with_entry(words: String, entry: &str) -> String {
     }
 }
 
-/// Describes the tolerances of a mode: "period ±10 % or ±0.5 s, and time to half ±10 % or damping
+/// Describes the tolerances for a mode: "period ±10 % or ±0.5 s, and time to half ±10 % or damping
 /// ratio ±0.02 (2.d.3.a)".
 fn mode_tolerance_text(tolerance: &ModeTolerance) -> String {
     let mut period = format!("period \u{b1}{} %", rounded(100.0 * tolerance.period));
@@ -236,7 +235,7 @@ fn mode_tolerance_text(tolerance: &ModeTolerance) -> String {
     with_entry(words, &tolerance.entry)
 }
 
-/// Formats the absolute part of a tolerance: "±3 °/s", "±0.1 g".
+/// Formats a tolerance's absolute part: "±3 °/s", "±0.1 g".
 fn short_tolerance_text(tolerance: &Tolerance) -> String {
     let value = rounded(tolerance.absolute);
     match tolerance.unit.as_str() {
@@ -246,7 +245,7 @@ fn short_tolerance_text(tolerance: &Tolerance) -> String {
     }
 }
 
-/// Formats a limit without the floating-point noise of its unit conversion.
+/// Formats a limit without the floating-point noise from its unit conversion.
 fn rounded(value: f64) -> String {
     number((1e6 * value).round() / 1e6)
 }

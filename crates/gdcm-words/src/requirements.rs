@@ -16,11 +16,11 @@ use crate::requirement_grid::level_text;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text};
 
-/// Heading of the columns with the modulus of a pole.
+/// Heading for the columns with a pole's modulus.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
 /// Tabulates every on-axis bandwidth and phase delay, with cautions; with the level if boundaries
-/// give levels for any of the axes.
+/// give levels for any axis.
 pub fn bandwidth_table(
     requirements: &Requirements,
     dataset: &Dataset,
@@ -64,7 +64,7 @@ pub fn bandwidth_table(
     table
 }
 
-/// Whether boundaries give levels for any of the axes with a finding.
+/// Returns whether boundaries give levels for any axis with a finding.
 pub fn has_levels(requirements: &Requirements, levels: &LevelBoundaries) -> bool {
     requirements
         .bandwidth
@@ -104,8 +104,8 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates the modes of a condition: identified, physics, and physics with the study's couplings,
-/// if any.
+/// Tabulates a condition's modes: identified, physics, and physics with the study's couplings, if
+/// any.
 pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table {
     let modes: Vec<&ModeFinding> = requirements
         .modes
@@ -168,7 +168,7 @@ fn mode_row(mode: &ModeFinding) -> Vec<String> {
     cells
 }
 
-/// Formats the modulus, damping ratio and period of a mode; dashes for missing values.
+/// Formats a mode's modulus, damping ratio and period; dashes for missing values.
 fn mode_cells(mode: Option<&ModeNumbers>) -> [String; 3] {
     [
         decimals_or_dash(
@@ -245,7 +245,7 @@ fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
     ]
 }
 
-/// Adds rows for the identified models. These are the reference of the other models, so that only
+/// Adds rows for the identified models. These are the reference for the other models, so that only
 /// their time histories have results.
 fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     let role = RequirementRole::Identified;
@@ -266,8 +266,8 @@ fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     }
 }
 
-/// Returns the summary of a row of [`summary_table`]; `None` for the identified model, which is the
-/// reference of the others.
+/// Returns the summary for a row in [`summary_table`]; `None` for the identified model, which is
+/// the reference for the others.
 pub fn summary_of_row<'a>(
     requirements: &'a Requirements,
     row: &[String],

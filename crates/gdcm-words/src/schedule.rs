@@ -62,8 +62,8 @@ pub fn schedule_caution_text(
     }
 }
 
-/// Describes the longest delay of a channel, and the number of other conditions with a delay:
-/// "delay of output NX: 5.3 ms in condition 4".
+/// Describes a channel's longest delay, and counts the other conditions with a delay: "delay of
+/// output NX: 5.3 ms in condition 4".
 pub fn delayed_channel_text(delayed: &DelayedChannel, dataset: &Dataset) -> String {
     let side = match delayed.channel {
         Channel::Input(_) => "input",

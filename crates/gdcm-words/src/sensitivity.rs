@@ -1,4 +1,4 @@
-//! Sentences about the cost of constraints: by their sensitivity, and by solving without them.
+//! Sentences about what constraints cost: by their sensitivity, and by solving without them.
 
 use gdcm_method::correction::Quantity;
 use gdcm_method::correction::channels::pair_name;
@@ -6,8 +6,8 @@ use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity};
 use gdcm_method::correction::toggles::Toggle;
 use gdcm_model::units::number;
 
-/// Describes the sensitivity: the constraint, and the change that would lower the objective by
-/// how much.
+/// Describes the sensitivity: the constraint, a change to it, and how much that would lower the
+/// objective.
 pub fn sensitivity_text(
     sensitivity: &Sensitivity,
     inputs: &[String],
@@ -70,8 +70,7 @@ fn delay_change_words(sensitivity: &Sensitivity, step: &str) -> String {
     }
 }
 
-/// Describes the cost of constraining the entry: the present cost if it is constrained,
-/// otherwise the cost that would result.
+/// Describes what constraining the entry costs now or, if it is not constrained, would cost.
 pub fn toggle_text(toggle: &Toggle, inputs: &[String], outputs: &[String]) -> String {
     let pair = pair_name(toggle.pair, inputs, outputs);
     // `+ 0.0`: no change would otherwise be formatted as -0.0.

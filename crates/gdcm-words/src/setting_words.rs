@@ -1,32 +1,32 @@
-//! Captions, help texts and meanings of the choices of every setting, for the window and the
-//! command line.
+//! Captions, help texts and meanings of choices for every setting, for the window and the command
+//! line.
 
 use gdcm_study::decisions::setting::Setting;
 
-/// Texts of a setting.
+/// A setting's texts.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingWords {
-    /// Key of the setting in files.
+    /// The setting's key in files.
     key: &'static str,
     /// Text in front of the control; empty where there is none.
     pub caption: &'static str,
-    /// Accessible name of the control.
+    /// The control's accessible name.
     pub label: &'static str,
     /// Description in one sentence.
     pub help: &'static str,
-    /// Accessible names of the lower and the upper end of a range.
+    /// Accessible names for a range's lower and upper end.
     pub ends: [&'static str; 2],
-    /// Meaning of each choice, in the order of the choices.
+    /// What each choice means, in the setting's order.
     pub meanings: &'static [&'static str],
 }
 
-/// Returns the texts of a setting.
+/// Returns a setting's texts.
 pub fn setting_words(setting: &Setting) -> &'static SettingWords {
     let words = SETTING_WORDS.iter().find(|words| words.key == setting.key);
     words.unwrap_or(&NO_WORDS)
 }
 
-/// Fields that most settings share, and the texts of an unknown setting.
+/// Fields that most settings share, and the texts for an unknown setting.
 const NO_WORDS: SettingWords = SettingWords {
     key: "",
     caption: "",

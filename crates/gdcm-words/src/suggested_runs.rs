@@ -89,8 +89,8 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
     }
 }
 
-/// Returns a template of the runs for a dataset file: for each parameter a physics model to complete,
-/// and the declaration of the parameters at the top level.
+/// Returns a template for the runs in a dataset file: for each parameter a physics model to
+/// complete, and the parameters' declaration at the top level.
 pub fn run_template(suggestions: &[SuggestedRuns]) -> String {
     let mut declared = Vec::new();
     let mut models = Vec::new();

@@ -2,12 +2,12 @@
 
 use gdcm_model::units::without_sign_of_zero;
 
-/// A table of strings under headings. Headings name quantity and unit (`airspeed [kt]`), so that a
-/// table is self-contained.
+/// A table with a title and headings; all cells are strings. Headings name quantity and unit
+/// (`airspeed [kt]`), so that a table is self-contained.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
     pub title: String,
-    /// Headings of the columns, with units.
+    /// Column headings, with units.
     pub columns: Vec<String>,
     /// The rows, with one cell for each column; a cell without a value is empty.
     pub rows: Vec<Vec<String>>,
@@ -63,7 +63,7 @@ impl Table {
         text
     }
 
-    /// Returns the width of a column in characters, including its heading.
+    /// Returns a column's width in characters, including its heading.
     fn width(&self, column: usize) -> usize {
         std::iter::once(&self.columns)
             .chain(&self.rows)
@@ -72,7 +72,7 @@ impl Table {
             .unwrap_or(0)
     }
 
-    /// Returns whether a column has nonempty cells and all of them are numbers.
+    /// Returns whether a column has nonempty cells, all of which are numbers.
     pub fn has_numbers(&self, column: usize) -> bool {
         let cells: Vec<&str> = self
             .rows
@@ -84,7 +84,7 @@ impl Table {
     }
 }
 
-/// A column of a table formatted as text.
+/// A column in a table formatted as text.
 struct TextColumn {
     /// Width in characters.
     width: usize,
@@ -93,7 +93,7 @@ struct TextColumn {
 }
 
 impl TextColumn {
-    /// Pads a cell to the width of the column.
+    /// Pads a cell to the column's width.
     fn aligned(&self, cell: &str) -> String {
         // Padded by hand, because a width in a format string is limited to 65535.
         let padding = " ".repeat(self.width - cell.chars().count());

@@ -1,4 +1,4 @@
-//! Comparisons of time histories within tolerances, as tables (M17.2).
+//! Tables that compare time histories within tolerances (M17.2).
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, Toleran
 
 use crate::table::Table;
 
-/// Tabulates the share of time inside each tolerance over the records of each condition, for every
+/// Tabulates the share of time inside each tolerance over each condition's records, for every
 /// model.
 pub fn share_table(histories: &TimeHistories) -> Table {
     let mut columns = ["condition", "records", "quantity"]
@@ -48,7 +48,7 @@ pub(crate) fn cost_heads(histories: &TimeHistories) -> Vec<String> {
     heads
 }
 
-/// Formats `J_rms` of a model, and Theil's coefficient for every output.
+/// Formats a model's `J_rms`, and Theil's coefficient for every output.
 pub(crate) fn cost_cells(
     histories: &TimeHistories,
     condition: ConditionId,
@@ -89,8 +89,8 @@ pub fn history_cost_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Tabulates the records of a condition for every tolerance: largest excess of each model, and its
-/// time. Rows in which every model stays inside, with the correct trend off-axis, are omitted and
+/// Tabulates a condition's records for every tolerance: each model's largest excess, and its time.
+/// Rows in which every model stays inside, with the correct trend off-axis, are omitted and
 /// counted.
 pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table {
     let mut columns = ["record", "quantity"].map(str::to_owned).to_vec();
@@ -139,7 +139,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     table
 }
 
-/// Returns the result of the model in a role, for a tolerance row.
+/// Returns the result for the model in a role, in a tolerance row.
 fn finding_of_role<'a>(
     models: &[&'a HistoryFinding],
     role: RequirementRole,
@@ -156,7 +156,7 @@ fn is_exceptional(finding: &ToleranceFinding) -> bool {
     finding.largest_excess > 0.0 || finding.trend == Some(Trend::Opposite)
 }
 
-/// Describes the weights of the outputs in `J_rms`, and the outputs excluded from it.
+/// Describes the output weights in `J_rms`, and the outputs excluded from it.
 pub fn output_weights_text(histories: &TimeHistories) -> String {
     let mut excluded: BTreeSet<&str> = BTreeSet::new();
     for finding in &histories.records {

@@ -1,4 +1,4 @@
-//! Sentences and tables about the uncertainty of results (M13).
+//! Sentences and tables about uncertainty in the results (M13).
 
 use gdcm_method::uncertainty::bar::BarRemark;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
@@ -105,7 +105,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
-/// Formats a value with this number of decimals; the placeholder if it is missing.
+/// Formats a value with this many decimals; a placeholder if it is missing.
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
@@ -113,7 +113,7 @@ fn cell(figure: Option<f64>, decimals: usize) -> String {
     }
 }
 
-/// Formats the standard deviation of a logarithm in percent.
+/// Formats a logarithm's standard deviation in percent.
 fn percent(deviation: Option<f64>) -> String {
     cell(deviation.map(|deviation| 100.0 * deviation), 1)
 }
@@ -197,7 +197,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     table
 }
 
-/// Tabulates the scatter components of each on-axis net gain.
+/// Tabulates the scatter components for each on-axis net gain.
 pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",
@@ -234,7 +234,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     table
 }
 
-/// Formats the interval of the unexplained component: "1.2 to 5.6".
+/// Formats the unexplained component's interval: "1.2 to 5.6".
 fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
     match decomposition.unexplained_interval(level) {
         Some([low, high]) => format!("{} to {}", percent(Some(low)), percent(Some(high))),

@@ -1,5 +1,5 @@
-//! The verdict on the held responses, in words short enough for the narrowest window. The window,
-//! the printed summary and the report say the same.
+//! The verdict on the constrained responses, in words short enough for the narrowest window. The
+//! window, the printed summary and the report use the same words.
 
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::number_format::{NO_VALUE, counted};
@@ -36,7 +36,7 @@ pub fn phase_verdict_text(verdict: PhaseVerdict, study: &Study) -> String {
     }
 }
 
-/// Formats the band of a study: "0.5–12 rad/s".
+/// Formats a study's band: "0.5–12 rad/s".
 pub fn band_text(study: &Study) -> String {
     let band = study.settings.band;
     format!(
@@ -66,7 +66,7 @@ fn remaining_lag_text(lag: RemainingLag) -> String {
             format!("{} by ≈ {} ms", lag_verb(lag_ms), lag_number(lag_ms.abs()))
         }
         RemainingLag::Range([first_ms, last_ms]) => {
-            // The range of leads begins with its lag nearest to zero.
+            // A range of leads begins with the lag nearest to zero.
             let leads = first_ms > last_ms;
             let verb = if leads { "leads" } else { "lags" };
             let sign = if leads { -1.0 } else { 1.0 };
@@ -124,9 +124,9 @@ pub fn study_verdict_text(analysis: &Analysis) -> String {
     )
 }
 
-/// Tabulates the verdict on each condition, one row each: gains, phases, and the mean J of the held
-/// responses before and after the condition's own correction; models that are suggested to be
-/// rejected, if there are any.
+/// Tabulates the verdict on each condition, one row each: gains, phases, and mean J over the
+/// constrained responses before and after the condition's own correction; models that are suggested
+/// to be rejected, if there are any.
 pub fn verdict_table(analysis: &Analysis) -> Table {
     let study = &analysis.study;
     let suggests = study
@@ -188,7 +188,7 @@ fn without_result_cells(name: String, why: String) -> Vec<String> {
     cells
 }
 
-/// Returns the number of physics models that are suggested to be rejected and not yet rejected.
+/// Counts the physics models that are suggested to be rejected and not yet rejected.
 fn open_suggestions(analysis: &Analysis, id: ConditionId) -> usize {
     let Some(result) = analysis.condition(id) else {
         return 0;

@@ -1,4 +1,4 @@
-//! Standard deviations of a model's responses (M14.5).
+//! Computes standard deviations for a model's responses (M14.5).
 //!
 //! ```text
 //! var Re(dH/H), Im(dH/H) = h' Cov h, h the real or imaginary part of the gradient of ln H_oi,
@@ -8,7 +8,7 @@
 //!     |G_b/G| the fed-back share of the response (M14.17)
 //! ```
 //!
-//! The factor 2 was measured: with it, 95 % bands hold 95 % of the true curves.
+//! The factor 2 was measured: with it, 95 % of the true curves lie within 95 % bands.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -21,14 +21,14 @@ use super::feedback::Feedback;
 use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::schur_model::SchurModel;
 
-/// Half-width of a two-sided 95 % confidence interval, in standard deviations.
+/// Half-width, in standard deviations, that gives a two-sided 95 % confidence interval.
 pub const TWO_SIDED_95: f64 = 1.96;
-/// Factor on the variances from the fit and from the order, found by measurement (M14.5).
+/// Factor on the variance, found by measurement (M14.5).
 pub(crate) const MEASURED_FACTOR: f64 = 2.0;
-/// Maximum reported standard deviation, in neper and radians.
+/// Largest standard deviation that is reported, in neper and radians.
 pub(crate) const UNKNOWN: f64 = 1e3;
 
-/// A model, and the causes of its uncertainty besides the fit.
+/// A model, with what makes it uncertain besides the fit.
 pub(crate) struct BandModels<'a> {
     pub(crate) model: &'a SchurModel,
     /// Models with neighbouring orders.
@@ -36,15 +36,15 @@ pub(crate) struct BandModels<'a> {
     pub(crate) feedback: Option<&'a Feedback>,
 }
 
-/// Standard deviations of a single response over frequency.
+/// Standard deviations over frequency for a single response.
 struct PairBands {
     sd_db: Vec<f64>,
     sd_deg: Vec<f64>,
 }
 
 impl BandModels<'_> {
-    /// Computes the standard deviations of all responses at `omegas` \[rad/s\]; `None` for fewer
-    /// than two frequencies.
+    /// Computes all responses' standard deviations at `omegas` \[rad/s\]; `None` for fewer than two
+    /// frequencies.
     pub(crate) fn bands(
         &self,
         covariance: &ParameterCovariance,
@@ -68,7 +68,6 @@ impl BandModels<'_> {
         ModelBands::new(omegas.to_vec(), sd_db, sd_deg).ok()
     }
 
-    /// Computes the standard deviations of a single response.
     fn pair_bands(
         &self,
         covariance: &ParameterCovariance,
@@ -112,7 +111,7 @@ impl BandModels<'_> {
     }
 }
 
-/// Responses of a model at a frequency, with the factors of their gradients.
+/// A model's responses at a frequency, with the factors in their gradients.
 struct ResponsePoint {
     omega: f64,
     /// `H`, outputs x inputs.
@@ -121,7 +120,8 @@ struct ResponsePoint {
     output_resolvent: DMatrix<Complex<f64>>,
     /// `R B`, n x inputs.
     states: DMatrix<Complex<f64>>,
-    /// Mean squares of `Re ln(H_n'/H_n)` (real part) and `Im ln(H_n'/H_n)` (imaginary part).
+    /// Over the neighbouring orders n', the mean square of `Re ln(H_n'/H_n)` (real part) and of `Im
+    /// ln(H_n'/H_n)` (imaginary part).
     order_variance: DMatrix<Complex<f64>>,
 }
 

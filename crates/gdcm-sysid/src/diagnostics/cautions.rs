@@ -11,10 +11,10 @@ use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::response_estimate::TRUSTED_COHERENCE;
 use crate::spectra::signal_names::listed;
 
-/// Recommended minimum record length, in periods at the lower band end (M14.12).
+/// Recommended record length, in periods at the lower band end (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
 
-/// A doubt about the model or its parts.
+/// A doubt about the identified model, with its code and a text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IdentificationCaution {
     /// A doubt about the records themselves.
@@ -49,7 +49,7 @@ pub enum IdentificationCaution {
         "the inputs were not moved independently (condition number {condition:.0}): sweep them one after another"
     )]
     MovedTogether {
-        /// Median condition number of the spectral matrix of the inputs.
+        /// Median condition number of the inputs' spectral matrix.
         condition: f64,
     },
     /// No input moves any output at an end of the band.
@@ -61,7 +61,7 @@ pub enum IdentificationCaution {
     BandNotShown {
         /// The requested band \[rad/s\].
         band: [f64; 2],
-        /// The part of the band in which the records show a response \[rad/s\].
+        /// The narrower band in which the records show a response \[rad/s\].
         shown: [f64; 2],
     },
     /// An output vibrates above the band; a lower cut-off was used before the projections.
@@ -71,7 +71,7 @@ pub enum IdentificationCaution {
     )]
     Vibration {
         signal: Signal,
-        /// Share of the variance of the output above the cut-off \[%\].
+        /// Share of the output's variance above the cut-off \[%\].
         percent: f64,
         /// Cut-off frequency \[rad/s\].
         cut_off: f64,
@@ -84,18 +84,18 @@ pub enum IdentificationCaution {
     Inadequate {
         /// Cost per degree of freedom; 1 is adequate.
         cost: f64,
-        /// Name of the record with the largest residual.
+        /// The record with the largest residual, by name.
         record: String,
         /// The output with the largest residual.
         signal: Signal,
     },
-    /// The residual of a record is larger than the noise.
+    /// A record's residual is larger than the noise.
     #[error(
         "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: \
         another trim, a large amplitude, a gust. Consider leaving the record out"
     )]
     UnlikeRecord {
-        /// Index of the record, counted from 0.
+        /// Record index, from 0.
         record: usize,
         name: String,
         /// Cost per degree of freedom; 1 is adequate.
@@ -106,18 +106,18 @@ pub enum IdentificationCaution {
     Contradiction {
         /// The contradicting record, or both records.
         records: Vec<ContradictingRecord>,
-        /// The larger `F` of the records; 1 is agreement.
+        /// `F`, the larger one if two records are named; 1 is agreement.
         contrast: f64,
     },
     /// The feedback carried gusts and noise into the inputs.
     #[error("{}", feedback_text(*level, *share, *coherence))]
     Feedback {
         level: FeedbackLevel,
-        /// Median of `|G_b / G|`, the share of the measured response that is fed back.
+        /// Median `|G_b / G|`, the fed-back share of the measured response.
         share: f64,
-        /// Median of `|G_b|^2` over its variance.
+        /// Median `|G_b|^2` over its variance.
         significance: f64,
-        /// Largest median partial coherence of an input; below 0.6, no input was swept.
+        /// Median partial coherence of the most coherent input; below 0.6, no input was swept.
         coherence: f64,
     },
     /// The model departs from the measured points.
@@ -132,7 +132,7 @@ pub enum IdentificationCaution {
         input: Signal,
         /// Lower and upper frequency \[rad/s\].
         band: [f64; 2],
-        /// Mean squared distance over the variance of the points; 12 is the limit.
+        /// Mean squared distance over the points' variance; 12 is the limit.
         strength: f64,
     },
     /// The criterion still falls at the highest order tried.
@@ -155,15 +155,14 @@ pub enum IdentificationCaution {
         excitation"
     )]
     HeldOut {
-        /// Names of the held-out records.
         records: Vec<String>,
-        /// Cost per degree of freedom of the model as fitted.
+        /// Cost per degree of freedom, with the model as fitted.
         raw: f64,
-        /// Cost per degree of freedom with the model free to move within its uncertainty.
+        /// Cost per degree of freedom, with the model free to move within its uncertainty.
         normalised: f64,
     },
-    /// The records were reweighted by their noise; the value is the ratio of the largest to the
-    /// smallest cost per degree of freedom before reweighting.
+    /// The records were weighted by their own noise; the value is the ratio between the largest and
+    /// the smallest cost per degree of freedom before.
     #[error(
         "the noise of the records differs by a factor of {0:.1}: the records were weighted \
         accordingly"
@@ -184,13 +183,14 @@ pub enum IdentificationCaution {
         /// Highest spectral line used \[rad/s\].
         highest: f64,
     },
-    /// Output and input of each response that is not identified.
+    /// Responses that are not identified, each as output and input.
     #[error("{} not identified: the standard deviation exceeds 3 dB", responses_are(.0))]
     PairsNotIdentified(Vec<[Signal; 2]>),
 }
 
 impl IdentificationCaution {
-    /// Returns whether the effects of some inputs cannot be separated.
+    /// Returns whether some inputs were moved only together, so that their effects cannot be
+    /// separated.
     pub(crate) fn is_of_collinear_inputs(&self) -> bool {
         matches!(
             self,
@@ -198,13 +198,12 @@ impl IdentificationCaution {
         )
     }
 
-    /// Returns whether another caution is a mere consequence of this one.
+    /// Returns whether `other` is a mere consequence.
     ///
-    /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
-    /// is reversed, no input seems to be swept in the mean over the records. The measured points are
-    /// means over records that contradict each other, which no model follows. Spikes enlarge the
-    /// residual of their record and are seen above the band; a delay or a sign that is found beside
-    /// them is a fault of its own.
+    /// A contradicting record's residual is not due to its noise; and if a channel's sign is
+    /// reversed, no input seems to be swept in the mean over the records. No model follows measured
+    /// points that are means over contradicting records. Spikes enlarge their record's residual and
+    /// are visible above the band; a delay or a sign that is found beside them is a separate fault.
     fn explains(&self, other: &Self) -> bool {
         match self {
             Self::Contradiction { records, .. } => match other {
@@ -304,12 +303,12 @@ impl IdentificationCaution {
     }
 }
 
-/// Returns whether the fault of a record is a reversed sign.
+/// Returns whether a record's most likely fault is a reversed sign.
 fn has_turned_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }
 
-/// Returns the code of a record's fault.
+/// Returns the caution code for a record's fault.
 fn fault_code(record: &ContradictingRecord) -> &'static str {
     match &record.fault {
         Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
@@ -318,7 +317,7 @@ fn fault_code(record: &ContradictingRecord) -> &'static str {
     }
 }
 
-/// Returns the code of the fault if it is the same whichever record is wrong.
+/// Returns the caution code for the fault, if it is the same whichever record is wrong.
 fn common_code(records: &[ContradictingRecord]) -> &'static str {
     let Some(code) = records.first().map(fault_code) else {
         return "record";
@@ -344,7 +343,7 @@ fn common_channel(records: &[ContradictingRecord]) -> Option<&Signal> {
     }
 }
 
-/// Lists the ends of the band without a visible response: `below 0.80 rad/s and above 8.0 rad/s`.
+/// Lists the band ends without a visible response: `below 0.80 rad/s and above 8.0 rad/s`.
 fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
     let mut ends = Vec::new();
     if shown[0] > band[0] {
@@ -398,7 +397,7 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
     }
 }
 
-/// Describes the effect of the feedback, and the remedy.
+/// Describes what the feedback does to the model, and the remedy.
 fn feedback_text(level: FeedbackLevel, share: f64, coherence: f64) -> String {
     let percent = 100.0 * share;
     let remedy = "Sweep with a larger amplitude, or specify the recorded reference that drove the loop \

@@ -1,4 +1,4 @@
-//! Gusts and noise that the feedback brings into the measured response (M14.14).
+//! Measures gusts and noise that feedback brings into the measured response (M14.14).
 //!
 //! ```text
 //! y_k = sum_{i = 1..p} (A_i y_{k-i} + B_i u_{k-i}) + B_0 u_k + e_k
@@ -20,9 +20,9 @@
 //! With feedback, gusts act on the inputs through the outputs, and the cost stays at 1 however
 //! wrong the model is.
 //!
-//! Step 6: where a sensor closes the loop and its noise is most of the residual, the best predictor
-//! is a simulation from the inputs, whose memory is as long as the slowest mode. The errors of a
-//! shorter predictor contain a part of the response itself, which then seems to be fed back.
+//! Step 6: where a sensor closes the loop and its noise dominates the residual, the best predictor
+//! is a simulation from the inputs, with a memory as long as the slowest mode. A shorter predictor
+//! leaves part of the response in its errors, which then seems to be fed back.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -37,7 +37,7 @@ use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::{ResponseEstimate, TRUSTED_COHERENCE};
 use crate::spectra::spectrum::{LineRange, Spectrum};
 
-/// Product of the predictor's sample time and the upper band end \[rad\].
+/// The predictor's sample time times the upper band end \[rad\].
 const STEP: f64 = 0.25;
 /// Minimum number of past samples in the predictor.
 const LEAST_PAST: usize = 6;
@@ -45,21 +45,21 @@ const LEAST_PAST: usize = 6;
 const MOST_PAST: usize = 40;
 /// Maximum number of past samples in the predictor that confirms a level.
 const LONG_PAST: usize = 200;
-/// Maximum number of unknowns for each output in the predictor that confirms a level.
+/// Maximum number of unknowns per output in the predictor that confirms a level.
 const LONG_UNKNOWNS: usize = 1000;
-/// Minimum ratio of the past of the confirming predictor to that of the first predictor.
+/// The confirming predictor has at least this many times the first predictor's past samples.
 const LONGER: f64 = 1.5;
-/// Minimum number of samples for each unknown in the predictor.
+/// Minimum number of samples per unknown in the predictor.
 const SAMPLES_AN_UNKNOWN: usize = 8;
-/// Ridge, relative to columns of unit length.
+/// Ridge for columns scaled to unit length.
 const RIDGE: f64 = 1e-6;
-/// Frequencies at which the responses are compared.
+/// Number of frequencies at which the responses are compared.
 const POINTS: usize = 16;
-/// Minimum `|G|` of a counted point, relative to the largest response of its output.
+/// Smallest `|G|` at which a point is counted, relative to its output's largest response.
 const LARGE: f64 = 0.03;
 /// `sd G_b / |G|` from which a point is not counted.
 const SURE: f64 = 0.4;
-/// Minimum share of counted points; below it all points are counted.
+/// Minimum share of counted points; with a lower share, all points are counted.
 const LEAST_SHARE: f64 = 0.05;
 /// Fed-back share from which the bands are widened (M14.17).
 const WIDENED: f64 = 0.04;
@@ -67,7 +67,7 @@ const WIDENED: f64 = 0.04;
 /// share.
 const ALIKE: f64 = 0.01;
 
-/// Minimum `b` and `z` of a feedback level.
+/// Smallest `b` and `z` for a feedback level.
 struct Threshold {
     share: f64,
     significance: f64,
@@ -81,17 +81,17 @@ const TOO_MUCH: Threshold = Threshold {
     share: 0.18,
     significance: 3.0,
 };
-/// `z` from which a model of records without a coherent input must not be used (M14.24).
+/// `z` from which a model must not be used if no input was swept (M14.14).
 const SIGNIFICANT_WITHOUT_SWEEP: f64 = SOME.significance;
 
 /// Noise and gusts fed back into the measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
-    /// `b`, the median of `|G_b / G|`.
+    /// `b`, the median `|G_b / G|`.
     pub share: f64,
-    /// `z`, the median of `|G_b|^2` over its variance; 0.7 without feedback.
+    /// `z`, the median `|G_b|^2` over its variance; 0.7 without feedback.
     pub significance: f64,
-    /// Largest median partial coherence of an input (M14.2); below 0.6, no input was swept.
+    /// Median partial coherence of the most coherent input (M14.2); below 0.6, no input was swept.
     pub coherence: f64,
     /// Frequencies \[rad/s\], ascending.
     omega: Vec<f64>,
@@ -99,14 +99,14 @@ pub struct Feedback {
     ratios: Vec<DMatrix<f64>>,
 }
 
-/// Effect of the feedback on a model.
+/// How much feedback harms a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeedbackLevel {
     /// No visible effect.
     None,
-    /// The models are wrong by tenths of a dB to 2 dB (M14.24).
+    /// The model is wrong by tenths of a dB to 2 dB (M14.24).
     Some,
-    /// The models must not be used.
+    /// The model must not be used.
     TooMuch,
 }
 
@@ -117,12 +117,12 @@ pub(crate) struct FeedbackRecords<'a> {
     pub(crate) lines: LineRange,
     /// Lower and upper band end \[rad/s\].
     pub(crate) band: [f64; 2],
-    /// Largest median partial coherence of an input.
+    /// Median partial coherence of the most coherent input.
     pub(crate) coherence: f64,
 }
 
 impl Feedback {
-    /// Returns the effect of the feedback on a model.
+    /// Returns how much the feedback harms a model.
     #[must_use]
     pub fn level(&self) -> FeedbackLevel {
         let is_without_sweep =
@@ -140,7 +140,7 @@ impl Feedback {
         self.share >= threshold.share && self.significance >= threshold.significance
     }
 
-    /// Returns `|G_b / G|` of a response at `omega` \[rad/s\], as the root mean square over three
+    /// Returns a response's `|G_b / G|` at `omega` \[rad/s\], as the root mean square over three
     /// points; 0 if the bands need no widening.
     pub(crate) fn ratio(&self, omega: f64, pair: (usize, usize)) -> f64 {
         if self.share < WIDENED {
@@ -189,7 +189,7 @@ impl Feedback {
         }
     }
 
-    /// Compares `G_b` with the response of the model (step 5).
+    /// Compares `G_b` with the model's response (step 5).
     fn compare(model: &SchurModel, fed_back: &ResponseEstimate, coherence: f64) -> Self {
         let moduli: Vec<DMatrix<f64>> = fed_back
             .points
@@ -218,15 +218,15 @@ pub(crate) fn is_swept(coherence: f64) -> bool {
     coherence >= TRUSTED_COHERENCE
 }
 
-/// Records of a common sample time, thinned for a predictor.
+/// Records with a common sample time, thinned for a predictor.
 struct ThinnedRecords<'a> {
     records: &'a FeedbackRecords<'a>,
     /// The segments used.
     segments: Vec<&'a Segment>,
-    /// Every `step`-th sample of each segment.
+    /// Every `step`-th sample in each segment.
     samples: Vec<DMatrix<f64>>,
     step: usize,
-    /// Sample time of the segments \[s\].
+    /// The segments' sample time \[s\].
     sample_time_s: f64,
     inputs: usize,
     outputs: usize,
@@ -257,8 +257,7 @@ impl<'a> ThinnedRecords<'a> {
         self.inputs + self.outputs
     }
 
-    /// Returns the number of past samples of a predictor that these records determine, at most
-    /// `most`.
+    /// Returns how many past samples a predictor from these records can have, at most `most`.
     fn past(&self, most: usize) -> usize {
         let samples: usize = self.samples.iter().map(DMatrix::ncols).sum();
         (samples / (SAMPLES_AN_UNKNOWN * self.channels()))
@@ -266,7 +265,7 @@ impl<'a> ThinnedRecords<'a> {
             .max(LEAST_PAST)
     }
 
-    /// Measures the feedback with a predictor of `past` samples (steps 1 to 5).
+    /// Measures the feedback with a predictor from `past` samples (steps 1 to 5).
     fn measure(
         &self,
         past: usize,
@@ -289,7 +288,7 @@ impl<'a> ThinnedRecords<'a> {
     }
 }
 
-/// `G_b` of a response at a frequency, compared with `G`.
+/// A response's `G_b` at a frequency, compared with its `G`.
 #[derive(Clone, Copy)]
 struct ComparedPoint {
     /// `|G_b / G|`.
@@ -332,8 +331,8 @@ fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<C
     }
 }
 
-/// Returns every `step`-th sample after subtraction of the means; columns are instants, rows are
-/// the inputs, then the outputs.
+/// Returns every `step`-th sample less the means; columns are instants, rows are the inputs, then
+/// the outputs.
 fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols();
     let outputs = segment.outputs.ncols();
@@ -352,7 +351,7 @@ fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     samples
 }
 
-/// Linear prediction of the outputs from past samples and the present inputs.
+/// Predicts the outputs linearly from past samples and the present inputs.
 struct Predictor {
     inputs: usize,
     past: usize,
@@ -361,7 +360,7 @@ struct Predictor {
 }
 
 impl Predictor {
-    /// Fits a predictor of `past` samples to all records (steps 1 and 2); `None` if they do not
+    /// Fits a predictor from `past` samples to all records (steps 1 and 2); `None` if they do not
     /// determine it.
     fn fit(records: &[DMatrix<f64>], inputs: usize, past: usize) -> Option<Self> {
         let channels = records.first()?.nrows();
@@ -415,7 +414,7 @@ impl Predictor {
         }
     }
 
-    /// Computes the prediction error `e_k` of a record at instant `k`.
+    /// Computes a record's prediction error `e_k` at instant `k`.
     fn error(&self, record: &DMatrix<f64>, k: usize) -> DVector<f64> {
         let channels = record.nrows();
         let mut error = record
@@ -437,7 +436,7 @@ impl Predictor {
         error
     }
 
-    /// Converts the spectral lines of the prediction errors to the effect of noise and gusts on the
+    /// Converts the prediction errors' spectral lines to the effect of noise and gusts on the
     /// outputs (step 3); `None` where the predictor is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();

@@ -1,4 +1,4 @@
-//! Uncertainty of an identified model and doubts about it (M14.5, M14.10 to M14.18).
+//! An identified model's uncertainty, and doubts about it (M14.5, M14.10 to M14.18).
 //!
 //! | question | files |
 //! |---|---|

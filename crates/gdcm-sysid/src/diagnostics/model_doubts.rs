@@ -17,15 +17,15 @@ use crate::spectra::spectrum::Spectrum;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
-/// A record is unlike the others if its cost per degree of freedom exceeds this multiple of the
-/// cost per degree of freedom over all records.
+/// A record is unlike the others if its cost per degree of freedom exceeds this many times that
+/// over all records.
 const UNLIKE: f64 = 1.5;
 /// Limits on the held-out cost per degree of freedom, with the model free to move within its
 /// uncertainty: up to the first, records are predicted well; above the second, they are not
 /// (M14.17).
 pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
-/// Maximum half-width of a window, relative to its centre, at which a point represents a single
-/// frequency.
+/// Largest half-width of a window, over its centre frequency, at which its point represents a
+/// single frequency.
 pub const NARROW_WINDOW: f64 = 0.6;
 /// Number of neighbouring points in a mean.
 const POINTS: usize = 5;
@@ -45,7 +45,7 @@ pub(crate) struct Diagnostics<'a> {
 /// The data that the model was fitted to.
 #[derive(Clone, Copy)]
 pub(crate) struct MeasuredData<'a> {
-    /// Spectral lines of the fitted records.
+    /// Spectral lines from the fitted records.
     pub(crate) spectra: &'a [Spectrum],
     /// The measured response.
     pub(crate) measured: &'a ResponseEstimate,
@@ -60,8 +60,8 @@ impl Diagnostics<'_> {
             .map_or_else(String::new, |record| record.name.clone())
     }
 
-    /// Returns cautions about costs beyond their limits: of all records, of each record and of the
-    /// held-out records.
+    /// Returns cautions about costs beyond their limits: over all records, in each record and over
+    /// the held-out records.
     pub(crate) fn adequacy(&self, fits: &RecordFits) -> Vec<IdentificationCaution> {
         let (held_out, fitted): (Vec<&RecordFit>, Vec<&RecordFit>) =
             fits.records.iter().partition(|fit| fit.held_out);
@@ -188,7 +188,7 @@ pub(crate) fn predict_points(
         .collect()
 }
 
-/// Returns the lines with the outputs of the model, `Y = G_model U`.
+/// Returns the lines with the model's outputs, `Y = G_model U`.
 fn predict_lines(model: &SchurModel, lines: &Spectrum) -> Spectrum {
     let mut outputs = lines.outputs.clone();
     for (k, omega) in lines.omega.iter().enumerate() {
@@ -201,7 +201,7 @@ fn predict_lines(model: &SchurModel, lines: &Spectrum) -> Spectrum {
     }
 }
 
-/// Distance of a model from its measured points (M14.17).
+/// How far a model is from its measured points (M14.17).
 ///
 /// ```text
 /// at the points inside the band whose window is no wider than 0.6 omega
@@ -210,7 +210,7 @@ fn predict_lines(model: &SchurModel, lines: &Spectrum) -> Spectrum {
 /// the model leaves the points where T > 12 and D > 0.12 (1 dB or 7 degrees)
 /// ```
 pub(crate) struct Departure {
-    /// Maximum of `T`.
+    /// Largest `T`.
     pub(crate) greatest: f64,
     /// The band in which the model departs from the points; `None` if it does not.
     pub(crate) band: Option<DepartureBand>,
@@ -221,11 +221,11 @@ pub(crate) struct Departure {
 pub(crate) struct DepartureBand {
     /// Lower and upper frequency \[rad/s\].
     pub(crate) ends: [f64; 2],
-    /// Maximum of `T` in the band.
+    /// Largest `T` in the band.
     pub(crate) strength: f64,
 }
 
-/// Distance of the model from a measured point.
+/// How far the model is from a measured point.
 struct PointDistance {
     omega: f64,
     /// `|G_model - G|^2 / var G`.
@@ -235,7 +235,8 @@ struct PointDistance {
 }
 
 impl Departure {
-    /// Measures the distance of a response; `predicted` holds the model at each measured point.
+    /// Measures a response's distance from its points; `predicted` holds the model's response at
+    /// each.
     pub(crate) fn measure(
         predicted: &[DMatrix<Complex<f64>>],
         measured: &ResponseEstimate,
@@ -267,7 +268,7 @@ impl Departure {
         departure
     }
 
-    /// Updates the maximum and the band with the means of `T` and `D` over neighbouring points.
+    /// Updates the maximum and the band with `T` and `D`, the means over neighbouring points.
     fn add(&mut self, near: &[PointDistance]) {
         let significance = near
             .iter()

@@ -1,4 +1,4 @@
-//! Records compared with each other: contradictions and their causes (M14.16).
+//! Compares records with each other: contradictions and their causes (M14.16).
 //!
 //! ```text
 //! G = sum G_r, V'GV = I, at the optimum before reweighing, which would hide the wrong record
@@ -14,8 +14,8 @@
 //!    the fault with the largest h^2/S; its size is -h/S
 //! ```
 //!
-//! A large change of the model when a record is left out does not show that the record is wrong: it
-//! may be the only record that excites an axis.
+//! If leaving a record out changes the model much, the record need not be wrong: it may be the only
+//! one that excites an axis.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -33,9 +33,10 @@ use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 use crate::spectra::spectrum::Spectrum;
 
-/// Minimum share `eps` of the information in a direction that a record must hold to be compared.
+/// Minimum share `eps` of a direction's information that a record must hold to be compared in that
+/// direction.
 const LEAST_KNOWN: f64 = 0.02;
-/// Maximum share `eps` of the information in a direction, so that the others hold some of it too.
+/// Largest share `eps` at which a record is compared, so that the others hold some information too.
 const MOST_KNOWN: f64 = 0.98;
 /// Eigenvalues of the information matrix `G` below this share of the largest are rounding errors.
 const ROUNDING: f64 = 1e-13;
@@ -44,36 +45,36 @@ const CONTRADICTS: f64 = 6.0;
 /// `F` above which a record contradicts the others if gusts are fed back, because gusts differ
 /// between flights.
 const CONTRADICTS_IN_GUSTS: f64 = 12.0;
-/// Ratio of the largest `F` to the second largest from which only the worst record is reported.
+/// Only the worst record is reported if its `F` is at least this many times the second largest.
 const ALONE: f64 = 1.5;
-/// A common delay of all outputs is preferred to another fault if it explains at least this share
+/// A delay common to all outputs is preferred to another fault if it explains at least this share
 /// of the largest explained cost.
 const AS_GOOD: f64 = 0.98;
 
 /// Contradiction between a record and the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordContrast {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     pub record: usize,
     /// `F`; 1 is agreement.
     pub contrast: f64,
 }
 
-/// Comparison of the records of a fit at its optimum.
+/// A fit's records, compared with each other at its optimum.
 pub(crate) struct RecordContrasts<'a> {
     likelihood: &'a Likelihood<'a>,
-    /// Lines of each segment in scaled units, not whitened.
+    /// Each segment's lines in scaled units, not whitened.
     spectra: &'a [Spectrum],
     fit: &'a Fit,
     systems: LocalSystems,
     whole: LocalSystem,
     /// `V`, with `V'GV = I`.
     root: DMatrix<f64>,
-    /// Contrast of each record, in ascending order of records; empty for a single record.
+    /// Contrast for each record, ascending by record; empty for a single record.
     pub(crate) contrasts: Vec<RecordContrast>,
 }
 
-/// `h` and `S` of a fault.
+/// `h` and `S` for a fault.
 #[derive(Clone, Copy)]
 struct FaultSums {
     h: f64,
@@ -165,7 +166,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Finds the fault that explains most of the residual of a record (step 3).
+    /// Finds the fault that explains most of a record's residual (step 3).
     pub(crate) fn fault(&self, record: usize, options: &Options) -> Option<RecordFault> {
         let faults = self.possible_faults(options);
         let sums = each(self.likelihood.executor, &faults, |fault| {
@@ -205,7 +206,7 @@ impl<'a> RecordContrasts<'a> {
                 0.0,
             ));
         }
-        // With a single input, its delay is equivalent to the opposite delay of all outputs.
+        // With a single input, its delay is equivalent to the opposite delay in all outputs.
         if inputs > 1 {
             for input in 0..inputs {
                 faults.push(RecordFault::Late(
@@ -223,7 +224,7 @@ impl<'a> RecordContrasts<'a> {
         faults
     }
 
-    /// Computes `h` and `S` of a fault in a record; `None` if they are not finite.
+    /// Computes `h` and `S` for a fault in a record; `None` if they are not finite.
     fn sums(&self, record: usize, fault: &RecordFault) -> Option<FaultSums> {
         let model = &self.fit.model;
         let resolvents = self.likelihood.resolvents(model);
@@ -276,7 +277,7 @@ fn contrast(
     Some(compared.iter().sum::<f64>() / (count * dispersion))
 }
 
-/// Returns the effect of a unit fault on the whitened residual, outputs x lines.
+/// Returns how a unit fault changes the whitened residual, outputs x lines.
 fn residual_effect(
     fault: &RecordFault,
     lines: &SpectralLines,

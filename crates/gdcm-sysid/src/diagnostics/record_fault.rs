@@ -1,4 +1,4 @@
-//! Record faults, found by a comparison with the other records (M14.16).
+//! Faults in a record, found by comparing it with the other records (M14.16).
 
 use std::fmt;
 
@@ -9,12 +9,12 @@ use gdcm_model::simulation::Signal;
 /// (M14.16).
 const NEAR_A_SIGN: f64 = 0.3;
 
-/// Fault of a record.
+/// A fault in a record's outputs or in one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordFault {
-    /// Delay of all outputs \[s\]; negative if they are early.
+    /// Delay common to all outputs \[s\]; negative if they are early.
     OutputsLate(f64),
-    /// Delay of a channel \[s\]; negative if it is early.
+    /// Delay in a channel \[s\]; negative if it is early.
     Late(Signal, f64),
     /// Factor by which an output has to be multiplied.
     Gain(Signal, f64),
@@ -30,7 +30,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns the correction of each channel; a factor near -1 becomes a mere sign change.
+    /// Returns the correction for each channel; a factor near -1 becomes a mere sign change.
     #[must_use]
     pub fn remedies(&self, outputs: &[Signal]) -> Vec<(Signal, ChannelRemedy)> {
         match self {
@@ -50,7 +50,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns the delay of a timing fault \[s\]; `None` for a wrong gain.
+    /// Returns the delay \[s\]; `None` for a wrong gain.
     #[must_use]
     pub fn delay_s(&self) -> Option<f64> {
         match self {
@@ -60,7 +60,6 @@ impl RecordFault {
     }
 }
 
-/// Returns the correction of a delay \[s\].
 fn delay_remedy(delay_s: f64) -> ChannelRemedy {
     ChannelRemedy {
         delay_s,
@@ -94,9 +93,9 @@ fn delay_text(delay_s: f64) -> String {
 /// A record that contradicts others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContradictingRecord {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     pub record: usize,
     pub name: String,
-    /// Most likely fault of the record, if it is the wrong one.
+    /// Most likely fault, if this is the wrong record.
     pub fault: Option<RecordFault>,
 }

@@ -6,14 +6,14 @@ use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::schur_model::SchurModel;
 
-/// Fit of the recommended model to a record.
+/// How well the recommended model fits a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordFit {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     pub record: usize,
     /// `J` per degree of freedom; 1 is adequate.
     pub cost: f64,
-    /// Number of real values in the lines, less the unknowns of the transients.
+    /// Number of real values in the lines, less the unknowns in the transients.
     pub freedom: usize,
     /// Whether the record was held out.
     pub held_out: bool,
@@ -27,22 +27,21 @@ pub(crate) struct HeldOutCost {
     pub(crate) normalised: f64,
 }
 
-/// Fit of a model to all records, each record and each output.
+/// How well a model fits all records, each record and each output.
 pub(crate) struct RecordFits {
-    /// Fits of the records that have degrees of freedom, in record order. The cost of a fitted
-    /// record is corrected for the number of parameters: `J_r / dof_r  N / (N - k)` (M14.13).
+    /// Fits for the records that have degrees of freedom, in record order. A fitted record's cost
+    /// is corrected for the parameter count: `(J_r / dof_r) N / (N - k)` (M14.13).
     pub(crate) records: Vec<RecordFit>,
-    /// `J` per degree of freedom of each output over the fitted records.
+    /// `J` per degree of freedom for each output, over the fitted records.
     pub(crate) outputs: Vec<f64>,
     /// `J` per degree of freedom over the fitted records.
     pub(crate) cost: f64,
-    /// Costs of the held-out records, if there are any.
+    /// Costs over the held-out records; `None` if no record is held out.
     pub(crate) held_out: Option<HeldOutCost>,
 }
 
 impl RecordFits {
-    /// Computes the fits of a model; `None` if a cost is not finite or there are no degrees of
-    /// freedom.
+    /// Computes a model's fits; `None` if a cost is not finite or there are no degrees of freedom.
     pub(crate) fn new(
         fitted: &Likelihood,
         held_out_records: &Likelihood,
@@ -93,7 +92,7 @@ fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCo
     Some(HeldOutCost { raw, normalised })
 }
 
-/// Computes the fit of each record that has degrees of freedom, in record order.
+/// Computes the fit to each record that has degrees of freedom, in record order.
 pub(crate) fn fits_of_records(
     likelihood: &Likelihood,
     model: &SchurModel,
@@ -133,8 +132,8 @@ fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
     }
 }
 
-/// Computes `J` per degree of freedom of each output: `sum |E_o|^2 / (Cv_oo / 2)` over its share of
-/// the degrees of freedom.
+/// Computes `J` per degree of freedom for each output: `sum |E_o|^2 / (Cv_oo / 2)` over its share
+/// of the degrees of freedom.
 fn output_costs(likelihood: &Likelihood, model: &SchurModel, parts: &[SegmentCost]) -> Vec<f64> {
     let outputs = model.c().nrows();
     let freedom = likelihood.freedom(model.order()) as f64 / outputs as f64;

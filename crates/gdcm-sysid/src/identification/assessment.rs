@@ -1,4 +1,4 @@
-//! Uncertainty of the recommended model, and doubts about it (M14.5, M14.6, M14.10).
+//! Assesses the recommended model: its uncertainty, and doubts about it (M14.5, M14.6, M14.10).
 
 use nalgebra::Complex;
 
@@ -23,28 +23,28 @@ use crate::likelihood::local_system::LocalSystems;
 use crate::likelihood::models_without_record::{ModelWithoutRecord, without_each_record};
 use crate::options::Options;
 
-/// Number of frequencies in the bands.
+/// Number of frequencies at which the bands are computed.
 const BAND_POINTS: usize = 60;
-/// Ratio of the upper end of the suggested band to the present upper end; the band is suggested if
+/// Ratio of the suggested upper band end to the present one; a narrower band is suggested if even
 /// the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 pub(super) const NOT_IDENTIFIED_DB: f64 = 3.0;
 
-/// Uncertainty of the recommended model.
+/// Covariance, bands and feedback for the recommended model.
 pub(super) struct Uncertainty {
     covariance: ParameterCovariance,
     /// The covariance from the lines as logged, if the fit used a reference (M14.15).
     logged: Option<ParameterCovariance>,
     pub(super) feedback: Option<Feedback>,
     pub(super) bands: ModelBands,
-    /// Indices of output and input of each response that is not identified.
+    /// Output and input index for each response that is not identified.
     pub(super) not_identified: Vec<(usize, usize)>,
 }
 
 impl Uncertainty {
-    /// Returns the covariance from the lines as logged: with a reference, the cost of the fit is no
-    /// measure of the uncertainty (M14.15).
+    /// Returns the covariance from the lines as logged: with a reference, the cost that was
+    /// minimised does not measure the uncertainty (M14.15).
     pub(super) fn as_logged(&self) -> &ParameterCovariance {
         self.logged.as_ref().unwrap_or(&self.covariance)
     }
@@ -265,8 +265,7 @@ impl Assessment<'_> {
     }
 }
 
-/// Returns the caution about gusts and noise that the feedback carried into the inputs; `None`
-/// without a visible effect.
+/// Returns a caution if the feedback carried gusts and noise visibly into the inputs.
 fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution> {
     let feedback = feedback?;
     let level = feedback.level();
@@ -281,7 +280,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
     })
 }
 
-/// Returns output and input of each response whose standard deviation in mid-band is too large.
+/// Returns the (output, input) pairs whose standard deviation in mid-band is too large.
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     let sd_db = bands.sd_db();
     let middle = bands.omega().len() / 2;

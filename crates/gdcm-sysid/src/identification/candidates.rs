@@ -1,4 +1,4 @@
-//! Laguerre poles and past windows, compared by the cost of their models (M14.3, M14.7).
+//! Compares Laguerre poles and past windows by the cost of their models (M14.3, M14.7).
 
 use std::collections::BTreeMap;
 
@@ -20,13 +20,13 @@ use crate::subspace::tried_orders::SPACING;
 
 /// Highest order at which poles and past windows are compared.
 const RANKING_ORDER: usize = 18;
-/// Number of pairs of pole and past window that propose models of all orders.
+/// Number of pairs (pole, past window) that propose models of all orders.
 const KEPT: usize = 2;
 /// Modes faster than this many times the upper band end are artefacts of discrete poles near -1.
 const FASTEST: f64 = 8.0;
-/// Share of the total progress that the candidates take.
+/// The candidates' share of the total progress.
 const SHARE: f64 = 0.2;
-/// Ridge of the predictor, relative to columns of unit length.
+/// Ridge for the predictor, whose columns are scaled to unit length.
 const RIDGE: f64 = 1e-8;
 
 /// CT-PBSID settings.
@@ -44,7 +44,7 @@ pub(crate) struct SubspaceSettings {
     pub(crate) longest_future: usize,
 }
 
-/// States proposed with a Laguerre pole and a past window, and the cost of their model.
+/// States proposed with a Laguerre pole and a past window, and what their model costs.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
     /// Laguerre pole \[rad/s\].
@@ -57,7 +57,7 @@ pub(crate) struct Candidate {
 }
 
 impl SubspaceSettings {
-    /// Returns the two pairs of pole and past window with the lowest costs, the lower first.
+    /// Returns the two cheapest pairs (pole, past window), the cheapest first.
     ///
     /// ```text
     /// 1  R for each Laguerre pole a
@@ -121,19 +121,19 @@ impl SubspaceSettings {
         .collect()
     }
 
-    /// Returns the model of an order without its modes far above the band.
+    /// Returns the candidate's model with `order` states, less its modes far above the band.
     fn slow_model(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
         without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
     }
 
-    /// Returns the model of an order, without its modes far above the band, for evaluation; `None`
-    /// if no mode remains.
+    /// Returns [`Self::slow_model`] as a [`SchurModel`], for computing costs; `None` if no mode
+    /// remains.
     fn evaluated_model(&self, subspace: &Subspace, order: usize) -> Option<SchurModel> {
         SchurModel::from_state_space(&self.slow_model(subspace, order)?)
     }
 }
 
-/// Comparison of Laguerre poles and past windows.
+/// Compares Laguerre poles and past windows.
 struct Ranking<'r> {
     settings: &'r SubspaceSettings,
     segments: &'r [Segment],
@@ -144,7 +144,7 @@ struct Ranking<'r> {
     longest_past: usize,
     /// Order at which models are compared.
     order: usize,
-    /// Share of the total progress that is reported for a step.
+    /// Share of the total progress per step.
     share: f64,
 }
 
@@ -176,7 +176,7 @@ impl<'r> Ranking<'r> {
         })
     }
 
-    /// Computes the candidates of the pole with this index.
+    /// Computes a candidate for every past window with the pole at this index.
     fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, Cancelled> {
         let executor = self.likelihood.executor;
         let poles = &self.settings.poles;
@@ -201,7 +201,7 @@ impl<'r> Ranking<'r> {
         Ok(candidates)
     }
 
-    /// Computes the candidate of a pole and a past window; `None` if it proposes no model.
+    /// Computes the candidate for a pole and a past window; `None` if it proposes no model.
     fn candidate(&self, factor: &TriangularFactor, pole: f64, past: usize) -> Option<Candidate> {
         let shape = SubspaceShape {
             inputs: self.inputs,

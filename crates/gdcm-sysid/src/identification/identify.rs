@@ -34,10 +34,10 @@ const REFINED: &str = "CT-PBSID, refined";
 /// Method name without refinement.
 const UNREFINED: &str = "CT-PBSID";
 
-/// Identified models of a flight condition, in record units, and their quality.
+/// A flight condition's identified models, in record units, and their quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
-    /// The recommended model: CT-PBSID, refined, with the standard deviations of its responses.
+    /// The recommended model: CT-PBSID, refined, with standard deviations for its responses.
     pub refined: Model,
     /// CT-PBSID without refinement, with the same order or, if there is none, the next lower.
     pub unrefined: Model,
@@ -46,7 +46,7 @@ pub struct Identification {
     pub bundle: Vec<Model>,
     /// The response estimated from the records without a model.
     pub measured: ResponseEstimate,
-    /// Poles of the recommended model.
+    /// The recommended model's poles.
     pub poles: Vec<PoleEstimate>,
     /// Poles of the unrefined models at all orders, for the best Laguerre pole and past window.
     pub stabilisation: Vec<StabilisationPoint>,
@@ -54,13 +54,13 @@ pub struct Identification {
     pub laguerre_pole: f64,
     /// Best past window.
     pub past: usize,
-    /// BIC of each refined order, ascending by order.
+    /// BIC at each refined order, ascending by order.
     pub criteria: Vec<(usize, f64)>,
-    /// Fit of each refined order, ascending by order.
+    /// Fit at each refined order, ascending by order.
     pub order_fits: Vec<OrderFit>,
     /// `J / (N - k)` over the fitted records; 1 is adequate.
     pub cost: f64,
-    /// `J` per degree of freedom over the held-out records, if there are any.
+    /// `J` per degree of freedom over the held-out records; `None` if no record is held out.
     pub held_out_cost: Option<f64>,
     /// `J` per degree of freedom over the held-out records, with the model free to move within its
     /// uncertainty: up to 1.3 good, above 2 not predicted (M14.17).
@@ -69,23 +69,22 @@ pub struct Identification {
     pub feedback: Option<Feedback>,
     /// Contradiction between each fitted record and the others; empty for a single record (M14.16).
     pub contrasts: Vec<RecordContrast>,
-    /// Fit of every used record, in record order.
+    /// Fit for every used record, in record order.
     pub record_fits: Vec<RecordFit>,
-    /// Cost per degree of freedom of each output, over the fitted records.
+    /// `J` per degree of freedom for each output, over the fitted records.
     pub output_costs: Vec<f64>,
     /// Comparison of the recommended model with the held-out records in time.
     pub validation: Option<Validation>,
-    /// Parts of every record that were used.
+    /// The parts used from every record.
     pub record_uses: Vec<RecordUse>,
-    /// Indices of output and input of each response with a standard deviation over 3 dB in the
-    /// middle of the band.
+    /// Indices (output, input) of the responses whose standard deviation exceeds 3 dB in mid-band.
     pub not_identified: Vec<(usize, usize)>,
     /// Doubts about records and models, each with a code.
     pub cautions: Vec<IdentificationCaution>,
-    /// What the records say about the recommended model, to plan further flights; `None` if it
-    /// cannot be computed.
+    /// Fisher information from the records about the recommended model, to plan further flights;
+    /// `None` if it cannot be computed.
     pub information: Option<Arc<FlightInformation>>,
-    /// The sweeps that identify the responses in `not_identified`.
+    /// Further sweeps that would identify the responses in `not_identified`.
     pub advice: Vec<SweepAdvice>,
 }
 
@@ -187,8 +186,8 @@ impl Models<'_> {
         })
     }
 
-    /// Computes what the records say about the recommended model; with a reference, what the lines
-    /// as logged say.
+    /// Computes the records' Fisher information about the recommended model; with a reference, from
+    /// the lines as logged.
     fn information(
         &self,
         refinement: &Refinement,
@@ -207,7 +206,7 @@ impl Models<'_> {
         })
     }
 
-    /// Returns the sweeps that identify these responses (output, input).
+    /// Returns further sweeps that would identify these responses (output, input).
     fn advice(
         &self,
         information: Option<&FlightInformation>,
@@ -232,7 +231,7 @@ impl Models<'_> {
         self.model(name, method, model, None)
     }
 
-    /// Returns the models of neighbouring orders, then the models fitted without one record each.
+    /// Returns the models of neighbouring orders, then those fitted without one record each.
     fn bundle(&self, refinement: &Refinement, without: &[ModelWithoutRecord]) -> Vec<Model> {
         let mut bundle = Vec::new();
         for neighbour in &refinement.neighbours {

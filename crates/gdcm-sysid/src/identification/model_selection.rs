@@ -1,4 +1,4 @@
-//! From the models that CT-PBSID proposes to the recommended model (M14.7).
+//! Selects the recommended model from those that CT-PBSID proposes (M14.7).
 
 use std::collections::BTreeMap;
 
@@ -27,8 +27,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// Returns the unrefined model of an order or, if there is none, of the next lower or else the
-    /// lowest order.
+    /// Returns the unrefined model with `order` states, else that of the next lower order, else
+    /// that of the lowest.
     pub(crate) fn unrefined(&self, order: usize) -> Option<&Fit> {
         let lower = self.starts.range(..=order).next_back();
         let nearest = lower.or_else(|| self.starts.iter().next());
@@ -36,18 +36,18 @@ impl Proposal {
     }
 }
 
-/// The refined model of the chosen order, and the search for that order.
+/// The refined model at the chosen order, and the search for that order.
 pub(crate) struct Refinement<'a> {
     /// The orders that were compared.
     pub(crate) search: OrderSearch<'a>,
-    /// Models of the nearest orders whose criterion is close to that of the chosen order.
+    /// Models of the nearest orders whose BIC is within 10 % of the chosen order's.
     pub(crate) neighbours: Vec<SchurModel>,
     /// The recommended model.
     pub(crate) fit: Fit,
-    /// The model before the reweighting, if the records were reweighted: the minimum of the cost
-    /// with the measured noise.
+    /// The model refined without the records' own noise factors; `None` if no record was
+    /// reweighted.
     pub(crate) before_reweighing: Option<Fit>,
-    /// The weights of the cost that `fit` minimises.
+    /// The weights for which `fit` was refined.
     pub(crate) weights: NoiseWeights<'a>,
     /// Caution about the changed weights.
     pub(crate) caution: Option<IdentificationCaution>,

@@ -1,5 +1,5 @@
-//! The weights of the lines: noise measured without a model, then from a model's residuals, with a
-//! factor for each record (M14.4, M14.20).
+//! Line weights: from noise measured without a model, then from a model's residuals, with a factor
+//! for each record (M14.4, M14.20).
 
 use super::prepared_data::PreparedData;
 use super::search_records::search_segments;
@@ -9,8 +9,8 @@ use crate::likelihood::descent::Fit;
 use crate::likelihood::noise_covariance::NoiseCovariance;
 use crate::likelihood::residual_noise::residual_noise;
 
-/// Maximum ratio of the largest to the smallest cost per degree of freedom at which records keep
-/// their weights.
+/// Records keep their weights up to this ratio between their largest and smallest cost per degree
+/// of freedom.
 const ALIKE: f64 = 1.5;
 
 /// The cost with weights from a noise covariance.
@@ -18,13 +18,13 @@ const ALIKE: f64 = 1.5;
 pub(crate) struct NoiseWeights<'a> {
     /// The cost over the fitted records.
     pub(crate) likelihood: Likelihood<'a>,
-    /// The same with equal factors for all records.
+    /// The same cost with equal factors for all records.
     pub(crate) without_factors: Likelihood<'a>,
-    /// Ratio of the largest to the smallest noise power of records, if their factors differ.
+    /// Ratio between the largest and the smallest factor; `None` if all records have the same.
     pub(crate) ratio: Option<f64>,
-    /// Indices of the segments used.
+    /// Indices of the segments in `likelihood`.
     segments: Vec<usize>,
-    /// The noise of the model's residuals; `None` if it was measured without a model.
+    /// The noise in the model's residuals; `None` if the noise was measured without a model.
     noise: Option<NoiseCovariance>,
 }
 
@@ -60,7 +60,7 @@ impl<'a> NoiseWeights<'a> {
         })
     }
 
-    /// Computes the weights from the residuals of a model; `None` if the noise cannot be computed.
+    /// Computes the weights from a model's residuals; `None` if the noise cannot be computed.
     pub(crate) fn updated(&self, data: &PreparedData<'a>, fit: &Fit) -> Option<Self> {
         let noise = residual_noise(&self.likelihood, &fit.model, &fit.parts)?;
         let without_factors = weighed(data, &self.segments, &noise)?;
@@ -74,8 +74,8 @@ impl<'a> NoiseWeights<'a> {
         weights.with_factors(fit)
     }
 
-    /// Multiplies the noise power of each record by its cost per degree of freedom over the
-    /// geometric mean of all, if these differ by more than 1.5.
+    /// Multiplies each record's noise power by its cost per degree of freedom over their geometric
+    /// mean, if the largest cost exceeds 1.5 times the smallest.
     fn with_factors(self, fit: &Fit) -> Option<Self> {
         let parts = self.without_factors.parts(&fit.model)?;
         let fits = fits_of_records(&self.without_factors, &fit.model, &parts, false);
@@ -104,8 +104,8 @@ impl<'a> NoiseWeights<'a> {
     }
 }
 
-/// Whitens the lines of these segments with a noise covariance; `None` if it is not positive
-/// definite at a line.
+/// Whitens these segments' lines with a noise covariance; `None` if it is not positive definite at
+/// a line.
 fn weighed<'a>(
     data: &PreparedData<'a>,
     segments: &[usize],

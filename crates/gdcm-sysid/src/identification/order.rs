@@ -1,5 +1,5 @@
-//! The model order, from above (M14.19), by the Bayesian information criterion with estimated
-//! dispersion.
+//! Searches the model order from above (M14.19), by the Bayesian information criterion with
+//! estimated dispersion.
 //!
 //! ```text
 //! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters (no coordinates),
@@ -14,8 +14,8 @@
 //!    an unstable pole above the lines used is preferred to one with such a pole within 3 %
 //! ```
 //!
-//! The weights remain those of the top order: a model that lacks a mode would take it for noise, and
-//! hide it from BIC. Many records are searched by a part of them (`search_records`).
+//! The weights remain those of the top order: a model that lacks a mode would take it for noise,
+//! and hide it from BIC. With many records the search uses a part of them (`search_records`).
 
 use std::collections::BTreeMap;
 
@@ -37,10 +37,10 @@ const NEAR: f64 = 0.01;
 /// An order without a fast unstable pole is preferred if its criterion is worse by at most this
 /// share.
 const NEAR_UNSTABLE: f64 = 0.03;
-/// Neighbouring orders whose criterion exceeds that of the chosen order by more than this share say
-/// nothing about its uncertainty (M14.22).
+/// Neighbouring orders count as equally plausible while their criterion exceeds the chosen order's
+/// by at most this share (M14.5).
 const NEIGHBOUR: f64 = 0.1;
-/// Number of orders with a rising criterion after which the search ends.
+/// How many consecutive rises of the criterion end the search.
 const RISES: usize = 2;
 /// Number of channels above which states are removed in pairs.
 const SINGLE_CHANNELS: usize = 6;
@@ -49,33 +49,33 @@ const SINGLE_ORDER: usize = 8;
 
 /// The orders that were compared.
 pub(crate) struct OrderSearch<'a> {
-    /// Refined models with the weights of the top order.
+    /// Refined models by order, with the top order's weights.
     pub(crate) fits: BTreeMap<usize, Fit>,
-    /// BIC of each order.
+    /// BIC by order.
     pub(crate) criteria: BTreeMap<usize, f64>,
     /// The chosen order.
     pub(crate) order: usize,
     /// Whether the criterion still decreases at the highest available order.
     pub(crate) still_falls: bool,
-    /// The cost with the weights of the top order.
+    /// The cost with the top order's weights.
     pub(crate) weights: NoiseWeights<'a>,
 }
 
-/// Fit of the refined model of an order, with the weights of the order search.
+/// Fit of one order's refined model, with the weights from the order search.
 ///
-/// The values of different orders are comparable with one another. They differ slightly from the
-/// cost of the recommended model, whose weights are updated after the search.
+/// Values at different orders are comparable. They differ slightly from the recommended model's
+/// cost, because its weights are updated after the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrderFit {
     pub order: usize,
-    /// `J / (N - k)` over the fitted records of the search.
+    /// `J / (N - k)` over the records from which the order is searched.
     pub cost: f64,
-    /// `J` per degree of freedom over the held-out records, if there are any.
+    /// `J` per degree of freedom over the held-out records; `None` if no record is held out.
     pub held_out: Option<f64>,
 }
 
 impl OrderSearch<'_> {
-    /// Returns the fit of each refined order. Orders that were given up before their minimum are
+    /// Returns the fit at each refined order. Orders that were given up before their minimum are
     /// left out.
     pub(crate) fn order_fits(&self, data: &PreparedData) -> Vec<OrderFit> {
         let mut order_fits = Vec::new();
@@ -94,8 +94,8 @@ impl OrderSearch<'_> {
         order_fits
     }
 
-    /// Returns the order at which the search begins, that of the minimum criterion before any
-    /// refinement; `None` without models.
+    /// Returns the order at which the search begins: the least criterion before any refinement;
+    /// `None` without models.
     pub(crate) fn first(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<usize> {
         let mut criteria = BTreeMap::new();
         for (&order, fit) in starts {
@@ -106,9 +106,9 @@ impl OrderSearch<'_> {
         order_of_least(&criteria)
     }
 
-    /// Returns the models of the nearest order on each side whose criterion is close to that of the
-    /// chosen order. Orders that were given up before their minimum are left out: they differ from
-    /// the chosen model by more than the order.
+    /// Returns, on each side, the model of the nearest order whose criterion is within 10 % of the
+    /// chosen order's. Orders that were given up before their minimum are left out, because their
+    /// models differ from the chosen one by more than the order.
     pub(crate) fn neighbours(&self) -> Vec<SchurModel> {
         let Some(best) = self.criteria.get(&self.order) else {
             return Vec::new();
@@ -137,8 +137,8 @@ impl OrderSearch<'_> {
     }
 }
 
-/// Computes the criterion of a model of an order with this cost over `likelihood`, extrapolated to
-/// the degrees of freedom of `whole`; `None` if the parameters leave no degrees of freedom.
+/// Computes a model's criterion from its cost over `likelihood`, extrapolated to the degrees of
+/// freedom in `whole`; `None` if the parameters leave no degrees of freedom.
 ///
 /// ```text
 /// J over all records, estimated: r (J + k phi) - k phi,  r = N / N of the likelihood,  phi = J / (N - k)
@@ -265,7 +265,7 @@ impl<'a> PreparedData<'a> {
         order.checked_sub(removed).filter(|next| *next > 0)
     }
 
-    /// Converges the model of the top order, with noise from its own residuals (step 2).
+    /// Converges the top order's model, with noise from its own residuals (step 2).
     fn converge_top(
         &self,
         start: &SchurModel,
@@ -313,7 +313,7 @@ impl<'a> PreparedData<'a> {
         order_of_least(&held_out_costs).unwrap_or(best)
     }
 
-    /// Returns whether the model of an order has no fast unstable pole.
+    /// Returns whether the model at an order has no fast unstable pole.
     fn is_sound(&self, descent: &Descent, order: usize) -> bool {
         descent
             .fits
@@ -321,8 +321,7 @@ impl<'a> PreparedData<'a> {
             .is_some_and(|fit| fast_unstable_pole(fit.model.poles(), self.highest).is_none())
     }
 
-    /// Computes the held-out cost per degree of freedom of a model; `None` without held-out
-    /// records.
+    /// Computes a model's cost per degree of freedom over the held-out records; `None` without any.
     fn held_out_cost(&self, model: &SchurModel) -> Option<f64> {
         let held_out = &self.held_out;
         if held_out.segments.is_empty() {
@@ -360,8 +359,8 @@ impl Descent<'_> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Removes states from the model of an order and refines the result; `None` if no model is
-    /// left.
+    /// Removes states from the refined model at `order` and refines the result; `None` if no model
+    /// is left.
     fn reduced(
         &self,
         order: usize,
@@ -381,7 +380,7 @@ impl Descent<'_> {
         let Some(start) = cheapest else {
             return Ok(None);
         };
-        // The cost at which the criterion of this order equals the best.
+        // The cost at which this order's criterion equals the best.
         let unit = criterion(1.0, start.order(), &start.model, likelihood, &self.whole);
         let hopeless_above = unit.map_or(f64::INFINITY, |unit| self.least() / unit);
         let limits = Limits {
@@ -392,7 +391,8 @@ impl Descent<'_> {
     }
 }
 
-/// Returns the criteria that exceed the criterion of `best` by at most the relative `share`.
+/// Returns the orders, with their criteria, that exceed the criterion at `best` by at most the
+/// relative `share`.
 fn within(criteria: &BTreeMap<usize, f64>, best: usize, share: f64) -> BTreeMap<usize, f64> {
     let Some(value) = criteria.get(&best) else {
         return BTreeMap::new();

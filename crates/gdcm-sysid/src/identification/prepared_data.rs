@@ -1,4 +1,4 @@
-//! The data to which models are fitted and by which they are assessed, in scaled units.
+//! Prepares the data to which models are fitted and by which they are assessed, in scaled units.
 
 use std::f64::consts::{PI, TAU};
 
@@ -32,11 +32,11 @@ use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
 use crate::subspace::tried_orders::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 
-/// Number of frequencies of the measured response.
+/// Number of frequencies at which the response is measured.
 const MEASURED_POINTS: usize = 40;
-/// Ratio of the highest line of the measured response to the highest line used in the fit.
+/// Ratio of the highest line used for the measured response to the highest line that is fitted.
 const BEYOND: f64 = 1.3;
-/// Condition number of the correlation matrix of the inputs above which they depend on each other.
+/// Inputs depend on each other if their correlation matrix has a higher condition number than this.
 const COPY: f64 = 1e9;
 /// An input is involved in a dependence if its entry in the eigenvector exceeds this share of the
 /// largest.
@@ -50,9 +50,9 @@ const BETTER_PERIODS: f64 = 5.0;
 /// Recommended periods for each input if several are moved in a single record.
 const PERIODS_AN_INPUT: f64 = 3.0;
 
-/// Records, prepared, transformed and weighted.
+/// The prepared records, their spectral lines and the weighted cost.
 pub(crate) struct PreparedData<'a> {
-    /// Parts of every record that are used.
+    /// The parts used from every record.
     pub(crate) record_uses: Vec<RecordUse>,
     /// Factors from scaled units to record units.
     pub(crate) scales: Scales,
@@ -60,13 +60,13 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) segments: Vec<Segment>,
     /// Segments to fit, without gaps and without the low-pass.
     pub(crate) unfiltered: Vec<Segment>,
-    /// Range of the lines of the measured response.
+    /// Frequency range of the lines for the measured response.
     pub(crate) lines: LineRange,
     /// Held-out segments without gaps, in record units.
     pub(crate) held_out_segments: Vec<Segment>,
-    /// Spectral lines to fit, of records that are cut only at gaps too long to be estimated.
+    /// Spectral lines to fit, from records that are cut only at gaps too long to be estimated.
     pub(crate) spectra: Vec<Spectrum>,
-    /// Spectral lines of the segments without gaps.
+    /// Lines from the segments without gaps, in the fitted range.
     gap_free_spectra: Vec<Spectrum>,
     /// The measured response.
     pub(crate) measured: ResponseEstimate,
@@ -97,8 +97,8 @@ impl<'a> PreparedData<'a> {
     /// ```
     ///
     /// The measured response and the projections come from segments without gaps; the lines to fit
-    /// from whole records with filled gaps, whose missing samples are unknowns (M14.21). With a
-    /// reference, all lines are those of segments without gaps.
+    /// come from whole records with filled gaps, where missing samples are unknowns (M14.21). With
+    /// a reference, all lines come from segments without gaps.
     pub(crate) fn new(
         records: &[FlightRecord],
         options: &Options,
@@ -177,8 +177,8 @@ impl<'a> PreparedData<'a> {
         })
     }
 
-    /// Returns the settings of CT-PBSID: the options, with unset orders and past windows
-    /// chosen by the amount of data (M14.13).
+    /// Returns the options as CT-PBSID settings. Orders and past windows that are not set follow
+    /// from the amount of data (M14.13).
     pub(crate) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let outputs = self.scales.outputs.len();
         let highest = options.band[1];
@@ -208,8 +208,8 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Converts a model to record units: each response is multiplied by the ratio of its output's
-    /// scale to its input's scale. `None` if the model is not finite.
+    /// Converts a model to record units: each response is multiplied by its output's scale over its
+    /// input's scale. `None` if the model is not finite.
     pub(crate) fn in_units(&self, model: &SchurModel) -> Option<StateSpace> {
         let mut b = model.b().clone();
         let mut c = model.c().clone();
@@ -250,7 +250,7 @@ impl<'a> PreparedData<'a> {
             .sum()
     }
 
-    /// Returns the total length of the segments without gaps \[s\].
+    /// Returns the total length without gaps \[s\].
     fn duration_s(&self) -> f64 {
         self.gap_free_spectra
             .iter()
@@ -275,7 +275,7 @@ fn check_held_out(records: &[FlightRecord], options: &Options) -> Result<(), Ide
 /// Segments to fit and held-out segments, without the references among their inputs.
 struct SplitSegments {
     to_fit: Vec<Segment>,
-    /// References of each fitted segment, samples x references.
+    /// References for each fitted segment, samples x references.
     references: Vec<DMatrix<f64>>,
     held_out: Vec<Segment>,
 }
@@ -300,7 +300,7 @@ impl SplitSegments {
     }
 }
 
-/// Filled segments to fit, and those of held-out records.
+/// Filled segments, to fit or held out, without the references among their inputs.
 struct SplitFilled {
     to_fit: Vec<FilledSegment>,
     held_out: Vec<FilledSegment>,
@@ -313,7 +313,7 @@ impl SplitFilled {
             held_out: Vec::new(),
         };
         for mut part in filled {
-            // Gaps of references do not occur: with references, segments have no gaps.
+            // There is no gap in a reference: with references, segments have no gaps.
             take_references(&mut part.segment, options.references);
             if options.held_out.contains(&part.segment.record) {
                 split.held_out.push(part);
@@ -384,13 +384,13 @@ struct Measurement<'a> {
     direct: Option<Likelihood<'a>>,
 }
 
-/// The spectral lines of all fitted segments.
+/// Spectral lines from all fitted segments.
 struct Lines {
-    /// Range of the lines to fit.
+    /// Frequency range of the lines to fit.
     used: LineRange,
-    /// Range of the lines of the measured response.
+    /// Frequency range of the lines for the measured response.
     reach: LineRange,
-    /// Lines of the segments without gaps, for the measured response.
+    /// Lines from the segments without gaps, for the measured response.
     wide: Vec<Spectrum>,
     /// The lines to fit.
     to_fit: Vec<Spectrum>,
@@ -415,7 +415,7 @@ impl Lines {
         }
     }
 
-    /// Returns the lines of the segments without gaps in the range of the fit.
+    /// Returns the lines from the segments without gaps, in the fitted range only.
     fn narrow(&self) -> Vec<Spectrum> {
         let mut narrow = Vec::with_capacity(self.wide.len());
         for spectrum in &self.wide {
@@ -424,7 +424,7 @@ impl Lines {
         narrow
     }
 
-    /// Measures the response of the outputs to the inputs.
+    /// Measures the response from inputs to outputs.
     fn measure<'a>(self, executor: &dyn Executor) -> Result<Measurement<'a>, LocalPolynomialError> {
         Ok(Measurement {
             measured: self.measure_response(executor)?,
@@ -433,7 +433,7 @@ impl Lines {
         })
     }
 
-    /// Measures the response through the references of `driven` segments; see [`Instrument`].
+    /// Measures the response through the references in the `driven` segments; see [`Instrument`].
     fn measure_through_reference<'a>(
         self,
         driven: &[Segment],
@@ -562,7 +562,7 @@ fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), Identificati
     Ok(())
 }
 
-/// Returns an error for inputs that depend on each other, by the condition number of their
+/// Returns an error if inputs depend on each other, judged by the condition number of their
 /// correlation matrix.
 fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let inputs = options.inputs();
@@ -586,8 +586,7 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     Err(IdentificationError::InputsDepend(involved))
 }
 
-/// Keeps only the cautions about channels of the model: a reference may move together with an
-/// input.
+/// Keeps only the cautions about model channels: a reference may move together with an input.
 fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<IdentificationCaution> {
     let mut kept = Vec::new();
     for caution in cautions {
@@ -607,7 +606,7 @@ fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<Identi
     kept
 }
 
-/// Returns the caution about the ends of the band at which the records show no response.
+/// Returns a caution if the records show no response at an end of the band.
 fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
     let shown = measured.shown_band(options.band)?;
     Some(IdentificationCaution::BandNotShown {

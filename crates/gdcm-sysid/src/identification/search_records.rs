@@ -1,15 +1,15 @@
-//! The records from which the order is searched: a part of many records that moves every input
-//! (M14.24).
+//! Selects the records from which the order is searched: among many, a part that moves every input
+//! (M14.19).
 
 use std::collections::BTreeSet;
 
 use crate::spectra::spectrum::Spectrum;
 
-/// Number of records up to which all are used.
+/// Up to this many records, all are used.
 const ALL_UP_TO: usize = 16;
-/// One of this many records is used, if there are more.
+/// With more records, one out of this many is used.
 const ONE_OF: usize = 3;
-/// Minimum share of the power of each input that the used records hold.
+/// Minimum share of each input's power in the used records.
 const LEAST_SHARE: f64 = 0.25;
 
 /// Returns the indices of the segments to search the order with, ascending.
@@ -45,7 +45,7 @@ pub(crate) fn search_segments(spectra: &[Spectrum]) -> Vec<usize> {
     segments
 }
 
-/// Adds the records with most of the power of an input until a quarter of it is used (step 3).
+/// Adds the records in which an input has most power until a quarter of its power is used (step 3).
 fn add_records_that_move(input: usize, spectra: &[Spectrum], used: &mut BTreeSet<usize>) {
     let mut powers: Vec<(usize, f64)> = Vec::new();
     for spectrum in spectra {

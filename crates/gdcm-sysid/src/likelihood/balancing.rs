@@ -1,4 +1,4 @@
-//! Balanced coordinates over the lines used, and the removal of states in them (M14.19).
+//! Balances coordinates over the lines used, and removes states in them (M14.19).
 //!
 //! ```text
 //! Wc = Re sum X X^H,         X = (j omega - A)^-1 B U
@@ -20,7 +20,7 @@ use super::cost::{Likelihood, SpectralLines, whiten};
 use super::frequency_table::OutputResolvents;
 use super::schur_model::SchurModel;
 
-/// Share of the mean of a Gramian's diagonal that is added to it: a state that the lines do not
+/// Share of its mean that is added to a Gramian's diagonal, so that a state that the lines do not
 /// excite or show remains in the model.
 const FLOOR: f64 = 1e-14;
 
@@ -38,7 +38,7 @@ pub(crate) struct Gramians {
 }
 
 impl Gramians {
-    /// Sums over all lines of all segments.
+    /// Sums the Gramians over all lines in all segments.
     pub(crate) fn sampled(likelihood: &Likelihood, model: &SchurModel) -> Self {
         let resolvents = likelihood.resolvents(model);
         let of_segments = each(likelihood.executor, &likelihood.segments, |lines| {
@@ -59,7 +59,6 @@ impl Gramians {
         }
     }
 
-    /// Sums over the lines of a segment.
     fn of_segment(
         lines: &SpectralLines,
         model: &SchurModel,
@@ -92,7 +91,7 @@ impl Gramians {
     }
 }
 
-/// A change of coordinates `x = T z`.
+/// A coordinate change `x = T z`.
 pub(crate) struct Coordinates {
     /// `T`, n x n.
     pub(crate) transformation: DMatrix<f64>,
@@ -139,8 +138,8 @@ fn with_floor(mut gramian: DMatrix<f64>) -> DMatrix<f64> {
     gramian
 }
 
-/// Returns the two models that remain when the last `count` states of a balanced model are removed:
-/// without and with their static part. Empty if no state would remain.
+/// Removes the last `count` states from a balanced model and returns two models: without and with
+/// their static part. Empty if no state would remain.
 ///
 /// ```text
 /// A = [A11 A12; A21 A22]

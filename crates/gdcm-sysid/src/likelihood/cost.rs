@@ -1,4 +1,5 @@
-//! Cost of a model over the spectral lines of the records, with the transients eliminated (M14.4).
+//! Computes a model's cost over the records' spectral lines, with the transients eliminated
+//! (M14.4).
 //!
 //! ```text
 //! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r - gaps) |^2
@@ -30,10 +31,10 @@ use crate::spectra::spectrum::Spectrum;
 /// Eigenvalues of the nuisance columns' Gram matrix below this share of the largest are dropped.
 pub(crate) const DEPENDENT: f64 = 1e-12;
 
-/// Whitened spectral lines of a segment.
+/// A segment's whitened spectral lines.
 #[derive(Clone, Debug)]
 pub(crate) struct SpectralLines {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     pub(crate) record: usize,
     /// Frequencies \[rad/s\].
     pub(crate) omega: Vec<f64>,
@@ -43,21 +44,21 @@ pub(crate) struct SpectralLines {
     pub(crate) outputs: DMatrix<Complex<f64>>,
     /// `W` at each line, outputs x outputs, lower triangular.
     pub(crate) weights: Vec<DMatrix<Complex<f64>>>,
-    /// Factor on the weights relative to other records: the inverse root of the factor on their
+    /// Factor on the weights relative to other records: 1 over the root of the factor on their
     /// noise power.
     pub(crate) scale: f64,
     /// Missing samples.
     pub(crate) hats: Vec<GapHat>,
 }
 
-/// Contribution of a segment to the cost.
+/// A segment's contribution to the cost.
 #[derive(Clone, Debug)]
 pub(crate) struct SegmentCost {
     /// `J_r`.
     pub(crate) cost: f64,
     /// `tau_r`.
     pub(crate) transient: DVector<f64>,
-    /// `c_q` of each hat.
+    /// `c_q` for each hat.
     pub(crate) hat_values: Vec<f64>,
     /// `e`, outputs x lines.
     pub(crate) residual: DMatrix<Complex<f64>>,
@@ -107,14 +108,14 @@ impl SpectralLines {
         }
     }
 
-    /// Returns the degrees of freedom at this model order: the number of real values in the lines
-    /// less the unknowns of the transient.
+    /// Returns the degrees of freedom at this model order: the real values in the lines less the
+    /// unknowns in the transient.
     pub(crate) fn freedom(&self, order: usize) -> usize {
         let outputs = self.outputs.nrows();
         (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
     }
 
-    /// Computes the contribution of the segment to the cost; `None` if it is not finite.
+    /// Computes the segment's contribution to the cost; `None` if it is not finite.
     pub(crate) fn cost(
         &self,
         model: &SchurModel,
@@ -139,7 +140,7 @@ impl SpectralLines {
         })
     }
 
-    /// Removes trim, drift, the transient of `model` and the missing samples from a whitened
+    /// Removes trim, drift, the transient in `model` and the missing samples from a whitened
     /// column, outputs x lines.
     ///
     /// Returns `None` if the result is not finite.
@@ -154,7 +155,7 @@ impl SpectralLines {
         Some(left.residual)
     }
 
-    /// Returns `U` with the missing samples of the inputs completed, inputs x lines.
+    /// Returns `U` with the inputs' missing samples completed, inputs x lines.
     pub(crate) fn completed_inputs(&self, hat_values: &[f64]) -> DMatrix<Complex<f64>> {
         let mut inputs = self.inputs.clone();
         for (hat, value) in self.hats.iter().zip(hat_values) {
@@ -168,8 +169,8 @@ impl SpectralLines {
         inputs
     }
 
-    /// Returns the diagonal of the projector on the nuisance columns at each line: the mean over
-    /// the outputs of the share that the transient takes, between 0 and 1 (M14.20).
+    /// Returns the share of each line that the transient takes, averaged over the outputs and
+    /// between 0 and 1 (M14.20): the diagonal of the projector on the nuisance columns.
     pub(crate) fn transient_shares(
         &self,
         model: &SchurModel,
@@ -180,17 +181,17 @@ impl SpectralLines {
     }
 }
 
-/// The nuisance columns `T` of a segment in real form: a row for the real and a row for the
-/// imaginary part of each output at each line.
+/// A segment's nuisance columns `T` in real form: two rows for each output at each line, the real
+/// and the imaginary part.
 ///
-/// Order of the columns: tau, c0, c1, hats, and a last column for the vector to be fitted.
+/// The columns are tau, c0, c1, the hats, and last the vector to be fitted.
 struct NuisanceColumns<'s> {
     lines: &'s SpectralLines,
     /// `C (j omega - A)^-1` at each line.
     resolvents: Vec<&'s [Complex<f64>]>,
     /// Number of states.
     order: usize,
-    /// Number of nuisance columns.
+    /// Number of nuisance columns; `matrix` has one column more.
     count: usize,
     matrix: DMatrix<f64>,
 }
@@ -214,14 +215,14 @@ impl<'s> NuisanceColumns<'s> {
         columns
     }
 
-    /// Writes the values of a column at a line.
+    /// Writes a column's value for an output at a line.
     fn put(&mut self, k: usize, column: usize, output: usize, value: Complex<f64>) {
         let row = 2 * (k * self.lines.outputs.nrows() + output);
         self.matrix[(row, column)] = value.re;
         self.matrix[(row + 1, column)] = value.im;
     }
 
-    /// Fills the columns of tau, c0 and c1.
+    /// Fills the columns for tau, c0 and c1.
     fn fill_transient(&mut self) {
         let outputs = self.lines.outputs.nrows();
         for (k, &omega) in self.lines.omega.iter().enumerate() {
@@ -241,7 +242,7 @@ impl<'s> NuisanceColumns<'s> {
         }
     }
 
-    /// Fills the column of a hat: `W e_o b_q` for an output, `W G_j b_q` for an input.
+    /// Fills a hat's column: `W e_o b_q` for an output, `W G_j b_q` for an input.
     fn fill_hat(&mut self, number: usize, model: &SchurModel) {
         let outputs = self.lines.outputs.nrows();
         let column = self.order + 2 * outputs + number;
@@ -268,8 +269,8 @@ impl<'s> NuisanceColumns<'s> {
 
     /// Fits the columns to a vector by least squares (steps 2 and 3).
     ///
-    /// `fill(k, cr, e0)` receives the index of a line and `C (j omega - A)^-1` at this line, and
-    /// writes `e0` at the line.
+    /// `fill(k, cr, e0)` receives a line's index and `C (j omega - A)^-1` there, and writes the
+    /// line's `e0`.
     fn eliminate(
         mut self,
         mut fill: impl FnMut(usize, &[Complex<f64>], &mut [Complex<f64>]),
@@ -307,7 +308,7 @@ impl<'s> NuisanceColumns<'s> {
         })
     }
 
-    /// Computes the mean diagonal of `T (T'T)^+ T'` over the rows of each line.
+    /// Averages the diagonal of `T (T'T)^+ T'` over each line's rows.
     fn shares(self) -> Option<Vec<f64>> {
         let columns = self.matrix.columns(0, self.count);
         let gram = columns.transpose() * columns;
@@ -321,19 +322,19 @@ impl<'s> NuisanceColumns<'s> {
     }
 }
 
-/// The segments to which a model is fitted.
+/// The cost over the segments to which a model is fitted.
 #[derive(Clone)]
 pub(crate) struct Likelihood<'a> {
     /// Segments, by record and time.
     pub(crate) segments: Vec<SpectralLines>,
-    /// The frequencies of all segments.
+    /// The frequencies in all segments.
     pub(crate) table: FrequencyTable,
     /// Runs the segments' work.
     pub(crate) executor: &'a dyn Executor,
 }
 
 impl<'a> Likelihood<'a> {
-    /// Gathers segments, by record and time.
+    /// Creates the likelihood over segments, sorted by record and time.
     pub(crate) fn new(segments: Vec<SpectralLines>, executor: &'a dyn Executor) -> Self {
         let table = FrequencyTable::new(segments.iter().map(|segment| segment.omega.as_slice()));
         Self {
@@ -343,7 +344,7 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    /// Returns the likelihood of the segments with these indices.
+    /// Returns the likelihood over the segments with these indices.
     pub(crate) fn of_segments(&self, numbers: &[usize]) -> Self {
         let segments = numbers
             .iter()
@@ -351,12 +352,12 @@ impl<'a> Likelihood<'a> {
         Self::new(segments.collect(), self.executor)
     }
 
-    /// Gathers the lines of a single segment.
+    /// Returns the likelihood over a single segment.
     pub(crate) fn of_segment(segment: SpectralLines) -> Likelihood<'static> {
         Likelihood::new(vec![segment], &Sequential)
     }
 
-    /// Computes `C (j omega - A)^-1` of a model at all lines.
+    /// Computes a model's `C (j omega - A)^-1` at all lines.
     pub(crate) fn resolvents(&self, model: &SchurModel) -> OutputResolvents<'_> {
         self.table.output_resolvents(model, self.executor)
     }
@@ -369,8 +370,7 @@ impl<'a> Likelihood<'a> {
             .sum()
     }
 
-    /// Computes the contribution of each segment to the cost; `None` if a contribution is not
-    /// finite.
+    /// Computes each segment's contribution to the cost; `None` if one is not finite.
     pub(crate) fn parts(&self, model: &SchurModel) -> Option<Vec<SegmentCost>> {
         let resolvents = self.resolvents(model);
         each(self.executor, &self.segments, |segment| {
@@ -393,7 +393,7 @@ impl<'a> Likelihood<'a> {
         records
     }
 
-    /// Returns the likelihood without the segments of a record.
+    /// Returns the likelihood without a record's segments.
     pub(crate) fn without(&self, record: usize) -> Self {
         let segments = self
             .segments

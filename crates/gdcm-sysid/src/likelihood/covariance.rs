@@ -1,4 +1,4 @@
-//! Covariance of the parameters and poles of a model (M14.5, M14.22).
+//! Computes the covariance of a model's parameters and poles (M14.5, M14.22).
 //!
 //! ```text
 //! Cov theta = max(phi, 1) G^-1,   phi = J / (N - k),   G = sum_r J_r'J_r,  theta: local parameters
@@ -19,15 +19,15 @@ use super::local_parameters::LocalParameters;
 use super::local_system::{LocalSystem, LocalSystems};
 use super::schur_model::SchurModel;
 
-/// Eigenvalues of the information matrix `G`, in columns of unit length, below this share of the
-/// largest are rounding errors.
+/// Eigenvalues of the scaled information matrix `G` below this share of the largest are rounding
+/// errors.
 const ROUNDING: f64 = 1e-13;
-/// Maximum reported standard deviation of a pole, relative to its modulus or the lower band end,
-/// whichever is larger.
+/// Largest standard deviation that is reported for a pole, relative to its modulus or the lower
+/// band end, whichever is larger.
 const UNKNOWN: f64 = 1e3;
-/// Maximum half-width of the interval of a determined pole, relative to its modulus.
+/// A pole is determined if its interval has at most this half-width, relative to its modulus.
 const DETERMINED: f64 = 0.5;
-/// Covariance of the model parameters, and their information matrix.
+/// The model parameters' covariance and information matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {
     parameters: LocalParameters,
@@ -49,7 +49,7 @@ impl ParameterCovariance {
         })
     }
 
-    /// Computes the covariance of a model from lines other than the fitted lines.
+    /// Computes a model's covariance from lines other than the fitted lines.
     pub(crate) fn from_lines(likelihood: &Likelihood, model: &SchurModel) -> Option<Self> {
         let fit = Fit::start(likelihood, model.clone())?;
         let systems = LocalSystems::new(likelihood, &fit)?;
@@ -71,9 +71,9 @@ impl ParameterCovariance {
         Some(cost - root.tr_mul(&system.gradient).norm_squared())
     }
 
-    /// Computes the variances of the real and imaginary parts of `sum_p l_row(p) r_column(p) d theta_p`
-    /// for many pairs of vectors: `left` holds a vector l (states, outputs) and `right` a vector r
-    /// (states, inputs) in each column.
+    /// Computes the variances of the real and imaginary parts in `sum_p l_row(p) r_column(p) d
+    /// theta_p` for many vector pairs: `left` holds a vector l (states, outputs) and `right` a
+    /// vector r (states, inputs) in each column.
     pub(crate) fn variances(
         &self,
         left: &DMatrix<Complex<f64>>,
@@ -102,8 +102,8 @@ impl ParameterCovariance {
             .collect()
     }
 
-    /// Returns the poles of the model with their standard deviations; `lowest` is the lower end of
-    /// the band \[rad/s\].
+    /// Returns the model's poles with their standard deviations; `lowest` is the lower band end
+    /// \[rad/s\].
     pub(crate) fn poles(&self, model: &SchurModel, lowest: f64) -> Vec<PoleEstimate> {
         let (outputs, inputs) = model.d().shape();
         let mut estimates = Vec::new();
@@ -133,13 +133,13 @@ impl ParameterCovariance {
     }
 }
 
-/// Variances of the real and the imaginary part.
+/// Variances of a complex number's real and imaginary part.
 pub(crate) struct ComplexVariance {
     pub(crate) re: f64,
     pub(crate) im: f64,
 }
 
-/// Appends zeros to a vector, as a matrix of one column.
+/// Appends zeros to a vector, as a single-column matrix.
 fn with_zeros(vector: &DVector<Complex<f64>>, zeros: usize) -> DMatrix<Complex<f64>> {
     let mut column = DMatrix::zeros(vector.len() + zeros, 1);
     column.rows_mut(0, vector.len()).copy_from(vector);

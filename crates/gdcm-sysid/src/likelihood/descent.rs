@@ -9,8 +9,8 @@
 //!       lambda /= 10 for rho > 0.75, /= 3 for rho > 0.4, unchanged for rho > 0.15, *= 4 otherwise
 //! ```
 //!
-//! delta is the Newton decrement: at 0.02 k phi the remaining distance is 14 % of the standard
-//! deviation of the parameters. A relative decrease of `J` as a limit would stop in a valley.
+//! delta is the Newton decrement: at delta^2 = 0.02 k phi the remaining distance is 14 % of the
+//! parameters' standard deviation. A limit on the relative decrease in `J` would stop in a valley.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -22,46 +22,46 @@ use super::gram_matrix::solve_positive_definite;
 use super::normal_equations::{BIN_WIDTH, EXACT, NormalEquations};
 use super::schur_model::SchurModel;
 
-/// Limit on the Newton decrement over `k phi` at a minimum.
+/// Limit on `delta^2 / (k phi)` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
-/// Limit on the Newton decrement over `k phi` for the comparison of orders: the cost may still fall
-/// by about 10 % of what k parameters explain of the noise, a small part of what BIC charges for a
-/// state, `(m + l) phi ln N`.
+/// Limit on `delta^2 / (k phi)` for comparing orders: the cost may still fall by about 10 % of the
+/// noise that k parameters explain, which is little beside what BIC charges for a state, `(m + l)
+/// phi ln N`.
 pub(crate) const COMPARABLE: f64 = 0.1;
-/// Limit on the Newton decrement over `k phi` before the noise is measured again.
+/// Limit on `delta^2 / (k phi)` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
-/// Multiple of the squared Newton decrement by which the cost may at most still fall.
+/// The cost is expected to fall by no more than this many times `delta^2`.
 const HOPE: f64 = 3.0;
-/// Maximum number of steps of a descent.
+/// Maximum number of steps in a descent.
 const LARGEST_STEPS: usize = 40;
-/// Damping of the first step.
+/// Damping in the first step.
 const FIRST_DAMPING: f64 = 1e-3;
 /// Factor on the damping after a failure.
 const DAMPING_FACTOR: f64 = 6.0;
 /// Minimum damping after a failure.
 const LEAST_FAILED_DAMPING: f64 = 1e-7;
-/// Minimum damping: it takes the place of the pseudo-inverse in the directions that only change the
+/// Minimum damping: it replaces the pseudo-inverse in the directions that only change the
 /// coordinates.
 const LEAST_DAMPING: f64 = 1e-8;
-/// Minimum share of a column's square that is used as its scale, where the nuisance columns explain
-/// more.
+/// A column's scale is computed from at least this share of its square, even where the nuisance
+/// columns explain more.
 const LEAST_SHARE_LEFT: f64 = 1e-6;
-/// Maximum number of failures of a step.
+/// Number of failures after which a step is given up.
 const FAILURES: usize = 10;
-/// Share of the total progress that is reported for a step.
+/// Share of the total progress per step.
 const SHARE: f64 = 0.01;
 
 /// When a descent ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// Newton decrement over `k phi` at which the model has converged.
+    /// `delta^2 / (k phi)` below which the model has converged.
     pub(crate) decrement: f64,
-    /// Cost above which the model is of no use: the descent ends if `J - 3 delta^2` exceeds it.
+    /// Cost above which the model is useless: the descent ends if `J - 3 delta^2` exceeds it.
     pub(crate) hopeless_above: f64,
 }
 
 impl Limits {
-    /// Creates limits that only ask for this Newton decrement over `k phi`.
+    /// Creates limits on `delta^2 / (k phi)` alone.
     pub(crate) fn to(decrement: f64) -> Self {
         Self {
             decrement,
@@ -74,11 +74,11 @@ impl Limits {
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     pub(crate) model: SchurModel,
-    /// Contribution of each segment to the cost.
+    /// Each segment's contribution to the cost.
     pub(crate) parts: Vec<SegmentCost>,
     /// `J`.
     pub(crate) cost: f64,
-    /// Newton decrement over `k phi` where it was last computed; infinite before.
+    /// `delta^2 / (k phi)` where it was last computed; infinite before.
     pub(crate) decrement: f64,
     damping: f64,
     /// Gramians in the present coordinates where they were last computed.
@@ -103,7 +103,6 @@ impl Fit {
         })
     }
 
-    /// Returns the number of states.
     pub(crate) fn order(&self) -> usize {
         self.model.order()
     }
@@ -117,7 +116,7 @@ impl Fit {
         }
     }
 
-    /// Computes the Newton decrement over `k phi` with exact normal equations.
+    /// Computes `delta^2 / (k phi)` with exact normal equations.
     #[cfg(test)]
     pub(crate) fn decrement(&self, likelihood: &Likelihood) -> Option<f64> {
         let system = NormalEquations::new(likelihood, &self.model, &self.parts, EXACT)?;
@@ -156,8 +155,8 @@ impl Fit {
         let scaled = ScaledSystem::new(system);
         let unit = self.model.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
-        // With damping, g'd is a lower bound of delta^2: the decrement is computed where it may
-        // end the descent.
+        // With damping, g'd is a lower bound on delta^2, which is computed only where it may end
+        // the descent.
         let bound = direction
             .as_ref()
             .map_or(0.0, |direction| scaled.gradient.dot(direction));
@@ -185,7 +184,8 @@ impl Fit {
         false
     }
 
-    /// Transforms model and transients to balanced coordinates, by the Gramians at the step before.
+    /// Transforms model and transients to balanced coordinates, with the Gramians from the previous
+    /// step.
     fn balance(&mut self, likelihood: &Likelihood) {
         let gramians = self
             .gramians
@@ -239,8 +239,8 @@ impl Fit {
     }
 }
 
-/// Returns the width of the bins: the spectra of missing samples turn too fast with frequency for
-/// wide bins, with which a descent stalls.
+/// Returns the bin width: exact bins if samples are missing, because their spectra turn so fast
+/// with frequency that a descent with wide bins stalls.
 fn bin_width(likelihood: &Likelihood) -> f64 {
     let has_gaps = likelihood
         .segments
@@ -249,7 +249,7 @@ fn bin_width(likelihood: &Likelihood) -> f64 {
     if has_gaps { EXACT } else { BIN_WIDTH }
 }
 
-/// Returns the factor on the damping after a step with this ratio of actual to predicted decrease.
+/// Returns the factor on the damping after a step; `ratio` is actual over predicted decrease.
 fn damping_factor(ratio: f64) -> f64 {
     if ratio > 0.75 {
         0.1
@@ -270,8 +270,8 @@ struct ScaledSystem {
 }
 
 impl ScaledSystem {
-    /// Scales the columns to unit length; columns of which the nuisance columns explain nearly all,
-    /// less, because what is left of them is mostly rounding error.
+    /// Scales the columns to unit length, but less where the nuisance columns explain nearly all of
+    /// a column: the rest is mostly rounding error.
     fn new(system: NormalEquations) -> Self {
         let scales = system
             .matrix
@@ -311,7 +311,7 @@ impl ScaledSystem {
         }
     }
 
-    /// Returns the square of the Newton decrement, `g' G^+ g`.
+    /// Returns `delta^2`, the squared Newton decrement, `g' G^+ g`.
     fn decrement(&self) -> Option<f64> {
         let mut damping = LEAST_DAMPING;
         for _ in 0..FAILURES {
@@ -323,7 +323,7 @@ impl ScaledSystem {
         None
     }
 
-    /// Returns `2 g'd - d'G d`, the decrease of the cost that the quadratic model predicts.
+    /// Returns `2 g'd - d'G d`, the cost decrease that the quadratic model predicts.
     fn predicted_decrease(&self, direction: &DVector<f64>) -> f64 {
         2.0 * self.gradient.dot(direction) - direction.dot(&(&self.matrix * direction))
     }

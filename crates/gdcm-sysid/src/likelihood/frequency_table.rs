@@ -1,4 +1,4 @@
-//! The frequencies of all lines, and the resolvent of a model at each of them.
+//! The frequencies of all lines, and a model's resolvent at each.
 
 use nalgebra::Complex;
 
@@ -6,7 +6,7 @@ use gdcm_model::executor::{Executor, each};
 
 use super::schur_model::SchurModel;
 
-/// The frequencies of a set of lines without duplicates: records of equal length share theirs.
+/// The lines' frequencies without duplicates: records with equal length share theirs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrequencyTable {
     /// \[rad/s\], ascending, without duplicates.
@@ -14,7 +14,7 @@ pub(crate) struct FrequencyTable {
 }
 
 impl FrequencyTable {
-    /// Collects the frequencies of all lines \[rad/s\].
+    /// Collects the lines' frequencies \[rad/s\].
     pub(crate) fn new<'l>(lines: impl Iterator<Item = &'l [f64]>) -> Self {
         let mut omega: Vec<f64> = lines.flatten().copied().collect();
         omega.sort_by(f64::total_cmp);
@@ -22,12 +22,12 @@ impl FrequencyTable {
         Self { omega }
     }
 
-    /// Returns the index of a frequency of the table \[rad/s\].
+    /// Returns the index of a frequency \[rad/s\] in the table.
     fn index(&self, omega: f64) -> usize {
         self.omega.partition_point(|other| *other < omega)
     }
 
-    /// Computes `C (j omega - A)^-1` of a model at every frequency.
+    /// Computes a model's `C (j omega - A)^-1` at every frequency.
     pub(crate) fn output_resolvents(
         &self,
         model: &SchurModel,
@@ -46,7 +46,7 @@ impl FrequencyTable {
     }
 }
 
-/// `C (j omega - A)^-1` of a model at the frequencies of a table.
+/// A model's `C (j omega - A)^-1` at the frequencies in a table.
 pub(crate) struct OutputResolvents<'t> {
     table: &'t FrequencyTable,
     /// Outputs x n for each frequency, column after column.
@@ -54,7 +54,7 @@ pub(crate) struct OutputResolvents<'t> {
 }
 
 impl OutputResolvents<'_> {
-    /// Returns the matrix at each frequency of `omega` \[rad/s\], all of which are in the table.
+    /// Returns the matrix at each frequency in `omega` \[rad/s\]; the table must hold them all.
     pub(crate) fn at_lines(&self, omega: &[f64]) -> Vec<&[Complex<f64>]> {
         omega
             .iter()

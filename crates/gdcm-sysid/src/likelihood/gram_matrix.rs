@@ -1,10 +1,10 @@
-//! Inverses of Gram matrices whose columns may depend on each other.
+//! Inverts Gram matrices whose columns may depend on each other.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Scales the columns behind a Gram matrix to unit length.
 ///
-/// Returns the factors; the factor of a zero column is 0.
+/// Returns the factors; 0 for a zero column.
 pub(crate) fn scale_columns(gram: &mut DMatrix<f64>) -> DVector<f64> {
     let scales = gram.diagonal().map(inverse_root);
     let size = scales.len();
@@ -23,7 +23,7 @@ fn inverse_root(square: f64) -> f64 {
     }
 }
 
-/// Computes `F` with `F F' = G^+` for a Gram matrix `G` by its eigenvectors in scaled columns.
+/// Computes `F` with `F F' = G^+` for a Gram matrix `G`, from its eigenvectors in scaled columns.
 ///
 /// Eigenvalues up to `dependent` times the largest are omitted. Returns `None` if the matrix is not
 /// finite or the eigenvalue iteration does not converge.
@@ -45,11 +45,11 @@ pub(crate) fn pseudo_inverse_root(mut gram: DMatrix<f64>, dependent: f64) -> Opt
     Some(root)
 }
 
-/// Rows and columns that are factored at a time.
+/// Number of rows and columns that are factored at a time.
 const PANEL: usize = 48;
 
-/// Solves `A x = b` for a symmetric positive definite matrix of which the lower triangle is used;
-/// `None` if it is not positive definite.
+/// Solves `A x = b` for a symmetric positive definite `A`, using its lower triangle; `None` if it
+/// is not positive definite.
 ///
 /// ```text
 /// for each panel k of 48 columns:
@@ -58,7 +58,7 @@ const PANEL: usize = 48;
 /// 3  A_ij -= L_ik L_jk' for the panels j to the right, i from j down
 /// ```
 ///
-/// The products of step 3 take nearly all the time, and run as matrix products.
+/// Step 3 takes nearly all the time, and runs as matrix products.
 pub(crate) fn solve_positive_definite(
     mut matrix: DMatrix<f64>,
     right: &DVector<f64>,

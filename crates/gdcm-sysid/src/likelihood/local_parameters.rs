@@ -9,8 +9,8 @@
 //!    Cholesky factor
 //! ```
 //!
-//! With the other entries fixed, the selected entries move the response in all directions. Every
-//! statistic of the response, the poles or the cost is the same for any such selection.
+//! With the other entries fixed, the selected entries move the response in all directions. The
+//! statistics of responses, poles and cost do not depend on which entries are selected.
 //!
 //! Pivoted Cholesky factorisation: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 4.2.8.
 
@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::schur_model::SchurModel;
 
-/// Remaining diagonal, relative to columns of unit length, below which an entry only adds rounding
+/// Remaining diagonal, with columns scaled to unit length, below which an entry only adds rounding
 /// errors.
 const LEAST_PIVOT: f64 = 1e-13;
 
@@ -60,12 +60,12 @@ impl LocalParameters {
         }
     }
 
-    /// Returns the number of parameters.
+    /// Returns the parameter count.
     pub(crate) fn count(&self) -> usize {
         self.entries.len()
     }
 
-    /// Returns the place of each entry in `[[A, B], [C, D]]`, column after column.
+    /// Returns each entry's place in `[[A, B], [C, D]]`, column after column.
     pub(crate) fn places(&self) -> Vec<usize> {
         let places = self.entries.iter();
         places
@@ -83,8 +83,8 @@ impl LocalParameters {
     }
 }
 
-/// Returns the pivots of the Cholesky factorisation of a positive semidefinite matrix with a scaled
-/// diagonal, at most `count`.
+/// Returns at most `count` pivots from the Cholesky factorisation of a positive semidefinite matrix
+/// with a scaled diagonal.
 fn pivots(matrix: &DMatrix<f64>, count: usize) -> Vec<usize> {
     let size = matrix.nrows();
     let whole = matrix.diagonal();

@@ -1,4 +1,4 @@
-//! Normal equations in the [local parameters](super::local_parameters) of a model, for each segment.
+//! Normal equations in a model's [local parameters](super::local_parameters), for each segment.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -21,7 +21,7 @@ pub(crate) struct LocalSystem {
 }
 
 impl LocalSystem {
-    /// Returns the sum of systems with this many parameters; zero if there are none.
+    /// Sums systems with this many parameters; zero if there are none.
     pub(crate) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
         let mut sum = Self {
             matrix: DMatrix::zeros(parameters, parameters),
@@ -62,12 +62,12 @@ impl LocalSystem {
     }
 }
 
-/// The systems of all segments of a likelihood at a model, in common parameters.
+/// The systems of all segments at a model, in common parameters.
 pub(crate) struct LocalSystems {
     pub(crate) parameters: LocalParameters,
     /// A system for each segment, in their order.
     pub(crate) systems: Vec<LocalSystem>,
-    /// Index of the record of each segment.
+    /// Record index for each segment.
     records: Vec<usize>,
 }
 
@@ -112,19 +112,19 @@ impl LocalSystems {
         })
     }
 
-    /// Sums the systems of all segments.
+    /// Sums all systems.
     pub(crate) fn whole(&self) -> LocalSystem {
         LocalSystem::sum(self.parameters.count(), &self.systems)
     }
 
-    /// Sums the systems of a record.
+    /// Sums a record's systems.
     pub(crate) fn of_record(&self, record: usize) -> LocalSystem {
         let segments = self.systems.iter().zip(&self.records);
         let own = segments.filter(|(_, of)| **of == record);
         LocalSystem::sum(self.parameters.count(), own.map(|(system, _)| system))
     }
 
-    /// Computes `J'd` of a segment; `part` holds the column `d` as its residual, with the nuisance
+    /// Computes `J'd` for a segment; `part` holds the column `d` as its residual, with the nuisance
     /// columns removed.
     pub(crate) fn gradient_along(
         &self,

@@ -1,4 +1,4 @@
-//! The cost of a model, its minimum, and the covariance there (M14.4, M14.5).
+//! A model's cost, its minimum, and the covariance there (M14.4, M14.5).
 //!
 //! | stage | files |
 //! |---|---|

@@ -7,16 +7,16 @@ use super::descent::Fit;
 use super::local_system::{LocalSystem, LocalSystems};
 use super::schur_model::SchurModel;
 
-/// Damping of the first attempt.
+/// Damping at the first attempt.
 const FIRST_DAMPING: f64 = 1e-4;
 /// Damping factor after a failure.
 const DAMPING_FACTOR: f64 = 8.0;
-/// Maximum number of failures.
+/// Number of failed steps after which no further one is tried.
 const FAILURES: usize = 8;
 
 /// A model fitted to all records but one.
 pub(crate) struct ModelWithoutRecord {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     pub(crate) record: usize,
     pub(crate) model: SchurModel,
 }

@@ -5,9 +5,10 @@ use nalgebra::{Complex, DMatrix};
 use crate::spectra::interpolation::Neighbours;
 use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
 
-/// Weights of a point and its neighbours in the smoothed covariance (M14.2).
+/// Weights on a point and its neighbours in the smoothed covariance (M14.2).
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
-/// Share added to the diagonal, which keeps the covariance of dependent outputs regular (M14.2).
+/// Share added to the diagonal, which keeps the covariance regular if outputs depend on each other
+/// (M14.2).
 const ADDED: f64 = 1e-4;
 /// Minimum noise variance relative to the output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;
@@ -20,7 +21,7 @@ pub(crate) struct NoisePoint {
     pub(crate) covariance: DMatrix<Complex<f64>>,
 }
 
-/// `Cv(omega)`, the noise covariance of a line, outputs x outputs.
+/// `Cv(omega)`, the noise covariance at a line, outputs x outputs.
 ///
 /// Given at some frequencies, interpolated linearly in log frequency, and constant beyond the ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +48,8 @@ impl NoiseCovariance {
         Some(covariance)
     }
 
-    /// Smooths the covariances of a measured response over five neighbours; `None` if it has no
-    /// points (M14.2).
+    /// Smooths a measured response's covariances over five neighbours; `None` if it has no points
+    /// (M14.2).
     #[must_use]
     pub fn from_measured(measured: &ResponseEstimate) -> Option<Self> {
         let points = &measured.points;
@@ -78,8 +79,8 @@ impl NoiseCovariance {
     /// outputs x outputs, lower triangular.
     ///
     /// `W e` has real and imaginary parts with unit variance if `e` is noise (M14.4). `None` if the
-    /// covariance is not positive definite: the noise is 1e8 times stronger in one combination of
-    /// outputs than in another.
+    /// covariance is not positive definite: some combination of outputs has 1e8 times more noise
+    /// than another.
     #[must_use]
     pub fn weight(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
         let lower = self.at(omega).scale(0.5).cholesky()?.unpack();

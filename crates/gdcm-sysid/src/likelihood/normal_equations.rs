@@ -9,9 +9,9 @@
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
-//! With bins of width 0.04, the largest error of a diagonal entry of `G` is below 1 %. Bins narrower
-//! than the spacing of the lines hold equal frequencies of records of equal length: then `G` is
-//! exact. The changes of coordinates, n^2 of the (n + l)(n + m) directions, are orthogonal to `g`.
+//! With 0.04 wide bins, the diagonal entries of `G` are in error by less than 1 %. Bins narrower
+//! than the line spacing hold only equal frequencies, from records with equal length: then `G` is
+//! exact. Coordinate changes, n^2 of the (n + l)(n + m) directions, are orthogonal to `g`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -23,9 +23,9 @@ use super::frequency_table::{FrequencyTable, OutputResolvents};
 use super::nuisance_elimination::{NuisanceSums, VectorProducts};
 use super::schur_model::SchurModel;
 
-/// Width of a bin in ln omega for the steps of a descent.
+/// Bin width in ln omega while descending.
 pub(crate) const BIN_WIDTH: f64 = 0.04;
-/// Width of a bin in ln omega that only lines of the same frequency share: `G` is exact.
+/// Bin width in ln omega for which only lines with the same frequency share a bin: `G` is exact.
 pub(crate) const EXACT: f64 = 1e-9;
 
 /// `G` and `g` in all entries of `[[A, B], [C, D]]`, column after column.
@@ -98,7 +98,7 @@ impl NormalEquations {
     }
 }
 
-/// Computes `J'd` of a segment in all entries; `part` holds the column `d` as its residual.
+/// Computes a segment's `J'd` in all entries; `part` holds the column `d` as its residual.
 pub(super) fn gradient_along(
     lines: &SpectralLines,
     model: &SchurModel,
@@ -121,9 +121,9 @@ struct Binning {
     omega: Vec<f64>,
     /// Segment and line whose weight represents each bin.
     representatives: Vec<(usize, usize)>,
-    /// Sum over the lines of each bin of their weights' squared scales.
+    /// Sum of the lines' squared weight scales in each bin.
     power: Vec<f64>,
-    /// Bin of each line of each segment.
+    /// Bin index for each line in each segment.
     places: Vec<Vec<usize>>,
 }
 
@@ -170,7 +170,7 @@ impl Binning {
         binning
     }
 
-    /// Computes `V^H V` of every bin.
+    /// Computes `V^H V` for every bin.
     fn vector_products(&self, likelihood: &Likelihood, model: &SchurModel) -> VectorProducts {
         let middles = self.omega.iter().zip(&self.representatives);
         let products = each(likelihood.executor, middles, |(&omega, &(segment, k))| {
@@ -206,10 +206,10 @@ struct SegmentAtModel<'s> {
     resolvents: &'s OutputResolvents<'s>,
 }
 
-/// `sum conj(S) S'` in each bin, an upper triangle for each: a row for each of [`ordered_pairs`],
-/// a column for each bin.
+/// `sum conj(S) S'` in each bin, as an upper triangle: a row for each pair in [`ordered_pairs`], a
+/// column for each bin.
 struct ScalarSquares {
-    /// Size of S: n + inputs.
+    /// Number of entries in S: n + inputs.
     size: usize,
     re: DMatrix<f64>,
     im: DMatrix<f64>,
@@ -225,7 +225,7 @@ impl ScalarSquares {
         }
     }
 
-    /// Adds `power conj(S) S'` to a bin; `re` and `im` are the parts of S.
+    /// Adds `power conj(S) S'` to a bin; `re` and `im` hold the parts of S.
     fn add(&mut self, bin: usize, re: &[f64], im: &[f64], power: f64) {
         let pairs = self.re.nrows();
         let mut to_re = &mut self.re.as_mut_slice()[bin * pairs..(bin + 1) * pairs];
@@ -246,7 +246,7 @@ impl ScalarSquares {
         }
     }
 
-    /// Computes `Re sum X X^H` over all bins for the first `order` entries of S.
+    /// Computes `Re sum X X^H` over all bins; X is the first `order` entries in S.
     fn controllability(&self, order: usize) -> DMatrix<f64> {
         let sums = self.re.column_sum();
         let mut gramian = DMatrix::zeros(order, order);
@@ -260,7 +260,6 @@ impl ScalarSquares {
     }
 }
 
-/// Sums over the lines of a segment.
 struct SegmentSums {
     squares: ScalarSquares,
     nuisance: NuisanceSums,
@@ -268,7 +267,7 @@ struct SegmentSums {
     gradient: DMatrix<f64>,
 }
 
-/// S at the lines of a segment, n + inputs x lines.
+/// S at a segment's lines, n + inputs x lines.
 struct Scalars {
     re: DMatrix<f64>,
     im: DMatrix<f64>,
@@ -394,7 +393,7 @@ fn kronecker_sum(
     matrix
 }
 
-/// Columns that are updated at a time.
+/// Number of columns that are updated at a time.
 const PANEL: usize = 64;
 
 /// Subtracts `sum F F'` over the matrices F from a symmetric matrix.
@@ -424,7 +423,7 @@ fn subtract_squares(matrix: &mut DMatrix<f64>, roots: &[DMatrix<f64>], executor:
     }
 }
 
-/// Returns all pairs of indices below `count` whose second is not smaller than the first.
+/// Returns all index pairs below `count` whose second index is not smaller than the first.
 fn ordered_pairs(count: usize) -> Vec<(usize, usize)> {
     let mut pairs = Vec::with_capacity(count * (count + 1) / 2);
     for first in 0..count {

@@ -1,4 +1,4 @@
-//! The part of the dense normal equations that the nuisance columns of a segment explain (M14.8,
+//! Computes the part of the normal equations that a segment's nuisance columns explain (M14.8,
 //! M14.19).
 //!
 //! ```text
@@ -19,24 +19,24 @@ use super::cost::{DEPENDENT, SpectralLines};
 use super::gram_matrix::pseudo_inverse_root;
 use super::schur_model::SchurModel;
 
-/// Index of the scalar 1.
+/// Index of the scalar sigma = 1.
 const ONE: usize = 0;
-/// Index of the scalar 1/(j omega).
+/// Index of the scalar sigma = 1/(j omega).
 const INTEGRATOR: usize = 1;
 /// Index of the first hat.
 const FIRST_HAT: usize = 2;
 
-/// `V^H V` of every bin, for weights of scale 1.
+/// `V^H V` in every bin, for weights with scale 1.
 pub(super) struct VectorProducts {
     /// Size of `V^H V`: n + outputs.
     pub(super) vectors: usize,
-    /// Real parts and negative imaginary parts of the entries: a row for each entry of `V^H V`,
-    /// column after column, and two columns for each bin.
+    /// A row for each entry in `V^H V`, column after column, and two columns for each bin: real
+    /// part and negative imaginary part.
     table: DMatrix<f64>,
 }
 
 impl VectorProducts {
-    /// Gathers `V^H V` of all bins.
+    /// Gathers `V^H V` from all bins.
     pub(super) fn new(products: Vec<DMatrix<Complex<f64>>>) -> Self {
         let vectors = products.first().map_or(0, DMatrix::nrows);
         let mut table = DMatrix::zeros(vectors * vectors, 2 * products.len());
@@ -49,7 +49,7 @@ impl VectorProducts {
         Self { vectors, table }
     }
 
-    /// Returns an entry of `V^H V` in a bin.
+    /// Returns an entry in a bin's `V^H V`.
     pub(super) fn entry(&self, bin: usize, v: usize, w: usize) -> Complex<f64> {
         let row = w * self.vectors + v;
         Complex::new(self.table[(row, 2 * bin)], -self.table[(row, 2 * bin + 1)])
@@ -94,11 +94,11 @@ impl BinnedScalars {
     }
 }
 
-/// Sums over the lines of a segment in bins.
+/// Sums over a segment's lines, bin by bin.
 pub(super) struct NuisanceSums {
-    /// `conj(S) sigma` for each scalar sigma; columns are the entries of S.
+    /// `conj(S) sigma` for each scalar sigma; a column for each entry in S.
     with_parameters: Vec<BinnedScalars>,
-    /// `conj(sigma) sigma'`; columns are pairs of scalars, sigma running fastest.
+    /// `conj(sigma) sigma'`; a column for each pair, sigma running fastest.
     squares: BinnedScalars,
 }
 
@@ -116,7 +116,7 @@ impl NuisanceSums {
         }
     }
 
-    /// Adds line `k` of a segment, which is in the bin `place`; `conjugate` is conj(S).
+    /// Adds a segment's line `k`, which is in the bin `place`; `conjugate` is conj(S).
     pub(super) fn add(
         &mut self,
         lines: &SpectralLines,
@@ -168,7 +168,7 @@ impl NuisanceSums {
                 continue;
             };
             let last = used.max().unwrap_or(first);
-            // Rows are entries (v, w), columns are entries of S.
+            // Rows are entries (v, w), columns are entries in S.
             let table = products.times(first, last - first + 1, sums);
             for (number, column) in columns.iter().enumerate() {
                 if column.scalar != scalar {
@@ -213,7 +213,7 @@ impl NuisanceSums {
     }
 }
 
-/// Returns the scalars of the nuisance columns at a line: 1, 1/(j omega), the hats.
+/// Returns the nuisance columns' scalars at a line: 1, 1/(j omega), the hats.
 fn scalars_of_line(lines: &SpectralLines, k: usize) -> Vec<Complex<f64>> {
     let mut scalars = vec![Complex::from(1.0), Complex::new(0.0, -1.0 / lines.omega[k])];
     scalars.extend(lines.hats.iter().map(|hat| hat.lines[k]));
@@ -222,13 +222,13 @@ fn scalars_of_line(lines: &SpectralLines, k: usize) -> Vec<Complex<f64>> {
 
 /// A nuisance column: `V vector` times a scalar.
 struct NuisanceColumn {
-    /// Entries of the vector that are not zero, with their index in `V`.
+    /// The vector's nonzero entries, each with its column index in `V`.
     vector: Vec<(usize, f64)>,
-    /// Index of the scalar.
+    /// Index of its scalar sigma.
     scalar: usize,
 }
 
-/// Returns the nuisance columns of a segment: tau, c0, c1, hats.
+/// Returns a segment's nuisance columns: tau, c0, c1, hats.
 fn nuisance_columns(lines: &SpectralLines, model: &SchurModel) -> Vec<NuisanceColumn> {
     let order = model.order();
     let outputs = model.c().nrows();

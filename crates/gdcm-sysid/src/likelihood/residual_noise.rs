@@ -1,4 +1,4 @@
-//! The noise covariance from the residuals of a model (M14.20).
+//! Computes the noise covariance from a model's residuals (M14.20).
 //!
 //! ```text
 //! 1  e(omega): residual of each record, transient removed, in output units
@@ -27,29 +27,29 @@ use super::noise_covariance::{NoiseCovariance, NoisePoint};
 use super::schur_model::SchurModel;
 use crate::subspace::tried_orders::parameters_of_order;
 
-/// Number of frequencies.
+/// Number of frequencies at which the covariance is computed.
 const POINTS: usize = 24;
-/// Maximum share of a line that the transient is said to take.
+/// Upper limit on `h`, the share of a line that the transient takes.
 const LARGEST_SHARE: f64 = 0.9;
 /// First half-width of the Hann weight, in ln omega.
 const HALF_WIDTH: f64 = 0.25;
 /// Factor on the half-width while there are too few degrees of freedom.
 const WIDENING: f64 = 1.2;
-/// Minimum degrees of freedom for each output.
+/// Minimum degrees of freedom per output.
 const FREEDOM_AN_OUTPUT: f64 = 8.0;
-/// Share of the diagonal added to it.
+/// Share by which the diagonal is raised.
 const ADDED: f64 = 1e-4;
 
-/// Residual of a line in output units, and its weight in the covariance.
+/// A line's residual in output units, and its weight in the covariance.
 struct ResidualLine {
     log_omega: f64,
     /// `e`.
     residual: Vec<Complex<f64>>,
-    /// `1 - h - k/N`: the share of the noise power that is left in the residual.
+    /// `1 - h - k/N`: the share of the noise power left in the residual.
     left: f64,
 }
 
-/// Computes the noise covariance of a model's residuals; `parts` are its segment costs.
+/// Computes the noise covariance from a model's residuals; `parts` are its segment costs.
 ///
 /// `None` if there are no more values than parameters, or an iteration does not converge.
 pub(crate) fn residual_noise(
@@ -92,7 +92,7 @@ pub(crate) fn residual_noise(
     NoiseCovariance::new(points)
 }
 
-/// Returns the lines of a segment (step 1); `None` if a weight has no inverse.
+/// Returns a segment's lines (step 1); `None` if a weight has no inverse.
 fn residual_lines(
     segment: &SpectralLines,
     part: &SegmentCost,

@@ -1,4 +1,5 @@
-//! A state-space model, evaluated at a frequency by the Schur form of its `A` (M14.19).
+//! A state-space model whose `A` is in Schur form, for fast evaluation at many frequencies
+//! (M14.19).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -7,7 +8,7 @@ use gdcm_model::response::schur_form::SchurForm;
 
 use crate::subspace::tried_orders::parameters_of_order;
 
-/// Left and right eigenvector of an eigenvalue.
+/// Left and right eigenvector for an eigenvalue.
 pub(crate) struct Eigenvectors {
     /// `w^H`.
     pub(crate) left: DVector<Complex<f64>>,
@@ -61,7 +62,7 @@ impl SchurModel {
         })
     }
 
-    /// Copies the matrices of a model.
+    /// Copies a model's matrices.
     pub(crate) fn from_state_space(model: &StateSpace) -> Option<Self> {
         Self::new(
             model.a().clone(),
@@ -78,12 +79,12 @@ impl SchurModel {
         StateSpace::new(a, b, c, d).ok()
     }
 
-    /// Returns the number of states n.
+    /// Returns the state count n.
     pub(crate) fn order(&self) -> usize {
         self.a.nrows()
     }
 
-    /// Returns `k`, the number of parameters without changes of coordinates.
+    /// Returns `k`, the parameter count less the n^2 coordinate changes.
     pub(crate) fn parameters(&self) -> usize {
         let (outputs, inputs) = self.d.shape();
         parameters_of_order(self.order(), inputs, outputs)
@@ -94,8 +95,8 @@ impl SchurModel {
         &self.a
     }
 
-    /// Returns the model with the same response in the coordinates `x = T z`; `None` if `inverse`,
-    /// the inverse of `transformation`, or the result is not finite.
+    /// Returns the model with the same response in the coordinates `x = T z`; `inverse` is the
+    /// inverse of `transformation`, T. `None` if the result is not finite.
     pub(crate) fn in_coordinates(
         &self,
         transformation: &DMatrix<f64>,
@@ -163,8 +164,8 @@ impl SchurModel {
         }
     }
 
-    /// Returns `w^H` and `v` of the eigenvalue with this index, with `w^H A = lambda w^H`,
-    /// `A v = lambda v` and `w^H v = 1`. The entries are not finite for a double eigenvalue.
+    /// Returns `w^H` and `v` for the eigenvalue with this index, with `w^H A = lambda w^H`, `A v =
+    /// lambda v` and `w^H v = 1`. The entries are not finite for a double eigenvalue.
     pub(crate) fn eigenvectors(&self, number: usize) -> Eigenvectors {
         let order = self.order();
         let pole = self.t[(number, number)];

@@ -1,4 +1,4 @@
-//! The directions in `[[A, B], [C, D]]` that change the coordinates of the states and nothing else.
+//! Computes the directions in `[[A, B], [C, D]]` that only change the state coordinates.
 //!
 //! ```text
 //! dA = A X - X A,   dB = -X B,   dC = C X,   dD = 0     for each X = e_i e_j'
@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 
 use crate::likelihood::schur_model::SchurModel;
 
-/// Returns `N`: a column for each of the n^2 changes of coordinates, a row for each entry of
-/// `[[A, B], [C, D]]`, column after column.
+/// Returns `N`: a column for each of the n^2 coordinate changes, a row for each entry in `[[A, B],
+/// [C, D]]`, column after column.
 pub(super) fn coordinate_changes(model: &SchurModel) -> DMatrix<f64> {
     let order = model.order();
     let (outputs, inputs) = model.d().shape();
@@ -18,7 +18,7 @@ pub(super) fn coordinate_changes(model: &SchurModel) -> DMatrix<f64> {
     for i in 0..order {
         for j in 0..order {
             let mut change = changes.column_mut(j * order + i);
-            // A X and C X: column i of A and C becomes column j.
+            // A X and C X: column i in A and C becomes column j.
             for row in 0..order {
                 change[j * rows + row] += model.a()[(row, i)];
             }

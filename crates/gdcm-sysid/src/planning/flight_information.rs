@@ -1,5 +1,5 @@
-//! What the flown records say about a model: the Fisher information, with all that is necessary to
-//! predict the information of further flights.
+//! The flown records' Fisher information about a model, and what is needed to predict the
+//! information from further flights.
 //!
 //! ```text
 //! G = sum over lines of Re(V^H V (x) conj(S) S'),   phi = max(J / (N - k), 1)     (M14.19, M14.22)
@@ -25,17 +25,17 @@ use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::scales::Scales;
 use crate::subspace::tried_orders::parameters_of_order;
 
-/// Minimum distance in ln omega of the frequencies at which the noise is kept.
+/// Minimum distance in ln omega between frequencies at which the noise is kept.
 const NOISE_SPACING: f64 = 0.02;
-/// First line used, in units of the first line of a record (M14.12).
+/// First line used, in units of a record's first line (M14.12).
 const FIRST_LINE: f64 = 1.5;
 
-/// The information of the flown records about a model.
+/// The flown records' Fisher information about a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightInformation {
     /// The model in scaled units, in balanced coordinates.
     pub(super) model: StateSpace,
-    /// Scales of the channels, from scaled units to those of the records.
+    /// Channel scales, from scaled units to record units.
     pub(super) scales: Scales,
     /// `G / phi` in all entries of `[[A, B], [C, D]]`, column after column.
     pub(super) flown: DMatrix<f64>,
@@ -45,11 +45,11 @@ pub struct FlightInformation {
     pub(super) noise: NoiseCovariance,
     /// Lowest and highest line used \[rad/s\].
     pub(super) lines: [f64; 2],
-    /// Standard deviations of the responses of the model.
+    /// Standard deviations of the model's responses.
     pub(super) bands: Arc<ModelBands>,
     /// Noise and gusts fed back into the responses.
     pub(super) feedback: Option<Feedback>,
-    /// A sweep of each input as strong and as long as it was flown.
+    /// For each input, a sweep as strong and as long as those flown.
     pub(super) standard_sweeps: Vec<StandardSweep>,
 }
 
@@ -57,7 +57,8 @@ pub struct FlightInformation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardSweep {
     pub sweep: PlannedSweep,
-    /// Whether the amplitude and length are those of the other inputs: this input was not swept.
+    /// Whether amplitude and length are the other inputs' medians, because this input was not
+    /// swept.
     pub is_assumed: bool,
 }
 
@@ -72,7 +73,7 @@ pub(crate) struct FittedModel<'a> {
     pub(crate) lines: [f64; 2],
     pub(crate) bands: &'a Arc<ModelBands>,
     pub(crate) feedback: Option<&'a Feedback>,
-    /// Indices of the inputs that were not swept.
+    /// Indices of inputs that were not swept.
     pub(crate) not_swept: Vec<usize>,
 }
 
@@ -105,19 +106,19 @@ impl FlightInformation {
         })
     }
 
-    /// Returns the number of inputs.
+    /// Returns the input count.
     #[must_use]
     pub fn inputs(&self) -> usize {
         self.standard_sweeps.len()
     }
 
-    /// Returns a sweep of an input like those flown, once; `None` for an input that does not exist.
+    /// Returns an input's standard sweep, flown once; `None` for an input that does not exist.
     #[must_use]
     pub fn standard_sweep(&self, input: usize) -> Option<StandardSweep> {
         self.standard_sweeps.get(input).copied()
     }
 
-    /// Returns the band of a sweep of this length that reaches all lines used \[rad/s\].
+    /// Returns the band with which a sweep of this length reaches all lines used \[rad/s\].
     #[must_use]
     pub fn sweep_band(&self, length_s: f64) -> [f64; 2] {
         sweep_band(self.lines, length_s)
@@ -145,14 +146,13 @@ fn balanced(likelihood: &Likelihood, model: &SchurModel) -> Option<SchurModel> {
     model.in_coordinates(&coordinates.transformation, &coordinates.inverse)
 }
 
-/// Returns the lines used, from the first that a record of this length has \[rad/s\].
+/// Returns the range of the lines used, from the first that a record of this length has \[rad/s\].
 fn sweep_band(lines: [f64; 2], length_s: f64) -> [f64; 2] {
     let first = FIRST_LINE * TAU / length_s;
     [lines[0].max(first).min(0.5 * lines[1]), lines[1]]
 }
 
-/// Returns the noise covariance of the lines, without the factors of the records:
-/// `Cv = 2 W^-1 W^-H`.
+/// Returns the noise covariance at the lines, without the records' own factors: `Cv = 2 W^-1 W^-H`.
 fn noise_of_lines(likelihood: &Likelihood) -> Option<NoiseCovariance> {
     let mut lines: Vec<(f64, &SpectralLines, usize)> = Vec::new();
     for segment in &likelihood.segments {
@@ -183,13 +183,13 @@ fn noise_of_lines(likelihood: &Likelihood) -> Option<NoiseCovariance> {
 /// A sweep of an input, measured in a record.
 #[derive(Clone, Copy)]
 struct FlownSweep {
-    /// In the units of the input.
+    /// In the input's unit.
     amplitude: f64,
     length_s: f64,
 }
 
-/// Returns a sweep of each input like those flown; inputs that were not swept get the median of the
-/// others. `None` without lines.
+/// Returns a sweep for each input like the strongest flown; inputs that were not swept get the
+/// others' medians. `None` without lines.
 fn standard_sweeps(fitted: &FittedModel) -> Option<Vec<StandardSweep>> {
     let mut flown = Vec::with_capacity(fitted.scales.inputs.len());
     for (input, scale) in fitted.scales.inputs.iter().enumerate() {
@@ -239,14 +239,14 @@ fn standard_sweeps(fitted: &FittedModel) -> Option<Vec<StandardSweep>> {
     Some(sweeps)
 }
 
-/// Returns the median of a property of sweeps.
+/// Returns a property's median over sweeps.
 fn median_of(sweeps: &[FlownSweep], property: fn(&FlownSweep) -> f64) -> f64 {
     let mut values: Vec<f64> = sweeps.iter().map(property).collect();
     median(&mut values)
 }
 
-/// Measures the amplitude of a sweep in a segment: that of a planned sweep of the same length whose
-/// power equals the power of the lines in the median. `None` for fewer than two lines.
+/// Measures a sweep's amplitude in a segment: a planned sweep with this amplitude and the same
+/// length has the lines' power in the median. `None` for fewer than two lines.
 fn flown_sweep(segment: &SpectralLines, input: usize, lines: [f64; 2]) -> Option<FlownSweep> {
     let [first, second, ..] = segment.omega[..] else {
         return None;

@@ -14,18 +14,18 @@ pub struct FlightPlan {
     pub sweeps: Vec<SweepPlan>,
 }
 
-/// The intervals of the responses to an input after further sweeps of it.
+/// Intervals of the responses to an input, after further sweeps of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepPlan {
-    /// The sweep, with `repeats` of 1.
+    /// The sweep, with `repeats` 1.
     pub sweep: StandardSweep,
-    /// Numbers of sweeps of the entries of `after`.
+    /// Sweep counts, for which [`PlannedResponse::after`] has an entry each.
     pub repeats: Vec<usize>,
     /// A response for each output.
     pub responses: Vec<PlannedResponse>,
 }
 
-/// The interval of a response now and after further sweeps.
+/// A response's interval now and after further sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedResponse {
     pub pair: Pair,
@@ -37,8 +37,8 @@ pub struct PlannedResponse {
 }
 
 impl FlightPlanner<'_> {
-    /// Predicts the intervals of all responses to an input at `omega` \[rad/s\] after numbers of
-    /// sweeps; `None` if an iteration does not converge.
+    /// Predicts the intervals of all responses to the swept input at `omega` \[rad/s\], for each
+    /// sweep count in `repeats`; `None` if an iteration does not converge.
     #[must_use]
     pub fn sweep_plan(
         &self,
@@ -76,8 +76,7 @@ impl FlightPlanner<'_> {
         })
     }
 
-    /// Predicts the intervals in the middle of the band after one, two and four sweeps of each
-    /// input.
+    /// Predicts the mid-band intervals after one, two and four sweeps of each input.
     #[must_use]
     pub fn standard_plan(&self) -> Option<FlightPlan> {
         let mut sweeps = Vec::with_capacity(self.information().inputs());
@@ -87,7 +86,7 @@ impl FlightPlanner<'_> {
         Some(FlightPlan { sweeps })
     }
 
-    /// Returns the middle frequency of the bands \[rad/s\].
+    /// Returns the bands' middle frequency \[rad/s\].
     #[must_use]
     pub fn middle(&self) -> f64 {
         let omega = self.information().bands.omega();

@@ -1,4 +1,4 @@
-//! Predicted standard deviations after further sweeps.
+//! Predicts standard deviations after further sweeps.
 //!
 //! ```text
 //! 1  G_j: information of one planned sweep. U from its samples, Y = G U, tau = 0 (the sweep begins
@@ -9,9 +9,9 @@
 //! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = |G_b/G|^2 / 2 (M14.17)
 //! ```
 //!
-//! Step 4 keeps the share of the response that is fed back, if it is visible: further flights of the
-//! same kind do not change it. Otherwise it is due to noise, as are the differences between
-//! neighbouring orders: both fall with the variance of the fit.
+//! Step 4 keeps the fed-back share of the response if it is visible: further flights of the same
+//! kind do not change it. Otherwise it is due to noise, as are the differences between neighbouring
+//! orders: both fall with the fit's variance.
 
 use std::cell::OnceCell;
 
@@ -38,7 +38,7 @@ const FLOOR: f64 = 1e-12;
 /// Largest standard deviation of `ln H`.
 const UNKNOWN: f64 = 1e3;
 
-/// Half-width of the 95 % interval of a response at a frequency.
+/// Half-width of a response's 95 % interval at a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResponseInterval {
     pub half_db: f64,
@@ -52,21 +52,21 @@ pub struct FlightPlanner<'a> {
     /// `G/phi + c N N'`.
     flown: DMatrix<f64>,
     executor: &'a dyn Executor,
-    /// The factored information of the flown records.
+    /// The flown records' factored information.
     now: OnceCell<Option<FactoredInformation>>,
 }
 
-/// Information of a single planned sweep, `G_j/phi`.
+/// Information from a single planned sweep, `G_j/phi`.
 #[derive(Clone)]
 pub(super) struct SweepInformation(pub(super) DMatrix<f64>);
 
-/// Planned sweeps that are flown a number of times, which may be a fraction.
+/// A planned sweep with the number of times that it is flown, which may be a fraction.
 pub(super) struct Repeated<'p> {
     pub(super) information: &'p SweepInformation,
     pub(super) times: f64,
 }
 
-/// Variances of the real and imaginary part of `ln H`.
+/// Variances of `ln H`, real and imaginary part.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LogVariance {
     pub(super) re: f64,
@@ -99,7 +99,7 @@ impl<'a> FlightPlanner<'a> {
         self.information
     }
 
-    /// Computes the information of a single sweep (step 1); `None` if it has no lines, or if an
+    /// Computes the information from a single sweep (step 1); `None` if it has no lines, or if an
     /// iteration does not converge.
     pub(super) fn sweep_information(&self, sweep: &PlannedSweep) -> Option<SweepInformation> {
         let (outputs, inputs) = self.model.d().shape();
@@ -132,12 +132,12 @@ impl<'a> FlightPlanner<'a> {
         FactoredInformation::new(total)
     }
 
-    /// Returns the factored information of the flown records.
+    /// Returns the flown records' factored information.
     fn now(&self) -> Option<&FactoredInformation> {
         self.now.get_or_init(|| self.after(&[])).as_ref()
     }
 
-    /// Returns the reported interval of a response.
+    /// Returns a response's interval as reported now.
     #[must_use]
     pub fn interval_now(&self, pair: Pair, omega: f64) -> ResponseInterval {
         let bands = &self.information.bands;
@@ -147,7 +147,7 @@ impl<'a> FlightPlanner<'a> {
         }
     }
 
-    /// Predicts the interval of a response (step 4).
+    /// Predicts a response's interval (step 4).
     pub(super) fn interval(
         &self,
         after: &FactoredInformation,
@@ -165,7 +165,7 @@ impl<'a> FlightPlanner<'a> {
         })
     }
 
-    /// Returns the limit of the interval for infinitely many flights: what is visibly fed back. It is
+    /// Returns the interval's limit for infinitely many flights: the share visibly fed back. It is
     /// 0 for an input that was not swept, because a sweep exceeds what is fed back into it.
     #[must_use]
     pub fn interval_limit(&self, pair: Pair, omega: f64) -> ResponseInterval {
@@ -186,8 +186,8 @@ impl<'a> FlightPlanner<'a> {
         }
     }
 
-    /// Returns the gradient of `ln H` in all entries of `[[A, B], [C, D]]`: real and imaginary
-    /// part.
+    /// Returns the gradient of `ln H` in all entries of `[[A, B], [C, D]]`: columns for its real
+    /// and imaginary part.
     pub(super) fn log_gradient(&self, pair: Pair, omega: f64) -> DMatrix<f64> {
         let order = self.model.order();
         let (outputs, inputs) = self.model.d().shape();
@@ -215,9 +215,9 @@ impl<'a> FlightPlanner<'a> {
     }
 }
 
-/// The lower Cholesky factor of an information matrix whose columns have unit length.
+/// The lower Cholesky factor of an information matrix with columns scaled to unit length.
 pub(super) struct FactoredInformation {
-    /// Factors on the columns.
+    /// Factors that scale the columns.
     scales: DVector<f64>,
     lower: DMatrix<f64>,
 }
@@ -240,7 +240,7 @@ impl FactoredInformation {
         })
     }
 
-    /// Computes the variances along a gradient of two columns; `None` if it is not finite.
+    /// Computes the variances along a gradient with two columns; `None` if one is not finite.
     pub(super) fn variance(&self, gradient: &DMatrix<f64>) -> Option<LogVariance> {
         let mut scaled = gradient.clone();
         for mut column in scaled.column_iter_mut() {
@@ -259,8 +259,8 @@ impl FactoredInformation {
     }
 }
 
-/// Returns the half-width of an interval when the variance of the fit falls to a share of its
-/// present value (step 4).
+/// Returns an interval's half-width when the fit's variance falls to a share of its present value
+/// (step 4).
 fn reduced(now: f64, fed_back: f64, share: f64) -> f64 {
     let fixed = fed_back.min(now).powi(2);
     (fixed + (now.powi(2) - fixed) * share.clamp(0.0, 1.0)).sqrt()

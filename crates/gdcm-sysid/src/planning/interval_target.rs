@@ -1,5 +1,5 @@
-//! What brings a wanted interval: the number of sweeps, their length, their amplitude, or a
-//! narrower band.
+//! Finds out how to reach a wanted interval: by more, longer or stronger sweeps, or by a narrower
+//! band.
 
 use gdcm_model::dataset::Pair;
 
@@ -8,26 +8,24 @@ use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval, SweepInfo
 use super::least_number::{Least, least_number};
 use super::planned_sweep::PlannedSweep;
 
-/// Step of the length of a sweep \[s\].
+/// Step in the sweep length \[s\].
 const LENGTH_STEP_S: f64 = 5.0;
-/// Maximum length of a sweep \[s\].
+/// Longest sweep \[s\].
 const LONGEST_S: f64 = 300.0;
-/// Step of the amplitude, relative to that of the sweep.
+/// Step in the amplitude, relative to the given sweep's.
 const AMPLITUDE_STEP: f64 = 0.05;
-/// Maximum amplitude, relative to that of the sweep: beyond, the response of the aircraft is not
-/// linear.
+/// Largest amplitude, relative to the given sweep's: beyond, the aircraft's response is not linear.
 const LARGEST_AMPLITUDE: f64 = 3.0;
-/// Ratio of the wanted frequency to the lower end of the narrow band, and of its upper end to the
-/// wanted frequency.
+/// Ratio of the narrow band's upper end to the wanted frequency, and of that to its lower end.
 const NARROW: f64 = 2.0;
 
-/// A wanted interval of a response at a frequency.
+/// A response's wanted interval at a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntervalTarget {
     pub pair: Pair,
     /// \[rad/s\].
     pub omega: f64,
-    /// Half-width of the 95 % interval of the magnitude \[dB\].
+    /// Half-width of the magnitude's 95 % interval \[dB\].
     pub half_db: f64,
 }
 
@@ -40,11 +38,11 @@ pub enum Need<T> {
     NotWithin { most: T, half_db: f64 },
 }
 
-/// Each way to a target, with everything else as in `sweep`.
+/// Ways to reach a target; each changes one thing and leaves the rest as in `sweep`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetPlan {
     pub target: IntervalTarget,
-    /// The sweep of the input of the response, with `repeats` of 1.
+    /// The sweep of the response's input, with `repeats` 1.
     pub sweep: StandardSweep,
     pub now: ResponseInterval,
     /// For infinitely many flights.
@@ -56,21 +54,20 @@ pub struct TargetPlan {
 /// The ways to a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetWays {
-    /// Number of sweeps.
     pub repeats: Need<usize>,
-    /// Length of a single sweep \[s\].
+    /// Length, for a single sweep \[s\].
     pub length_s: Need<f64>,
-    /// Amplitude of a single sweep, in the units of the input.
+    /// Amplitude, for a single sweep, in the input's unit.
     pub amplitude: Need<f64>,
-    /// Band of sweeps from half to twice the frequency of the target \[rad/s\].
+    /// Narrow band, from half to twice the target frequency \[rad/s\].
     pub narrow_band: [f64; 2],
-    /// Number of sweeps in the narrow band.
+    /// For sweeps over the narrow band.
     pub narrow_repeats: Need<usize>,
 }
 
 impl FlightPlanner<'_> {
-    /// Finds what brings a target, with at most `most_repeats` sweeps; `None` if an iteration does
-    /// not converge, or if the response does not exist.
+    /// Finds out how to reach a target, with at most `most_repeats` sweeps; `None` if an iteration
+    /// does not converge, or if the response does not exist.
     #[must_use]
     pub fn target_plan(
         &self,
@@ -124,7 +121,7 @@ impl FlightPlanner<'_> {
         [first, (omega * NARROW).clamp(NARROW * first, highest)]
     }
 
-    /// Predicts the half-width of the target \[dB\] after sweeps.
+    /// Predicts the target response's half-width \[dB\] after `times` sweeps.
     fn half_db(
         &self,
         target: IntervalTarget,
@@ -165,7 +162,7 @@ impl FlightPlanner<'_> {
         information: &SweepInformation,
     ) -> Option<Need<f64>> {
         let most = (LARGEST_AMPLITUDE / AMPLITUDE_STEP).round() as usize;
-        // The information grows with the square of the amplitude.
+        // Information grows with the amplitude squared.
         let power = |steps: usize| (steps as f64 * AMPLITUDE_STEP).powi(2);
         let least = least_number(most, |steps| {
             Some(self.half_db(target, information, power(steps))? <= target.half_db)
@@ -199,8 +196,8 @@ impl FlightPlanner<'_> {
         })
     }
 
-    /// Predicts the half-width of the target \[dB\] after a sweep of a length in steps; a sweep too
-    /// short for a line changes nothing.
+    /// Predicts the target response's half-width \[dB\] after a sweep that lasts `steps` length
+    /// steps; a sweep too short for a line changes nothing.
     fn half_db_of_length(
         &self,
         target: IntervalTarget,

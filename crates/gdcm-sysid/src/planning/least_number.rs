@@ -1,4 +1,4 @@
-//! The least number that satisfies a condition which all larger numbers satisfy too.
+//! Searches the least number that satisfies a condition, if all larger numbers satisfy it too.
 
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Planning the next flight: the intervals that further frequency sweeps will bring.
 //!
-//! The Fisher information of the flown records, kept at the end of the identification, plus that
-//! of planned sweeps, gives the standard deviations after a flight that has not been flown.
+//! The Fisher information from the flown records, kept at the end of the identification, plus that
+//! from planned sweeps, gives the standard deviations after a flight that has not been flown.
 //!
 //! | question | files |
 //! |---|---|

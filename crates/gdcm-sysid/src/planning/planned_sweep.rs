@@ -7,12 +7,12 @@
 //! |U(omega)|^2 ~ pi A^2 / (2 C1 (omega - omega_1 + C2 (omega_2 - omega_1)))
 //! ```
 //!
-//! `U` is scaled as in [`Spectrum`](crate::spectra::spectrum::Spectrum). The power of a line does
-//! not depend on the length `T`; the number of lines in a band is proportional to it.
+//! `U` is scaled as in [`Spectrum`](crate::spectra::spectrum::Spectrum). The power at a line does
+//! not depend on the length `T`; the line count in a band is proportional to it.
 //!
 //! M. B. Tischler and R. K. Remple, "Aircraft and Rotorcraft System Identification", 2nd edition,
-//! AIAA, 2012, chapter 5: the exponential sweep, which spends most of its time at low frequencies.
-//! The power follows from it by the method of stationary phase.
+//! AIAA, 2012, chapter 5: the exponential sweep, which lasts longest at low frequencies. Its power
+//! follows by the method of stationary phase.
 
 use std::f64::consts::PI;
 
@@ -22,26 +22,25 @@ use gdcm_model::simulation::Segment;
 
 /// `C1`.
 const GROWTH: f64 = 4.0;
-/// Samples in half a period of the highest frequency.
+/// Number of samples in half a period at the highest frequency.
 const SAMPLES: f64 = 12.0;
 
-/// A frequency sweep of an input, flown a number of times. The other inputs do not move.
+/// A frequency sweep of an input, flown `repeats` times. The other inputs do not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedSweep {
-    /// Index of the input.
+    /// Input index, from 0.
     pub input: usize,
-    /// `A`, in the units of the input.
+    /// `A`, in the input's unit.
     pub amplitude: f64,
     /// `T` \[s\].
     pub length_s: f64,
     /// `omega_1` and `omega_2` \[rad/s\].
     pub band: [f64; 2],
-    /// Number of times that the sweep is flown.
     pub repeats: usize,
 }
 
 impl PlannedSweep {
-    /// Returns the expected power `|U|^2` of a line at `omega` \[rad/s\], 0 outside the band.
+    /// Returns the power `|U|^2` expected at `omega` \[rad/s\], 0 outside the band.
     #[must_use]
     pub fn power(&self, omega: f64) -> f64 {
         let [first, last] = self.band;
@@ -52,7 +51,7 @@ impl PlannedSweep {
         PI * self.amplitude.powi(2) / (2.0 * GROWTH * rate)
     }
 
-    /// Returns the sweep at time `t` \[s\].
+    /// Returns the input at time `t` \[s\].
     #[must_use]
     pub fn at(&self, t: f64) -> f64 {
         self.amplitude * self.angle(t).sin()
@@ -65,8 +64,7 @@ impl PlannedSweep {
         first * t + (last - first) * final_share() * (grown - t)
     }
 
-    /// Returns the samples of a single sweep; the input is divided by `scale`, and the outputs are
-    /// zero.
+    /// Returns a single sweep's samples; the input is divided by `scale`, and the outputs are zero.
     pub(super) fn segment(&self, inputs: usize, outputs: usize, scale: f64) -> Segment {
         let samples = (self.length_s * self.band[1] * SAMPLES / PI)
             .ceil()

@@ -1,4 +1,4 @@
-//! The sweeps to be flown for responses that are not identified.
+//! Advises which sweeps to fly for responses that are not identified.
 
 use gdcm_model::dataset::Pair;
 
@@ -7,14 +7,14 @@ use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval, SweepInfo
 use super::least_number::{Least, least_number};
 use super::planned_sweep::PlannedSweep;
 
-/// Maximum number of sweeps of an input.
+/// Maximum number of sweeps that are advised for an input.
 const MOST_ADVISED: usize = 8;
 
-/// The least number of sweeps of an input that identifies its responses, or the maximum number if
-/// that is not enough.
+/// How many times an input must be swept to identify the responses to it; the maximum if that is
+/// not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepAdvice {
-    /// The sweeps, with their number in `repeats`.
+    /// The sweep, with the advised count in `repeats`.
     pub sweep: StandardSweep,
     /// The response whose interval is the widest then.
     pub pair: Pair,
@@ -27,8 +27,8 @@ pub struct SweepAdvice {
 }
 
 impl FlightPlanner<'_> {
-    /// Returns an advice for each input with responses among `pairs`; they are identified once the
-    /// 95 % interval in the middle of the band is at most `limit_db` on each side.
+    /// Returns advice for each input with responses among `pairs`; they are identified once their
+    /// mid-band 95 % interval is at most `limit_db` on each side.
     #[must_use]
     pub fn advice(&self, pairs: &[Pair], limit_db: f64) -> Option<Vec<SweepAdvice>> {
         let mut advice = Vec::new();
@@ -74,7 +74,7 @@ impl FlightPlanner<'_> {
         })
     }
 
-    /// Returns the response with the widest interval after a number of sweeps; `None` without
+    /// Returns the response with the widest interval after `repeats` sweeps; `None` without
     /// responses.
     fn widest(
         &self,

@@ -1,9 +1,9 @@
-//! Removal of a channel's logging delay on the clock of its record.
+//! Removes a channel's logging delay on its record's clock.
 
 use super::sample_step::median_step;
 
-/// Maximum interval of interpolation, in median steps: three missing samples, as in the preparation
-/// of records (M14.1).
+/// Longest interpolated interval, in median steps: three missing samples, as when records are
+/// prepared (M14.1).
 const LONGEST_LINE: f64 = 4.5;
 
 /// Removes a logging delay \[s\] from a channel: the value at t becomes the linear interpolation at
@@ -32,12 +32,12 @@ pub(super) fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64>
     advanced
 }
 
-/// Straight lines between adjacent samples of a channel.
+/// Straight lines between a channel's adjacent samples.
 struct SampleLines<'r> {
     /// Stamps \[s\].
     time_s: &'r [f64],
     values: &'r [f64],
-    /// Maximum length of a line \[s\].
+    /// Longest line \[s\].
     longest_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Units of channels, taken from the columns of the first record.
+//! Takes channel units from the first record's columns.
 
 use gdcm_model::dataset::channel::ChannelSide;
 
@@ -8,8 +8,8 @@ use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
 
 impl RecordChannels {
-    /// Gives channels without a unit the unit of their column in this layout, so that further
-    /// records are converted to it.
+    /// Gives channels without a unit their column's unit in this layout, so that further records
+    /// are converted to it.
     pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
         for side in [ChannelSide::Input, ChannelSide::Output] {
             let rules = side.pick(&mut self.inputs, &mut self.outputs);
@@ -24,8 +24,8 @@ impl RecordChannels {
     }
 }
 
-/// Returns the unit of a channel's samples: given by the user, or else by the file; `None` if
-/// unknown, as after a user-defined factor other than ±1.
+/// Returns the unit in which a channel's samples are: given by the user, or else by the file;
+/// `None` if unknown, as after a user-defined factor other than ±1.
 fn unit_of_samples(
     conversion: Option<&SaidConversion>,
     used: Option<ColumnUse>,

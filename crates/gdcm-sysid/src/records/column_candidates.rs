@@ -1,4 +1,4 @@
-//! Search for the columns that may hold a channel, by name, documentation and unit.
+//! Searches the columns that may hold a channel, by name, documentation and unit.
 //!
 //! ```text
 //! 1  names: the exact name; else the name with a sign mark; else synonyms of the field
@@ -51,7 +51,7 @@ pub(super) fn without_sign_mark(name: &str) -> String {
     SignedName::parse(name).name
 }
 
-/// Search for the column of a channel.
+/// Searches a channel's column.
 struct ColumnSearch<'r> {
     table: &'r RecordTable,
     rule: &'r ChannelRule,
@@ -152,9 +152,9 @@ impl ColumnSearch<'_> {
         })
     }
 
-    /// Returns whether a field of a topic may be the channel because it has the same name. In logs
-    /// with documented columns the field has another meaning, unless the user names it: "PIDR.P" is
-    /// not a roll rate.
+    /// Returns whether a topic's field may be the channel because it has the same name. In logs
+    /// with documented columns such a field has another meaning, unless the user names it: "PIDR.P"
+    /// is not a roll rate.
     fn may_be_field(&self) -> bool {
         let is_documented = self
             .table

@@ -8,7 +8,7 @@ use gdcm_model::units::physical_unit::conversion_factor;
 use super::plausible_units::possible_units;
 use super::record_table::{RecordColumn, RecordTable};
 
-/// How the unit of a column was determined.
+/// How a column's unit was determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitBasis {
     /// By the file, by the samples, or by the user.
@@ -16,7 +16,7 @@ pub enum UnitBasis {
     /// Not at all: neither the file nor the samples determine the unit, so that the record cannot
     /// be used.
     Open,
-    /// By assumption: the unit of the channel, until the user checks it.
+    /// By assumption: the channel's unit, until the user checks it.
     Assumed,
 }
 
@@ -68,8 +68,8 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the units in which the samples of a column are plausible, for a channel with this
-    /// unit; empty if the unit is known.
+    /// Returns the units in which the column's samples are plausible, for a channel with this unit;
+    /// empty if the unit is known.
     pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
         match table.columns.get(self.column) {
             Some(column) if self.unit != UnitBasis::Known => possible_units(column, unit),
@@ -95,7 +95,7 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the use, with the column taken to be in the unit of the channel.
+    /// Returns the use, with the column taken to be in the channel's unit.
     pub(super) fn in_unit_of_channel(self) -> Self {
         Self {
             unit: UnitBasis::Known,
@@ -103,7 +103,7 @@ impl ColumnUse {
         }
     }
 
-    /// Assumes the unit of the channel if the unit is open.
+    /// Assumes the channel's unit if the unit is open.
     pub(super) fn assuming_unit_of_channel(self) -> Self {
         match self.unit {
             UnitBasis::Open => Self {
@@ -119,9 +119,9 @@ impl ColumnUse {
         self.factor * self.remedy.factor
     }
 
-    /// Returns the remedy to store with the dataset: the remedy of the record, times the part of
-    /// the factor that cannot be derived again from the unit (of the file, or else of the dataset)
-    /// and from the sign mark in the column name.
+    /// Returns the remedy to store with the dataset: the record's remedy, times the part of the
+    /// factor that cannot be derived again from the unit (the file's, or else the dataset's) and
+    /// from the sign mark in the column name.
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
         let from_file = match table.columns.get(self.column) {
             Some(column) => factor_from_file(column, rule),

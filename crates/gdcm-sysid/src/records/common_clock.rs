@@ -1,5 +1,5 @@
-//! The common uniform clock of channels with separate stamps: rate, cut-off, first and last time
-//! (M14.11).
+//! Chooses the common uniform clock for channels with separate stamps: rate, cut-off, first and
+//! last time (M14.11).
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,31 +8,30 @@ use super::stamped_channel::StampedChannel;
 
 /// Ratio of the highest spectral line used to the upper band end (M14.2).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
-/// Minimum number of samples of a channel per period of the highest line.
+/// Minimum number of samples per period of the highest line, in a channel.
 const NEEDED: f64 = 2.5;
-/// Minimum number of samples of the common clock per period of the highest line.
+/// Minimum number of samples per period of the highest line, on the common clock.
 const LEAST_ON_CLOCK: f64 = 4.0;
-/// Maximum number of samples of the common clock per period of the highest line.
+/// Maximum number of samples per period of the highest line, on the common clock.
 const MOST_ON_CLOCK: f64 = 20.0;
 /// Ratio of the cut-off to the highest line.
 const CUT_OFF: f64 = 5.0;
-/// Maximum cut-off as a fraction of half the slowest sample rate.
+/// Highest cut-off, as a fraction of half the slowest sample rate.
 const CUT_OFF_OF_RATE: f64 = 0.8;
 /// Tolerance for a sample just outside an end of the clock, in samples.
 const ROUNDING: f64 = 1e-6;
-/// Maximum number of samples, about a day at 100 Hz; a larger number indicates a wrong stamp.
+/// Maximum number of samples, about a day at 100 Hz; more indicate a wrong stamp.
 const MOST_SAMPLES: f64 = 1e7;
 
 /// The uniform clock to which channels are resampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommonClock {
-    /// Time of the first sample \[s\].
+    /// Time at the first sample \[s\].
     pub start_s: f64,
     /// Sample rate \[Hz\].
     pub rate_hz: f64,
-    /// Number of samples.
     pub samples: usize,
-    /// Low-pass cut-off of every channel \[rad/s\].
+    /// Low-pass cut-off for every channel \[rad/s\].
     pub cutoff: f64,
 }
 
@@ -88,7 +87,7 @@ impl CommonClock {
         })
     }
 
-    /// Returns the sample times of the clock \[s\].
+    /// Returns the clock's sample times \[s\].
     pub fn times_s(&self) -> Vec<f64> {
         (0..self.samples)
             .map(|k| self.start_s + k as f64 / self.rate_hz)
@@ -140,7 +139,7 @@ fn check_rate(name: &str, rate_hz: f64, band_end: f64) -> Result<(), ResamplingE
     Ok(())
 }
 
-/// Returns first and last time of the interval that all channels share \[s\].
+/// Returns the first and last time that all channels share \[s\].
 fn common_span_s(channels: &[StampedChannel]) -> Result<[f64; 2], ResamplingError> {
     let latest = channels
         .iter()

@@ -19,14 +19,14 @@ use crate::spectra::record_use::RecordUse;
 /// A record as it was read, with its channels' columns.
 #[derive(Clone, Debug)]
 pub struct LaidOutRecord {
-    /// Columns of the file.
+    /// The file's columns.
     pub table: Arc<RecordTable>,
     pub layout: RecordLayout,
     /// Information from the record's name, or given by the user instead.
     pub guess: RecordGuess,
     /// Whether the record is used by an identification.
     pub used: bool,
-    /// Problems that prevent the use of the record.
+    /// Problems that prevent using the record.
     pub problems: Vec<LayoutProblem>,
     /// Unusual features that may be correct.
     pub cautions: Vec<LayoutCaution>,
@@ -118,8 +118,8 @@ impl LaidOutRecord {
         (record.as_said(&entry, &channels), notes)
     }
 
-    /// Returns the first and the last time of the record \[s\], on the record's clock; `None` while
-    /// there are problems, or without finite stamps.
+    /// Returns the record's first and last time \[s\], on its own clock; `None` while there are
+    /// problems, or without finite stamps.
     pub fn span_s(&self) -> Option<[f64; 2]> {
         let flight = self.flight.as_ref()?;
         let mut stamps = flight.time_s.iter().filter(|time_s| time_s.is_finite());
@@ -154,7 +154,7 @@ impl LaidOutRecord {
         record
     }
 
-    /// Returns the samples of the record if it is used.
+    /// Returns the record's samples if it is used.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         if self.used {
             self.flight.as_ref()

@@ -13,7 +13,7 @@ use super::resampling::{Resampling, has_holes};
 use super::sample_step::LONGEST_STEP_S;
 use super::time_base::TimeBase;
 
-/// Maximum plausible sensor or bus delay \[s\].
+/// Longest plausible sensor or bus delay \[s\].
 const LONGEST_DELAY_S: f64 = 10.0;
 
 impl RecordLayout {
@@ -146,8 +146,7 @@ fn stamp_problems(time: TimeBase, table: &RecordTable, column: usize) -> Vec<Lay
     problems
 }
 
-/// Returns a problem if stamps repeat or decrease; it states the number of such stamps and the
-/// first of them.
+/// Returns a problem if stamps repeat or decrease; it states how many do, and the first.
 fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     let mut previous: Option<f64> = None;
     let mut problem: Option<LayoutProblem> = None;

@@ -1,4 +1,4 @@
-//! Notes on the columns proposed for the time and the channels of a record.
+//! Notes on the columns proposed for a record's time and channels.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
@@ -26,7 +26,7 @@ pub enum LayoutNote {
     },
     #[error("the file marks {count} columns with other names as {side}s: assigned in order")]
     MarkedInOrder { side: ChannelSide, count: usize },
-    /// A column with the conversion to the unit of a channel.
+    /// A column with the conversion to a channel's unit.
     #[error("{channel}: column {column}{conversion}")]
     Column {
         channel: String,
@@ -40,7 +40,7 @@ pub enum LayoutNote {
     SignReversed {
         channel: String,
         column: String,
-        /// Whether the alias of the channel asks for it.
+        /// Whether the channel's alias asks for it.
         is_requested: bool,
     },
     #[error(
@@ -51,9 +51,9 @@ pub enum LayoutNote {
         rate_list(logged)
     )]
     Resampled {
-        /// Rate of the common clock \[Hz\].
+        /// The common clock's rate \[Hz\].
         rate_hz: f64,
-        /// Cut-off frequency of the low-pass filter \[rad/s\].
+        /// The low-pass filter's cut-off frequency \[rad/s\].
         cut_off_rad_s: f64,
         logged: Vec<LoggedRate>,
     },
@@ -64,7 +64,7 @@ pub enum LayoutNote {
     Held { channels: Vec<String> },
 }
 
-/// Reason for the unit of a time column.
+/// Why a time column has its unit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TimeUnitReason {
     /// The file or the column name gives the unit.
@@ -83,12 +83,12 @@ pub enum TimeUnitReason {
         if *step > 1.0 { "long" } else { "short" }
     )]
     Steps {
-        /// Median step, in the unit of the column.
+        /// Median step, in the column's unit.
         step: f64,
     },
 }
 
-/// Conversion of a column to the unit of its channel.
+/// How a column is converted to its channel's unit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ColumnConversion {
     #[error(", × {} as requested", number(*.0))]
@@ -102,10 +102,10 @@ pub enum ColumnConversion {
         to: String,
         factor: f64,
     },
-    /// The column has the unit of the channel, according to the file or the user.
+    /// The column has the channel's unit, according to the file or the user.
     #[error(", in {0}")]
     SameUnit(String),
-    /// The column has the unit of the channel, according to the rule for files without units.
+    /// The column has the channel's unit, according to the rule for files without units.
     #[error(", in {0} as set for the channel")]
     UnitOfRule(String),
     /// The samples are plausible in a single unit.

@@ -31,7 +31,7 @@ pub enum LayoutProblem {
     TimeOrder {
         /// Column name in quotation marks.
         column: String,
-        /// Number of repeated or decreasing stamps.
+        /// Number of stamps that repeat or decrease.
         count: usize,
         samples: usize,
         /// The first repeated or decreasing stamp, counted from 1.
@@ -80,9 +80,8 @@ pub enum LayoutProblem {
         example {channel}=#2"
     )]
     Unnamed {
-        /// Name of the first channel, for the example in the message.
+        /// The first channel, for the example in the message.
         channel: String,
-        /// Number of columns.
         found: usize,
     },
     /// The column name leaves the sign open.
@@ -152,7 +151,7 @@ pub enum LayoutProblem {
     /// The delay is not plausible for a sensor or a bus.
     #[error("{channel}: the delay of {} s exceeds the limit of 10 s", number(*delay_s))]
     Delay { channel: String, delay_s: f64 },
-    /// Samples exceed the plausible range of a helicopter in this unit.
+    /// Samples exceed the plausible range for a helicopter in this unit.
     #[error(
         "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{}",
         telling(*value, 0), number(*most), likely_unit_words(*likely_unit)
@@ -161,9 +160,9 @@ pub enum LayoutProblem {
         channel: String,
         /// Column name in quotation marks.
         column: String,
-        /// Maximum absolute sample, in the channel's unit.
+        /// Largest absolute sample, in the channel's unit.
         value: f64,
-        /// Maximum plausible value, in the channel's unit.
+        /// Largest plausible value, in the channel's unit.
         most: f64,
         /// The channel's unit.
         unit: String,
@@ -237,10 +236,10 @@ pub enum LayoutCaution {
     /// The record repeats another record under a different name.
     #[error("same samples as {first}: left out, so that no measurement counts twice")]
     Copy {
-        /// Name of the earlier record.
+        /// The earlier record, by name.
         first: String,
     },
-    /// Neither file nor samples determine the unit, so the unit of the channel was assumed.
+    /// Neither file nor samples determine the unit, so the channel's unit was assumed.
     #[error(
         "the file does not give the unit of {channel} (column {column}); {unit} was assumed, and \
         its samples can be in {}",

@@ -101,7 +101,7 @@ struct Proposer<'r> {
     problems: Vec<LayoutProblem>,
 }
 
-/// Origin of a column's unit.
+/// Where a column's unit comes from.
 enum UnitSource {
     /// The file or the user.
     Known,
@@ -172,7 +172,7 @@ impl Proposer<'_> {
         None
     }
 
-    /// Proposes the columns of a side (step 2).
+    /// Proposes columns for the inputs or the outputs (step 2).
     fn columns_of_side(
         &mut self,
         side: ChannelSide,
@@ -263,9 +263,9 @@ impl Proposer<'_> {
         })
     }
 
-    /// Returns the sign of a column for a channel (step 4); `None` if its name leaves the sign
-    /// open. A user-defined factor includes the sign, and so does an alias without a sign mark for
-    /// a column without one.
+    /// Returns a column's sign for a channel (step 4); `None` if its name leaves the sign open. A
+    /// user-defined factor includes the sign, and so does an alias without a sign mark for a column
+    /// without one.
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
         if let Some(alias) = marked_alias {
             return sign_between(alias, &rule.name);
@@ -280,7 +280,7 @@ impl Proposer<'_> {
         sign_between(column, &rule.name)
     }
 
-    /// Returns the column with the factor to the unit of the channel (step 3), and adds a note.
+    /// Returns the column with the factor to the channel's unit (step 3), and adds a note.
     fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let table = self.table;
         let unit = match self.channels.said.get(&rule.name) {
@@ -305,7 +305,7 @@ impl Proposer<'_> {
         Some(self.by_samples(rule, column))
     }
 
-    /// Converts a column from `unit` to the unit of the channel, and adds a note.
+    /// Converts a column from `unit` to the channel's unit, and adds a note.
     fn converted_from(
         &mut self,
         rule: &ChannelRule,
@@ -358,7 +358,7 @@ impl Proposer<'_> {
         used
     }
 
-    /// Adds a note about the column of a channel.
+    /// Adds a note about a channel's column.
     fn note(&mut self, rule: &ChannelRule, column: usize, conversion: ColumnConversion) {
         self.notes.push(LayoutNote::Column {
             channel: rule.name.clone(),

@@ -37,7 +37,7 @@ impl RecordLayout {
         }
     }
 
-    /// Returns the samples on their common clock, restricted to the selected part of the record.
+    /// Returns the samples on their common clock, restricted to the selected part.
     fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
         let time_s = if time == TimeBase::Topics {
             self.stamps_of_first_topic(table).unwrap_or_default()
@@ -64,7 +64,7 @@ impl RecordLayout {
         }
     }
 
-    /// Returns the stamps of the first channel's topic \[s\].
+    /// Returns the stamps from the first channel's topic \[s\].
     fn stamps_of_first_topic(&self, table: &RecordTable) -> Option<Vec<f64>> {
         let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
         let topic = table.columns.get(used.column)?.topic.as_ref()?;

@@ -1,4 +1,4 @@
-//! Transfer of a layout, of the user's edits or of remedies to another record.
+//! Transfers a layout, the user's edits or remedies to another record.
 //!
 //! Columns are matched by name.
 
@@ -25,7 +25,7 @@ impl RecordLayout {
         Some(layout)
     }
 
-    /// Applies the changes between two layouts of `from` to this layout of `table`, channel by
+    /// Applies the changes between two layouts for `from` to this layout for `table`, channel by
     /// channel: transfers the user's edits to another record with the same column names. Remedies,
     /// which belong to one record, are not changed.
     #[must_use]

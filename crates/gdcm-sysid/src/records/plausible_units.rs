@@ -4,7 +4,7 @@ use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_facto
 
 use super::record_table::RecordColumn;
 
-/// Maximum plausible value of a quantity for a helicopter.
+/// Largest value of a quantity that is plausible for a helicopter.
 struct PlausibleLimit {
     dimension: Dimension,
     value: f64,
@@ -19,7 +19,7 @@ const fn limit(dimension: Dimension, value: f64, unit: &'static str) -> Plausibl
     }
 }
 
-/// Maximum plausible values for a helicopter.
+/// Largest values that are plausible for a helicopter.
 const LIMITS: [PlausibleLimit; 7] = [
     limit(Dimension::AngularRate, 400.0, "deg/s"),
     limit(Dimension::Angle, 3600.0, "deg"),
@@ -36,7 +36,8 @@ const LOGGED: [&str; 21] = [
     "kt", "%", "1", "m", "cm", "mm", "ft", "in", "N", "lb",
 ];
 
-/// Returns the maximum plausible value for a helicopter in this unit; `None` if there is no limit.
+/// Returns the largest value that is plausible for a helicopter in this unit; `None` if there is no
+/// limit.
 pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
     let dimension = PhysicalUnit::parse(unit)?.dimension;
     let limit = LIMITS
@@ -46,7 +47,7 @@ pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
 }
 
 /// Returns the units in which a column's samples are plausible for a channel with this unit: units
-/// of the same dimension whose maximum plausible value is not below the largest sample, with the
+/// with the same dimension whose largest plausible value is not below the largest sample, with the
 /// channel's unit first. Empty if all samples are zero or the unit is unknown.
 pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
     let Some(peak) = column.peak() else {

@@ -6,18 +6,18 @@ use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::record_table::{RecordColumn, RecordTable};
 
-/// Folded column names of a latitude.
+/// Folded column names for a latitude.
 const LATITUDE: [&str; 1] = ["lat"];
-/// Folded column names of a longitude.
+/// Folded column names for a longitude.
 const LONGITUDE: [&str; 3] = ["lon", "long", "lng"];
-/// Maximum modulus of a latitude or longitude \[deg\].
+/// Largest modulus of a latitude or longitude \[deg\].
 const LARGEST_ANGLE_DEG: f64 = 180.0;
-/// Maximum position change in a record \[deg\]; a minute at 140 kt is 0.04 degrees.
+/// Largest position change in a record \[deg\]; a minute at 140 kt is 0.04 degrees.
 const LARGEST_POSITION_CHANGE_DEG: f64 = 0.5;
-/// Maximum position change in a column without a unit, relative to its largest absolute value.
+/// Largest position change in a column without a unit, relative to its largest absolute value.
 const LARGEST_RELATIVE_CHANGE: f64 = 0.02;
-/// Maximum relative position change in a column with exactly the channel's name: smaller than the
-/// movement of any stick in flight.
+/// Largest relative position change in a column with exactly the channel's name: any stick moves
+/// more in flight.
 const LARGEST_RELATIVE_CHANGE_OF_NAMESAKE: f64 = 0.002;
 
 /// Returns whether a column is a latitude or a longitude, whose names resemble input names: an

@@ -1,4 +1,5 @@
-//! Columns of a record that may hold a reference: a signal that drove the loop from outside (M14.15).
+//! Finds a record's columns that may hold a reference: a signal that drove the loop from outside
+//! (M14.15).
 
 use super::laid_out_record::LaidOutRecord;
 
@@ -6,7 +7,7 @@ use super::laid_out_record::LaidOutRecord;
 /// signals. Endings up to two letters long must be whole words.
 const REFERENCES: &str =
     "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
-/// Documented meaning of a reference: the target of a system identification mode.
+/// Documented meaning that marks a reference: the target in a system identification mode.
 const REFERENCE_MEANING: &str = "TARG";
 
 impl LaidOutRecord {
@@ -24,8 +25,8 @@ impl LaidOutRecord {
             if taken.contains(&index) || !column.varies() {
                 continue;
             }
-            // A column that the documentation of the logging system identifies as an aircraft
-            // signal is not a reference.
+            // A column that the logging system's documentation identifies as an aircraft signal is
+            // not a reference.
             let may_be_reference = column
                 .meaning
                 .is_none_or(|meaning| meaning == REFERENCE_MEANING);

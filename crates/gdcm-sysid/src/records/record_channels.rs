@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use gdcm_model::dataset::{Channel, Dataset};
 use gdcm_model::names::channel_rule::ChannelRule;
 
-/// User-defined sample conversion; overrides the file.
+/// User-defined conversion; overrides the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SaidConversion {
-    /// Unit of the samples.
+    /// The samples' unit.
     Unit(String),
     /// Channel units per column unit; negative for the opposite sign.
     Factor(f64),
@@ -52,8 +52,8 @@ impl RecordChannels {
         }
     }
 
-    /// Returns the channels of records named by the dataset: files without a unit are taken to be
-    /// in the dataset's units.
+    /// Returns the channels for records that the dataset names: files without a unit are taken to
+    /// be in the dataset's units.
     #[must_use]
     pub fn of_named_records(mut self) -> Self {
         for rule in self.inputs.iter_mut().chain(&mut self.outputs) {
@@ -63,7 +63,7 @@ impl RecordChannels {
     }
 }
 
-/// Returns the rule of a dataset's channel, in its unit.
+/// Returns the rule for a dataset's channel, in its unit.
 fn rule_of_channel(channel: &Channel) -> ChannelRule {
     ChannelRule {
         unit: channel.unit.clone(),

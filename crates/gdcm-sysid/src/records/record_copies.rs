@@ -1,4 +1,4 @@
-//! Copies among records: records with the same samples, of which only the first is used.
+//! Recognises copies among records: if several have the same samples, only the first is used.
 
 use nalgebra::DMatrix;
 

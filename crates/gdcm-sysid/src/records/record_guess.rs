@@ -41,8 +41,8 @@ const VALIDATION: [&str; 5] = [
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 impl RecordGuess {
-    /// Derives the information from the names of a record, of its file, and of its variable or its
-    /// file in an archive.
+    /// Derives the information from the record's name, its file's name, and its variable's name or
+    /// its file's name in an archive.
     pub fn from_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let mut names = vec![table.source.file.as_str()];
         names.extend(table.source.variable.as_deref());

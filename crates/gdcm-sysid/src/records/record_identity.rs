@@ -1,4 +1,4 @@
-//! Identity of a record: its entry in a dataset, and whether two tables are the same record.
+//! A record's identity: its entry in a dataset, and whether two tables are the same record.
 
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{ConditionId, Dataset};
@@ -6,8 +6,8 @@ use gdcm_model::dataset::{ConditionId, Dataset};
 use super::record_table::{RecordColumn, RecordTable};
 
 impl RecordTable {
-    /// Returns the dataset entry of the record, and its condition. The entry names the same
-    /// variable in a file with the same name, or the same record in an archive with another name.
+    /// Returns the record's dataset entry, and its condition. The entry names the same variable in
+    /// a file with the same name, or the same record in an archive with another name.
     pub fn entry_of_dataset<'d>(
         &self,
         dataset: &'d Dataset,
@@ -28,7 +28,7 @@ impl RecordTable {
         None
     }
 
-    /// Returns whether both are the same record: the same variable and part of a file, or equal
+    /// Returns whether both are the same record: the same variable and part in a file, or equal
     /// samples under the same name. A table with equal samples under another name is a copy
     /// ([`leave_out_copies`](super::leave_out_copies)).
     pub fn is_same_record(&self, other: &Self) -> bool {
@@ -57,7 +57,7 @@ fn is_same_column(column: &RecordColumn, other: &RecordColumn) -> bool {
     column.name == other.name && column.unit == other.unit && bits.eq(other_bits)
 }
 
-/// Returns the last component of a path.
+/// Returns a path's last component.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }

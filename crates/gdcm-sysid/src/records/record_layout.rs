@@ -82,15 +82,15 @@ impl RecordLayout {
         add_remedies(&mut self.outputs, &channels.outputs, remedies);
     }
 
-    /// Returns the column of a channel for editing.
+    /// Returns a channel's column for editing.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
         role.pick(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
             .as_mut()
     }
 
-    /// Assumes the unit of its channel for every column whose unit is open, so that the record can
-    /// be used; the layout then has a caution.
+    /// Assumes its channel's unit for every column whose unit is open, so that the record can be
+    /// used; the layout then has a caution.
     #[must_use]
     pub fn assuming_units_of_channels(&self) -> Self {
         let mut layout = self.clone();
@@ -110,8 +110,8 @@ impl RecordLayout {
         layout
     }
 
-    /// Confirms that the samples of every column whose unit is open or assumed are in the unit of
-    /// its channel.
+    /// Confirms, for every column whose unit is open or assumed, that its samples are in its
+    /// channel's unit.
     #[must_use]
     pub fn in_units_of_channels(&self) -> Self {
         let mut layout = self.clone();

@@ -1,11 +1,11 @@
-//! A record as stored in its file: columns of samples.
+//! A record as stored in its file: columns with samples.
 
 use std::sync::Arc;
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::number;
 
-/// A column of samples.
+/// A column: its name, unit and samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordColumn {
     /// Name in the file; "column 3" if the file has none.
@@ -18,7 +18,7 @@ pub struct RecordColumn {
     pub values: Vec<f64>,
     /// Topic with a separate clock; `None` for columns on the table's clock.
     pub topic: Option<Arc<TopicClock>>,
-    /// The channel, such as "P" or "LON", according to the documentation of the logging system.
+    /// The channel, such as "P" or "LON", according to the logging system's documentation.
     pub meaning: Option<&'static str>,
 }
 
@@ -136,7 +136,7 @@ impl RecordTable {
         }
     }
 
-    /// Returns the number of samples in the longest column.
+    /// Returns the longest column's sample count.
     pub fn rows(&self) -> usize {
         self.columns
             .iter()
@@ -168,7 +168,7 @@ impl RecordTable {
             .position(|column| column.name.eq_ignore_ascii_case(name))
     }
 
-    /// Returns the index of the column with this number: 29 for `#30`.
+    /// Returns a column's index from its number: 29 for `#30`.
     fn position_by_number(&self, name: &str) -> Option<usize> {
         let number: usize = name.strip_prefix('#')?.parse().ok()?;
         let column = number.checked_sub(1)?;
@@ -179,8 +179,8 @@ impl RecordTable {
         }
     }
 
-    /// Returns the index of a matrix column, which readers name `xyz_1`; the name counts from 0 as
-    /// in Python (`xyz[0]`) or from 1 as in MATLAB (`xyz(1)`).
+    /// Returns a matrix column's index; readers name such a column `xyz_1`; the name counts from 0
+    /// as in Python (`xyz[0]`) or from 1 as in MATLAB (`xyz(1)`).
     fn position_in_matrix(&self, name: &str) -> Option<usize> {
         let (matrix, index, first) = if let Some(rest) = name.strip_suffix(']') {
             let (matrix, index) = rest.rsplit_once('[')?;

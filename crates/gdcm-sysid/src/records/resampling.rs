@@ -1,4 +1,4 @@
-//! Resampling to a common clock, for columns with separate clocks (M14.11).
+//! Resamples columns with separate clocks to a common clock (M14.11).
 
 use nalgebra::DMatrix;
 
@@ -14,22 +14,22 @@ use super::resampling_error::ResamplingError;
 use super::sample_step::median_step;
 use super::stamped_channel::{StampedChannel, is_held};
 
-/// Share of a column's samples that are followed by a missing sample, above which the table is
-/// taken to combine several clocks.
+/// The table is taken to combine several clocks if a missing sample follows more than this share of
+/// a column's samples.
 const SHARE_OF_HOLES: f64 = 0.1;
-/// Maximum deviation of an even step from a multiple of the median step, relative to the median
-/// step.
+/// Largest deviation from a multiple of the median step at which a step is even, relative to the
+/// median step.
 const JITTER: f64 = 0.2;
-/// Minimum share of even steps for a clock to count as even.
+/// Minimum share of even steps at which a clock counts as even.
 const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
 /// Chosen columns, and the clock to which they are resampled.
 pub(super) struct Resampling {
     /// The inputs, then the outputs.
     channels: Vec<StampedChannel>,
-    /// Number of leading channels that are inputs.
+    /// Number of inputs, which come first in `channels`.
     inputs: usize,
-    /// Names of the inputs that are held constant between their samples.
+    /// Inputs, by name, that are held constant between their samples.
     held: Vec<String>,
     clock: CommonClock,
 }
@@ -45,8 +45,8 @@ struct ChannelColumn<'r> {
 }
 
 impl RecordLayout {
-    /// Whether the chosen columns have several clocks, or a rate is requested; the record is then
-    /// resampled to a common clock.
+    /// Returns whether the chosen columns have several clocks, or a rate is requested; the record
+    /// is then resampled to a common clock.
     pub fn is_resampled(&self, table: &RecordTable, channels: &RecordChannels) -> bool {
         Resampling::new(self, table, channels).is_some()
     }
@@ -55,8 +55,8 @@ impl RecordLayout {
 impl Resampling {
     /// Chooses a common clock for the chosen columns.
     ///
-    /// Returns `None` if no resampling is needed, or if the time or the column of a channel is not
-    /// yet chosen.
+    /// Returns `None` if no resampling is needed, or if the time or a channel's column is not yet
+    /// chosen.
     ///
     /// # Errors
     /// The reason why the columns cannot be resampled.
@@ -125,7 +125,7 @@ impl Resampling {
         notes
     }
 
-    /// Returns the record on the common clock; NaN in the gaps of each channel.
+    /// Returns the record on the common clock; NaN in each channel's gaps.
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
         let (inputs, outputs) = self.channels.split_at(self.inputs);
@@ -148,8 +148,8 @@ impl Resampling {
 }
 
 impl ChannelColumn<'_> {
-    /// Returns the stamps of the column's topic, or of the table if the column has no topic, minus
-    /// the delay \[s\].
+    /// Returns the stamps from the column's topic, or from the table if the column has no topic,
+    /// minus the delay \[s\].
     fn stamps(&self, table_time_s: &[f64]) -> Vec<f64> {
         let stamps = match &self.column.topic {
             Some(topic) => topic.time_s.as_slice(),
@@ -167,8 +167,8 @@ impl ChannelColumn<'_> {
             .collect()
     }
 
-    /// Whether the channel is an input that is held between its samples, by request or by its
-    /// repeated values.
+    /// Returns whether the channel is an input that is held between its samples, by request or by
+    /// its repeated values.
     fn is_held(&self, values: &[f64], wish: &ResamplingWish) -> bool {
         self.channel.side == ChannelSide::Input
             && (wish.held.contains(&self.channel.rule.name) || is_held(values))
@@ -194,7 +194,8 @@ fn channel_columns<'r>(
     Some(chosen)
 }
 
-/// Whether columns have topics with different or uneven clocks, or only some columns have a topic.
+/// Returns whether columns have topics with different or uneven clocks, or only some columns have a
+/// topic.
 fn has_separate_clocks(chosen: &[ChannelColumn]) -> bool {
     let clocks: Vec<&[f64]> = chosen
         .iter()
@@ -208,7 +209,8 @@ fn has_separate_clocks(chosen: &[ChannelColumn]) -> bool {
     !is_one_clock || clocks.len() < chosen.len() || !is_even(clocks[0])
 }
 
-/// Whether samples are missing repeatedly, as in a table that joins the rows of several clocks.
+/// Returns whether samples are missing repeatedly, as in a table that joins rows from several
+/// clocks.
 pub(super) fn has_holes(values: &[f64]) -> bool {
     let holes = values
         .windows(2)
@@ -217,7 +219,8 @@ pub(super) fn has_holes(values: &[f64]) -> bool {
     holes as f64 > SHARE_OF_HOLES * values.len() as f64
 }
 
-/// Whether 95 % of the steps differ from multiples of the median step by at most 20 % (M14.1).
+/// Returns whether 95 % of the steps differ from multiples of the median step by at most 20 %
+/// (M14.1).
 fn is_even(time_s: &[f64]) -> bool {
     let Some(median) = median_step(time_s) else {
         return false;

@@ -5,7 +5,7 @@
 pub enum ResamplingError {
     #[error("{topic} has {samples} samples with a stamp; at least 3 are needed")]
     TooFew { topic: String, samples: usize },
-    /// A topic has fewer than 2.5 samples per period of the highest line.
+    /// A topic has fewer than 2.5 samples in a period of the highest line.
     #[error(
         "{topic} is sampled at {rate_hz:.1} Hz, and a band to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
          the band at {possible:.2} rad/s"
@@ -13,11 +13,11 @@ pub enum ResamplingError {
     TooSlow {
         topic: String,
         rate_hz: f64,
-        /// Minimum sample rate for the band \[Hz\].
+        /// Lowest sample rate for the band \[Hz\].
         needed_hz: f64,
         /// Requested upper band end \[rad/s\].
         band_end: f64,
-        /// Maximum upper band end at the sample rate \[rad/s\].
+        /// Highest upper band end at the sample rate \[rad/s\].
         possible: f64,
     },
     #[error(
@@ -25,10 +25,10 @@ pub enum ResamplingError {
          clocks differ"
     )]
     NoCommonTime {
-        /// Name of the topic that ends first.
+        /// The topic that ends first.
         first: String,
         first_end_s: f64,
-        /// Name of the topic that begins last.
+        /// The topic that begins last.
         second: String,
         second_start_s: f64,
     },

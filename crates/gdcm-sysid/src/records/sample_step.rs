@@ -1,6 +1,6 @@
-//! The step between two samples: its median, and its plausible maximum.
+//! The step between two samples: its median, and its longest plausible value.
 
-/// Maximum plausible time between two samples of a manoeuvre \[s\].
+/// Longest plausible time between two samples in a manoeuvre \[s\].
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
 
 /// Returns the median step between consecutive stamps; `None` without finite steps.

@@ -1,4 +1,4 @@
-//! Splitting a table that holds several records.
+//! Splits a table that holds several records.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use gdcm_model::units::number;
 use super::record_table::{RecordColumn, RecordSource, RecordTable};
 use super::time_base::TimeBase;
 
-/// Separation of several records in a table.
+/// How several records are separated in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separation {
     /// The table is one record.
@@ -19,15 +19,16 @@ pub enum Separation {
     ByTime(usize),
 }
 
-/// Names, without separators, of columns that contain record numbers.
+/// Names, without separators, that mark columns with record numbers.
 const NUMBERS: &str = "record records recordid recordno recordnumber run runid runno runnumber manoeuvre maneuver segment event \
                        testpoint experiment";
 
 impl Separation {
-    /// Minimum number of samples in each record of a table that holds several.
+    /// Minimum number of samples in each record when a table holds several.
     pub const FEWEST: usize = 20;
 
-    /// Proposes a separation by a column of record numbers or, without one, by stamps that restart.
+    /// Proposes a separation by a column with record numbers or, without one, by stamps that
+    /// restart.
     pub fn proposed(table: &RecordTable) -> Self {
         if table.has_topics() {
             return Self::None;
@@ -42,8 +43,8 @@ impl Separation {
     }
 }
 
-/// Whether a column is named like a record number and consists of several runs of equal integers,
-/// each of at least [`Separation::FEWEST`] samples.
+/// Returns whether a column is named like a record number and consists of several runs of equal
+/// integers, each with at least [`Separation::FEWEST`] samples.
 fn numbers_records(column: &RecordColumn) -> bool {
     let name = folded_name(&column.name);
     if !NUMBERS.split(' ').any(|word| word == name) {
@@ -56,7 +57,7 @@ fn numbers_records(column: &RecordColumn) -> bool {
             .all(|run| run.len() >= Separation::FEWEST && column.values[run.start].fract() == 0.0)
 }
 
-/// Whether stamps restart, with at least [`Separation::FEWEST`] samples in each part.
+/// Returns whether stamps restart, with at least [`Separation::FEWEST`] samples in each part.
 fn restarts(stamps: &[f64]) -> bool {
     let parts = rising_parts(stamps);
     parts.len() > 1 && parts.iter().all(|part| part.len() >= Separation::FEWEST)
@@ -65,7 +66,7 @@ fn restarts(stamps: &[f64]) -> bool {
 /// Table rows that form a record.
 struct RecordPart {
     rows: Range<usize>,
-    /// Name of the part within its table.
+    /// The part's name within its table.
     name: String,
 }
 
@@ -127,8 +128,8 @@ impl RecordTable {
     }
 }
 
-/// Returns a part for each run of equal numbers; later runs of a number are named "part 2", "part
-/// 3".
+/// Returns a part for each run of equal numbers; later runs with the same number are named "part
+/// 2", "part 3".
 fn parts_by_number(numbers: &RecordColumn) -> Vec<RecordPart> {
     let mut seen: Vec<f64> = Vec::new();
     let mut parts = Vec::new();
@@ -191,7 +192,8 @@ fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     parts
 }
 
-/// Whether the first stamps, half of [`Separation::FEWEST`], are all below `last` or missing.
+/// Returns whether the first stamps, half of [`Separation::FEWEST`], are all below `last` or
+/// missing.
 fn stays_below(stamps: &[f64], last: f64) -> bool {
     stamps
         .iter()

@@ -1,4 +1,4 @@
-//! Tables side by side in one table, each preceded by its own stamp column.
+//! Recognises tables side by side in one table, each preceded by its own stamp column.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::record_table::{RecordColumn, RecordTable, TopicClock, same_samples};
 use super::separation::Separation;
 use super::time_base::TimeBase;
 
-/// Minimum overlap of two topics, as a fraction of the shorter duration.
+/// Minimum overlap between two topics, as a fraction of the shorter duration.
 const LEAST_OVERLAP: f64 = 0.5;
 
 impl RecordTable {
@@ -66,8 +66,8 @@ impl RecordTable {
         found
     }
 
-    /// Whether there are several stamp columns, the first column among them, each followed by a
-    /// sample column.
+    /// Returns whether there are several stamp columns, the first column among them, each followed
+    /// by a sample column.
     fn has_samples_behind(&self, stamp_columns: &[usize]) -> bool {
         let [0, .., last] = stamp_columns else {
             return false;
@@ -76,7 +76,7 @@ impl RecordTable {
     }
 }
 
-/// Whether the clocks differ and all of them overlap with the first.
+/// Returns whether the clocks differ and all overlap with the first.
 fn are_clocks_of_topics(clocks: &[Vec<f64>]) -> bool {
     let Some(first) = clocks.first().and_then(|clock| TimeSpan::new(clock)) else {
         return false;
@@ -90,7 +90,7 @@ fn are_clocks_of_topics(clocks: &[Vec<f64>]) -> bool {
     !clocks.iter().all(|clock| same_samples(clock, &clocks[0]))
 }
 
-/// First and last time of a clock \[s\].
+/// A clock's first and last time \[s\].
 struct TimeSpan {
     start_s: f64,
     end_s: f64,
@@ -128,8 +128,8 @@ fn join_to_topic(columns: &mut [RecordColumn], clock: &[f64]) {
     }
 }
 
-/// Whether the stamps increase, are numerous enough for a signal, and are all missing after the
-/// first missing stamp.
+/// Returns whether the stamps increase, are numerous enough for a signal, and are all missing after
+/// the first missing stamp.
 fn rises(stamps: &[f64]) -> bool {
     let count = stamps
         .iter()

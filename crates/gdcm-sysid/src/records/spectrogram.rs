@@ -1,4 +1,4 @@
-//! Power of a channel over time and frequency, which shows a sweep in a long record.
+//! Computes a channel's power over time and frequency, which shows a sweep in a long record.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use gdcm_model::statistics::median;
 
 use crate::spectra::spectrum::{Spectrum, spectra};
 
-/// Power of a channel over time and frequency.
+/// A channel's power over time and frequency.
 ///
 /// ```text
 /// windows  Hann, 0.15 times the record, between 4 s and 20 s; one every eighth of their length,
@@ -25,24 +25,24 @@ use crate::spectra::spectrum::{Spectrum, spectra};
 pub struct Spectrogram {
     /// Centres of the first and the last window \[s\].
     pub time_s: [f64; 2],
-    /// Frequencies of the first and the last row \[rad/s\].
+    /// Frequencies in the first and the last row \[rad/s\].
     pub omega: [f64; 2],
-    /// Level \[dB\] of each row, window by window.
+    /// Level \[dB\] in each row, window by window.
     pub levels: Vec<Vec<f64>>,
 }
 
 /// Window length as a fraction of the record length.
 const WINDOW_SHARE: f64 = 0.15;
-/// Minimum and maximum window length \[s\].
+/// Shortest and longest window \[s\].
 const SHORTEST_WINDOW_S: f64 = 4.0;
 const LONGEST_WINDOW_S: f64 = 20.0;
 /// Minimum number of samples in a window.
 const FEWEST_SAMPLES: usize = 8;
-/// Number of steps from window to window in the length of a window.
+/// Number of steps from window to window in a window length.
 const STEPS_A_WINDOW: usize = 8;
 /// Maximum number of windows.
 const MOST_WINDOWS: usize = 400;
-/// Maximum frequency as a fraction of half the sample rate.
+/// Highest frequency, as a fraction of half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
 
 /// Frequency up to which lines are computed, relative to the last row: more than half a row above it.
@@ -90,7 +90,7 @@ struct Windows {
     seconds: f64,
     /// Window length in samples.
     length: usize,
-    /// Index of the first sample of each window.
+    /// Index of each window's first sample.
     starts: Vec<usize>,
 }
 
@@ -127,11 +127,11 @@ impl Windows {
 
 /// Row frequencies, evenly spaced in ln(omega).
 struct FrequencyRows {
-    /// Frequency of the first row \[rad/s\].
+    /// Frequency in the first row \[rad/s\].
     lowest: f64,
-    /// Frequency of the last row \[rad/s\].
+    /// Frequency in the last row \[rad/s\].
     highest: f64,
-    /// Ratio between the frequencies of neighbouring rows.
+    /// Frequency ratio between neighbouring rows.
     ratio: f64,
 }
 
@@ -152,7 +152,7 @@ impl FrequencyRows {
         })
     }
 
-    /// Returns the power of a window in each row.
+    /// Returns a window's power in each row.
     fn powers(&self, spectrum: &Spectrum) -> Vec<f64> {
         let mut powers = Vec::with_capacity(Spectrogram::ROWS);
         for row in 0..Spectrogram::ROWS {
@@ -162,8 +162,8 @@ impl FrequencyRows {
         powers
     }
 
-    /// Returns the maximum power of the lines within half a row of `omega`; of the next line above
-    /// if there are none.
+    /// Returns the largest power among the lines within half a row of `omega`; if there are none,
+    /// the power at the next line above.
     fn power_at(&self, spectrum: &Spectrum, omega: f64) -> f64 {
         let lines = &spectrum.omega;
         let half_row = self.ratio.sqrt();
@@ -193,7 +193,7 @@ fn levels(powers: &[Vec<f64>]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Returns the level \[dB\] of a power relative to `greatest`.
+/// Converts a power to a level \[dB\] relative to `greatest`.
 fn level(power: f64, greatest: f64) -> f64 {
     let ratio = (power / greatest).max(f64::MIN_POSITIVE);
     (10.0 * ratio.log10()).max(Spectrogram::FLOOR)

@@ -1,4 +1,4 @@
-//! Unit of the stamps of a record: from the file, the column's name, or the size of the steps.
+//! Determines the unit of a record's stamps: from the file, the column's name, or the step size.
 
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
@@ -6,13 +6,13 @@ use super::layout_note::TimeUnitReason;
 use super::record_table::RecordColumn;
 use super::sample_step::{LONGEST_STEP_S, median_step};
 
-/// Minimum plausible time between two samples of a flight recorder \[s\].
+/// Shortest plausible time between two samples in a flight recorder \[s\].
 const SHORTEST_STEP_S: f64 = 5e-5;
-/// Minimum step accepted for a guessed unit \[s\].
+/// Shortest step accepted for a guessed unit \[s\].
 const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
 const SECONDS_A_DAY: f64 = 86_400.0;
 
-/// Unit of a stamp column.
+/// A stamp column's unit.
 pub(super) struct StampUnit {
     pub(super) name: &'static str,
     /// Seconds per unit.
@@ -62,8 +62,8 @@ impl StampUnit {
         })
     }
 
-    /// Returns a unit that was chosen because a median step of `step`, taken in seconds, is
-    /// implausible: it is over [`LONGEST_STEP_S`] or far below a second.
+    /// Returns a unit that was chosen because the median step `step`, taken in seconds, is
+    /// implausible: over [`LONGEST_STEP_S`] or far below a second.
     fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
         Self {
             name,
@@ -81,7 +81,7 @@ impl StampUnit {
     }
 }
 
-/// Returns the last word of a name; `None` if the name is a single word.
+/// Returns a name's last word; `None` if the name is a single word.
 fn last_word(name: &str) -> Option<&str> {
     name.rsplit(|c: char| !c.is_alphanumeric())
         .next()

@@ -9,20 +9,20 @@ use gdcm_model::statistics::median;
 
 use super::resampling_error::ResamplingError;
 
-/// Maximum step without a gap, in median steps: 3 missing samples are bridged (M14.1).
+/// Longest step without a gap, in median steps: 3 missing samples are bridged (M14.1).
 const LONGEST_STEP: f64 = 4.5;
-/// Share of repeated samples above which a channel counts as held.
+/// A channel counts as held if more than this share of its samples repeat.
 const HELD: f64 = 0.5;
 /// Minimum number of samples in a channel.
 const LEAST_SAMPLES: usize = 3;
-/// Half-length of the kernel, in half periods of its cut-off.
+/// The kernel's half-length, in half periods at its cut-off.
 const HALF_TAPS: f64 = 12.0;
 /// Argument \[rad\] below which sin(x)/x is 1 to rounding.
 const SMALL_ANGLE: f64 = 1e-8;
-/// Tolerance for times just outside the stamps of a run, relative to the time.
+/// Tolerance for times just outside a run's stamps, relative to the time.
 const ROUNDING: f64 = 1e-9;
 
-/// Samples of a channel with separate stamps.
+/// A channel's samples with their own stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StampedChannel {
     /// Name for display.
@@ -31,7 +31,7 @@ pub struct StampedChannel {
     time_s: Vec<f64>,
     /// Value at each stamp, finite.
     values: Vec<f64>,
-    /// Index ranges of samples without gaps; never empty.
+    /// Index ranges without gaps; never empty.
     runs: Vec<Range<usize>>,
     /// Sample rate without gaps \[Hz\].
     pub rate_hz: f64,
@@ -129,7 +129,7 @@ fn delay_by_half_a_hold(times: &mut [f64], longest_s: f64) {
     }
 }
 
-/// Returns the index ranges of the samples between gaps longer than `longest_s`.
+/// Returns the index ranges between gaps longer than `longest_s`.
 fn runs(times: &[f64], longest_s: f64) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;
@@ -158,7 +158,7 @@ fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
     }
 }
 
-/// Whether a command is held: more than half of its samples repeat the preceding sample.
+/// Returns whether a command is held: more than half its samples repeat the preceding sample.
 pub fn is_held(values: &[f64]) -> bool {
     let same = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     same as f64 > HELD * values.len() as f64

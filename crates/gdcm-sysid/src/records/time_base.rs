@@ -1,4 +1,4 @@
-//! Source of a record's sample times: a stamp column, a sample time, or topics.
+//! Where a record's sample times come from: a stamp column, a sample time, or topics.
 
 use gdcm_model::names::time_name::time_name_rank;
 
@@ -7,7 +7,7 @@ use super::record_table::RecordTable;
 use super::sample_step::median_step;
 use super::stamp_unit::StampUnit;
 
-/// Source of the sample times.
+/// Where the sample times come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeBase {
     /// A stamp column.
@@ -23,7 +23,7 @@ pub enum TimeBase {
     Topics,
 }
 
-/// Rank of a column as the time column; the smallest rank is the most likely.
+/// How likely a column is the time column; the smallest rank is the most likely.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct TimeRank {
     /// Whether the column mostly repeats or decreases, so that at most its name suggests a time.
@@ -82,7 +82,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns the time base of a stamp column, in the unit that [`StampUnit`] determines.
+    /// Returns the time base from a stamp column, in the unit that [`StampUnit`] determines.
     pub(super) fn from_column(table: &RecordTable, column: usize) -> Self {
         TimeBase::Column {
             column,
@@ -123,7 +123,7 @@ fn finite_product(stamp: f64, seconds: f64) -> f64 {
     }
 }
 
-/// Whether more than half of the finite steps are positive.
+/// Returns whether more than half the finite steps are positive.
 fn mostly_rises(stamps: &[f64]) -> bool {
     let mut rising = 0;
     let mut total = 0;

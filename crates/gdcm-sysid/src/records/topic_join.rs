@@ -1,8 +1,7 @@
-//! Joins the tables of topics into one record: their columns side by side, each with the stamps of
-//! its topic.
+//! Joins topic tables into one record: their columns side by side, each with its topic's stamps.
 //!
-//! The name of a table becomes part of the names of its columns. A dataset keeps the name of the
-//! joined record, from which it is joined again.
+//! A table's name becomes part of its column names. A dataset keeps the joined record's name, from
+//! which it is joined again.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,17 +11,17 @@ use super::sample_step::median_step;
 use super::time_base::TimeBase;
 use super::topic_names::{are_from_one_file, common_prefix, logs_of_topics, topic_names};
 
-/// Uninformative names for the only value column of a topic.
+/// Uninformative names for a topic's only value column.
 const PLAIN: [&str; 8] = [
     "value", "values", "data", "signal", "signals", "x", "y", "val",
 ];
 
 impl RecordTable {
-    /// Name of the record that all topics in a file or folder form together.
+    /// Name for the record that all topics in a file or folder form together.
     pub const TOPICS: &'static str = "its topics";
 
-    /// Returns the record that topics form under this name: all of them as [`Self::TOPICS`], or
-    /// the topics in one log as "its topics, log_7".
+    /// Returns the record that topics form under this name: all as [`Self::TOPICS`], or the topics
+    /// in one log as "its topics, log_7".
     pub fn of_topics_called(tables: &[RecordTable], variable: &str) -> Option<RecordTable> {
         if variable == Self::TOPICS {
             return Some(join_topics(tables));
@@ -49,8 +48,7 @@ pub(super) fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTab
     joined
 }
 
-/// Combines the topics of a record side by side; tables without a time are omitted and listed in a
-/// note.
+/// Combines a record's topics side by side; tables without a time are omitted and listed in a note.
 pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
     let source = common_source(tables);
     let mut joined = RecordTable {
@@ -87,7 +85,7 @@ pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
     joined
 }
 
-/// Returns the file or folder of the topics, as the source of their record.
+/// Returns the topics' file or folder, as their record's source.
 fn common_source(tables: &[RecordTable]) -> RecordSource {
     let mut source = RecordSource {
         variable: Some(RecordTable::TOPICS.to_owned()),
@@ -117,7 +115,7 @@ fn common_file(tables: &[RecordTable]) -> &str {
     }
 }
 
-/// Returns the name of the file without its extension, or the name of the folder.
+/// Returns the file's name without its extension, or the folder's name.
 fn common_name(tables: &[RecordTable]) -> &str {
     let file = common_file(tables);
     let mut name = file.rsplit('/').next().unwrap_or_default();
@@ -129,8 +127,8 @@ fn common_name(tables: &[RecordTable]) -> &str {
     if name.is_empty() { "topics" } else { name }
 }
 
-/// Returns the seconds per stamp unit, by column name. The topics of a log share the unit, which
-/// only the short steps of fast topics reveal.
+/// Returns the seconds per stamp unit, by column name. A log's topics share the unit, which only
+/// the fast topics' short steps reveal.
 fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
     struct Fastest {
         step: f64,
@@ -193,8 +191,8 @@ fn topic_columns(
     Some(columns)
 }
 
-/// Returns the name of a topic's column: "acc.1" for "value_1", the name of the topic for a single
-/// "value", else "acc.x".
+/// Names a topic's column: "acc.1" for "value_1", the topic's name for a single "value", else
+/// "acc.x".
 fn column_name(topic: &str, column: &str, is_single: bool) -> String {
     if let Some((stem, number)) = column.rsplit_once('_')
         && is_plain(stem)
@@ -209,7 +207,7 @@ fn column_name(topic: &str, column: &str, is_single: bool) -> String {
     }
 }
 
-/// Whether a name is uninformative.
+/// Returns whether a name is uninformative.
 fn is_plain(name: &str) -> bool {
     PLAIN.contains(&name.to_lowercase().as_str())
 }

@@ -9,7 +9,7 @@ const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
 /// File extensions that are removed from names. The digit in "motor.1" is not an extension.
 const EXTENSIONS: [&str; 7] = ["csv", "txt", "tsv", "dat", "mat", "npz", "json"];
 
-/// Returns the key that all topics of a log share: their file if they are variables in it,
+/// Returns the key that all topics in a log share: their file if they are variables in it,
 /// otherwise their folder.
 pub(super) fn log_key(source: &RecordSource) -> String {
     if source.variable.is_some() {
@@ -21,8 +21,8 @@ pub(super) fn log_key(source: &RecordSource) -> String {
     }
 }
 
-/// Returns the name of each topic: its variable if all topics come from one file, otherwise its
-/// file name without extension.
+/// Names each topic: by its variable if all topics come from one file, otherwise by its file name
+/// without extension.
 pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
     let is_one_file = are_from_one_file(tables);
     tables
@@ -31,7 +31,7 @@ pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
         .collect()
 }
 
-/// Whether all tables come from the first table's file.
+/// Returns whether all tables come from the first table's file.
 pub(super) fn are_from_one_file(tables: &[RecordTable]) -> bool {
     tables
         .iter()
@@ -52,8 +52,7 @@ fn topic_name(source: &RecordSource, is_one_file: bool) -> String {
     }
 }
 
-/// Returns the log of each topic: "log_7" for "log_7_rates" next to "log_8_rates"; empty without a
-/// log.
+/// Returns each topic's log: "log_7" for "log_7_rates" next to "log_8_rates"; empty without a log.
 ///
 /// ```text
 /// 1  a topic begins at the first separator after which two names agree;
@@ -95,13 +94,12 @@ fn logs_by_shared_endings(names: &[String]) -> Vec<String> {
     logs
 }
 
-/// Whether several topics have this log.
+/// Returns whether several topics have this log.
 fn is_confirmed(log: &str, logs: &[String]) -> bool {
     !log.is_empty() && logs.iter().filter(|other| *other == log).count() > 1
 }
 
-/// Returns the longest of `logs` that begins `name` and ends at a separator; empty if there is
-/// none.
+/// Returns the longest log name that begins `name` and ends at a separator; empty if there is none.
 fn longest_log_of(name: &str, logs: &[&String]) -> String {
     let mut longest = "";
     for log in logs {
@@ -115,7 +113,7 @@ fn longest_log_of(name: &str, logs: &[&String]) -> String {
     longest.to_owned()
 }
 
-/// Returns the length in bytes of the common prefix of the names, including its last separator:
+/// Returns the length in bytes of the names' common prefix, including its last separator:
 /// "log_3_2024_" for "log_3_2024_q" and "log_3_2024_M".
 pub(super) fn common_prefix(names: &[String]) -> usize {
     let Some((first, rest)) = names.split_first() else {
@@ -138,7 +136,7 @@ pub(super) fn common_prefix(names: &[String]) -> usize {
     }
 }
 
-/// Returns the length of the common beginning of two names, in bytes.
+/// Counts the bytes with which two names begin alike.
 fn common_bytes(first: &str, second: &str) -> usize {
     let pairs = first.bytes().zip(second.bytes());
     pairs.take_while(|(a, b)| a == b).count()

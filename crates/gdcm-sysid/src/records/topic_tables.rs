@@ -1,8 +1,8 @@
-//! Search for the tables that are topics of one record: a file or struct per topic.
+//! Finds tables that are topics of one record: a file or struct per topic.
 //!
 //! A table with a column for every channel is a record. Tables that each lack some channels but
-//! together have all of them are the topics of a log, each with separate stamps; `topic_join` makes
-//! one record of them.
+//! together have all of them are a log's topics, each with separate stamps; `topic_join` makes one
+//! record of them.
 
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ pub fn with_topics_joined(
     found
 }
 
-/// Joins the topics among tables.
+/// Joins topics among tables.
 struct TopicJoiner<'r> {
     tables: &'r [RecordTable],
     channels: &'r RecordChannels,
@@ -60,7 +60,7 @@ struct TopicJoiner<'r> {
 }
 
 impl TopicJoiner<'_> {
-    /// Returns the tables that lack a channel, by file or folder; groups of a single table are
+    /// Returns the tables that lack a channel, by file or folder; groups with a single table are
     /// omitted.
     fn groups_of_topics(&self) -> Vec<Vec<usize>> {
         let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
@@ -76,7 +76,7 @@ impl TopicJoiner<'_> {
             .collect()
     }
 
-    /// Whether a channel has no column, or several candidate columns.
+    /// Returns whether a channel has no column, or several candidate columns.
     fn lacks_channels(&self, table: &RecordTable) -> bool {
         let proposal = RecordLayout::proposed(table, self.channels, self.time);
         proposal.problems.iter().any(|problem| {
@@ -89,8 +89,8 @@ impl TopicJoiner<'_> {
         })
     }
 
-    /// Joins a group into one record or, if that would not be complete, the topics of each log into
-    /// a record.
+    /// Joins a group into one record or, if that would not be complete, each log's topics into a
+    /// record.
     fn join_group(&mut self, group: &[usize]) {
         let topics = self.tables_at(group);
         if self.keep_if_complete(group, join_topics(&topics)) {
@@ -116,7 +116,7 @@ impl TopicJoiner<'_> {
         tables
     }
 
-    /// Keeps the record of a group if it has all channels; returns whether it was kept.
+    /// Keeps a group's record if it has all channels; returns whether it was kept.
     fn keep_if_complete(&mut self, group: &[usize], joined: RecordTable) -> bool {
         if joined.columns.is_empty() || self.lacks_channels(&joined) {
             return false;

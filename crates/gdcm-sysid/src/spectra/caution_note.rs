@@ -1,4 +1,4 @@
-//! A caution reduced to its code and subject, for files and for marks in the window.
+//! A caution's code, subject and text, for files and for marks in the window.
 
 use gdcm_model::simulation::Signal;
 
@@ -7,11 +7,11 @@ use gdcm_model::simulation::Signal;
 pub struct CautionNote {
     /// Stable code, for programs.
     pub code: &'static str,
-    /// Names of the affected records; empty if all are affected.
+    /// Affected records, by name; empty if all are affected.
     pub records: Vec<String>,
-    /// Name of the affected channel.
+    /// The affected channel, by name.
     pub channel: Option<String>,
-    /// Names of the output and the input of the affected response.
+    /// The affected response: names of output and input.
     pub pair: Option<[String; 2]>,
     /// Affected frequencies \[rad/s\].
     pub band_rad_s: Option<[f64; 2]>,
@@ -56,7 +56,7 @@ impl CautionNote {
         }
     }
 
-    /// Returns a label of at most four words for a mark in the window.
+    /// Returns a label for a mark in the window, at most four words long.
     #[must_use]
     pub fn mark(&self) -> &'static str {
         match self.code {

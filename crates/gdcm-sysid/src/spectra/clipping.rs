@@ -1,4 +1,5 @@
-//! Channels at their limit, as a saturated sensor or actuator is (M14.18).
+//! Recognises channels that are often at their limit, such as a saturated sensor or actuator
+//! (M14.18).
 //!
 //! ```text
 //! flat: consecutive |dx| <= 1e-3 mean |dx|
@@ -12,34 +13,33 @@ use gdcm_model::statistics::quantile;
 
 use super::value_range::ValueRange;
 
-/// Maximum step between two samples of a flat run, relative to the mean step.
+/// Largest step inside a flat run, relative to the mean step.
 const FLAT: f64 = 1e-3;
-/// Minimum length of a run at a limit, in samples.
+/// Shortest run at a limit, in samples.
 const SHORTEST: f64 = 5.0;
-/// Minimum length of a run at a limit, relative to the usual length of flat runs elsewhere.
+/// Shortest run at a limit, relative to the usual length that flat runs elsewhere have.
 const OVER_USUAL: f64 = 3.0;
-/// Quantile that gives the usual length of the flat runs elsewhere.
+/// The usual length is this quantile over the flat runs elsewhere.
 const USUAL: f64 = 0.9;
-/// Share of the range, at each end, that belongs to a limit.
+/// Share of the range, at each end, that counts as a limit.
 const OUTER: f64 = 0.05;
-/// Maximum acceptable share of samples at a limit in a smooth channel.
+/// Largest share of samples at a limit that is acceptable in a smooth channel.
 const MOST_AT_LIMIT: f64 = 0.005;
-/// Maximum acceptable share of samples at a limit in a coarse channel or one with stairs.
+/// Largest acceptable share in a coarse channel or one with stairs.
 const MOST_AT_LIMIT_HELD: f64 = 0.1;
 /// A channel counts as held if flat runs away from the limits hold more than this share of its
 /// samples.
 const HELD_SHARE: f64 = 0.2;
 
-/// Share of a channel's samples at its limit, with the acceptable maximum.
+/// How often a channel is at its limit, and how often it may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clipping {
     pub(crate) share: f64,
-    /// Maximum acceptable share.
     pub(crate) most: f64,
 }
 
 impl Clipping {
-    /// Measures the share of the samples at a limit.
+    /// Measures the share of samples at a limit.
     pub(crate) fn measure(samples: &[f64]) -> Self {
         let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
@@ -78,7 +78,7 @@ impl Clipping {
     }
 }
 
-/// Returns the usual length of flat runs; 1 if there are none.
+/// Returns the usual length in samples; 1 without runs.
 fn usual_length(runs: &[usize]) -> f64 {
     if runs.is_empty() {
         return 1.0;

@@ -1,13 +1,13 @@
-//! Channels logged in coarse steps: the smallest step between two values is over half the standard
-//! deviation (M14.18).
+//! Recognises channels that are logged in coarse steps, over half their standard deviation
+//! (M14.18).
 
 /// A channel is coarse if its smallest step between values exceeds this share of the standard
 /// deviation.
 pub(crate) const COARSE: f64 = 0.5;
-/// Differences of two values up to this share of the standard deviation are no steps.
+/// Differences between two values below this share of the standard deviation are no steps.
 const NO_STEP: f64 = 1e-3;
 
-/// Whether a channel has so few distinct values that equal consecutive samples are normal.
+/// Returns whether a channel has so few distinct values that equal consecutive samples are normal.
 pub(crate) fn is_coarse(values: &[f64]) -> bool {
     coarseness(values).is_some_and(|steps| steps > COARSE)
 }

@@ -1,14 +1,14 @@
-//! Cut-off of the zero-phase low-pass before the Laguerre projections (M14.1), and the sampling
-//! after it (M14.24).
+//! Chooses the cut-off frequency for the zero-phase low-pass before the Laguerre projections
+//! (M14.1), and the sampling after it (M14.24).
 //!
 //! ```text
 //! wc = 5 whi, or 2 whi for a vibrating output
 //! D = floor(2 pi / (20 whi dt)), at least 1:  the projections use every D-th filtered sample
 //! ```
 //!
-//! Half the remaining sampling frequency is at least 10 whi, so that only what lies above 18 whi
-//! could appear at the lines used, where the low-pass lets less than 1/500 pass. The spectra are
-//! those of all samples.
+//! Half the remaining sampling frequency is at least 10 whi, so that only frequencies above 18 whi
+//! could alias to the lines used, and the low-pass lets less than 1/500 of them pass. Spectra are
+//! computed from all samples.
 
 use std::f64::consts::TAU;
 
@@ -36,14 +36,14 @@ pub struct CutOff {
     pub omega: f64,
     /// Highest line used \[rad/s\].
     pub highest: f64,
-    /// Vibrating outputs, counted from 0, each with the share of its variance above twice the
+    /// Vibrating outputs, by index from 0, each with the share of its variance above twice the
     /// highest line used.
     pub vibrating: Vec<(usize, f64)>,
 }
 
 impl CutOff {
     /// Chooses the cut-off for `segments` and lines up to `highest` \[rad/s\]: 5 `highest`, or 2
-    /// `highest` if more than 30 % of the variance of an output lies above 2 `highest` (M14.1).
+    /// `highest` if more than 30 % of an output's variance lies above 2 `highest` (M14.1).
     #[must_use]
     pub fn choose(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
         let outputs = segments
@@ -81,8 +81,8 @@ impl CutOff {
         }
     }
 
-    /// Filters every channel, unless the cut-off is above half the sampling frequency, and omits
-    /// samples of records that are logged much faster than the highest line used needs.
+    /// Filters every channel, unless the cut-off is above half the sampling frequency, and thins
+    /// records that are logged much faster than the highest line used needs.
     #[must_use]
     pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
         each(executor, segments, |segment| {

@@ -9,17 +9,17 @@ use gdcm_model::simulation::Segment;
 use super::gap_hat::{ChannelGap, HatGrid};
 use super::spectrum::{LineRange, Spectrum, spectra_of};
 
-/// A segment with straight lines in the gaps of its channels.
+/// A segment with straight lines in its channels' gaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilledSegment {
     /// The samples; finite also in the gaps.
     pub segment: Segment,
-    /// Missing samples of each channel.
+    /// Missing samples in each channel.
     pub gaps: Vec<ChannelGap>,
 }
 
 impl FilledSegment {
-    /// Fills the gaps of a segment. A gap has a sample before it and after it.
+    /// Fills a segment's gaps. A gap has a sample before it and after it.
     pub(crate) fn new(mut segment: Segment, gaps: Vec<ChannelGap>) -> Self {
         for gap in &gaps {
             let samples = match gap.side {
@@ -44,7 +44,7 @@ fn fill(mut samples: DVectorViewMut<'_, f64>, gap: &ChannelGap) {
 }
 
 impl LineRange {
-    /// Transforms segments as [`LineRange::spectra`] does, with a hat for each unknown of their
+    /// Transforms segments as [`LineRange::spectra`] does, with a hat for each unknown in their
     /// gaps.
     pub(crate) fn filled_spectra(
         self,

@@ -1,15 +1,15 @@
-//! The finite samples of a channel, from which doubts about it are found.
+//! A channel's finite samples, in which its cautions are searched.
 
 use gdcm_model::simulation::{FlightRecord, Signal};
 
-/// Value of a channel with its stamp.
+/// A channel's value with its stamp.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) time_s: f64,
     pub(crate) value: f64,
 }
 
-/// Returns the samples of a channel that have a finite stamp and a finite value.
+/// Returns a channel's samples that have a finite stamp and a finite value.
 pub(crate) fn finite_samples(record: &FlightRecord, signal: &Signal) -> Vec<Sample> {
     let values = record.channel(signal);
     let mut samples = Vec::new();

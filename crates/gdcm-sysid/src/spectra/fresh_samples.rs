@@ -1,19 +1,18 @@
-//! Samples at which a channel was set anew: a channel with stairs keeps the first sample of each
-//! stair.
+//! Reduces a channel to the samples at which it was updated: stairs keep their first sample only.
 
 use gdcm_model::statistics::median;
 
 use super::finite_samples::Sample;
 use super::stairs::Stairs;
 
-/// Maximum duration of a stair \[s\]; a channel that is constant for longer is at rest.
+/// Longest stair \[s\]; a channel that is constant for longer is at rest.
 const LONGEST_STAIR_S: f64 = 0.1;
-/// Differences of two values up to this share of the range are no step of the log.
+/// Differences between two values below this share of the range are no logging step.
 const NO_STEP: f64 = 1e-9;
 /// Share of a stair after which an equal sample counts as the next stair.
 const NEXT_STAIR: f64 = 0.9;
 
-/// The samples of a channel, at its own sample time.
+/// A channel's samples, at its own sample time.
 pub(super) struct FreshSamples {
     pub(super) samples: Vec<Sample>,
     /// Median sample time \[s\]; 0 for fewer than two samples.
@@ -45,7 +44,8 @@ impl FreshSamples {
         }
     }
 
-    /// Returns the smallest difference of two values, the step of the log; infinite for a constant.
+    /// Returns the logging step, the smallest difference between two values; infinite for a
+    /// constant.
     pub(super) fn log_step(&self) -> f64 {
         let mut values: Vec<f64> = self.samples.iter().map(|sample| sample.value).collect();
         values.sort_by(f64::total_cmp);
@@ -61,7 +61,8 @@ impl FreshSamples {
     }
 }
 
-/// Keeps the first sample of each stair; a constant stretch consists of stairs of `hold_s` \[s\].
+/// Keeps the first sample in each stair; a constant stretch consists of stairs that last `hold_s`
+/// \[s\].
 fn first_of_each_stair(samples: &[Sample], hold_s: f64) -> Vec<Sample> {
     let mut kept = Vec::new();
     for run in samples.chunk_by(|a, b| a.value == b.value) {

@@ -1,4 +1,4 @@
-//! Frozen outputs: outputs that repeat a value although the aircraft moves (M14.1).
+//! Finds frozen outputs, which repeat a value although the aircraft moves (M14.1).
 //!
 //! ```text
 //! run     consecutive finite samples of an output that are exactly equal
@@ -20,20 +20,20 @@ use super::record_clock::{Clock, StampRange, StampedValues};
 use super::spikes::Spikes;
 use super::value_range::ValueRange;
 
-/// Minimum duration of a frozen run \[s\].
+/// Shortest frozen run \[s\].
 const FROZEN_S: f64 = 1.0;
-/// Minimum length of a frozen run, relative to the usual length of runs with equal samples.
+/// Shortest frozen run, relative to the usual run with equal samples.
 const TIMES_USUAL: f64 = 5.0;
-/// Quantile that gives the usual length of runs with equal samples.
+/// The usual length is this quantile over all runs with equal samples.
 const USUAL_QUANTILE: f64 = 0.95;
-/// Minimum number of runs with equal samples in an output that can be frozen: with fewer runs, it
-/// does not move at other times.
+/// An output can be frozen only if it has at least this many runs with equal samples: with fewer,
+/// it never moves.
 const MOVING_RUNS: usize = 10;
-/// Minimum number of equal samples in a run at the minimum or maximum of an output.
+/// Minimum number of equal samples in a run at an output's minimum or maximum.
 const LIMIT_RUN: usize = 5;
 
 /// Finds the runs in which an output is frozen: it repeats the value before them. `channels` are
-/// all channels of the record, the output among them.
+/// all channels in the record, the output among them.
 pub(crate) fn frozen_runs(
     output: &StampedValues,
     channels: &[StampedValues],
@@ -59,7 +59,7 @@ pub(crate) fn frozen_runs(
             && !is_limit(values, first, &range, &runs)
             && others_move(output, channels, first, last)
         {
-            // The first sample of the run is valid: the output froze after it.
+            // The run's first sample is valid: the output froze after it.
             frozen.push(StampRange {
                 from: first + 1,
                 to: last + 1,
@@ -69,8 +69,8 @@ pub(crate) fn frozen_runs(
     frozen
 }
 
-/// Returns the range of the finite values of an output that are in no spike: a spike beyond a limit
-/// does not turn the samples at the limit into frozen ones.
+/// Returns an output's value range without spikes: a spike beyond a limit must not make the samples
+/// at the limit look frozen.
 fn range_without_spikes(output: &StampedValues, places: &[usize], clock: &Clock) -> ValueRange {
     let mut samples = Vec::with_capacity(places.len());
     for &place in places {
@@ -86,7 +86,7 @@ fn range_without_spikes(output: &StampedValues, places: &[usize], clock: &Clock)
     ValueRange::new(&values)
 }
 
-/// Returns the maximum duration \[s\] of a run that is not frozen.
+/// Returns the longest duration \[s\] for which a run is not frozen.
 fn longest_usual_s(runs: &[&[usize]], clock: &Clock) -> f64 {
     let mut lengths: Vec<f64> = runs.iter().map(|run| run.len() as f64).collect();
     let usual = quantile(&mut lengths, USUAL_QUANTILE);
@@ -95,7 +95,8 @@ fn longest_usual_s(runs: &[&[usize]], clock: &Clock) -> f64 {
         .max(clock.longest_step_s)
 }
 
-/// Whether the value at index `at` is an end of the range, and several long runs have this value.
+/// Returns whether the value at index `at` is an end of the range, and several long runs have this
+/// value.
 fn is_limit(values: &[f64], at: usize, range: &ValueRange, runs: &[&[usize]]) -> bool {
     let value = values[at];
     if value != range.least && value != range.greatest {
@@ -108,7 +109,7 @@ fn is_limit(values: &[f64], at: usize, range: &ValueRange, runs: &[&[usize]]) ->
     stays > 1
 }
 
-/// Whether another channel moves between two indices.
+/// Returns whether another channel moves between two indices.
 fn others_move(
     output: &StampedValues,
     channels: &[StampedValues],
@@ -120,7 +121,7 @@ fn others_move(
         .any(|other| other.signal != output.signal && moves(&other.values[first..=last]))
 }
 
-/// Whether a channel changes in at least half the steps between its finite values.
+/// Returns whether a channel changes in at least half the steps between its finite values.
 fn moves(values: &[f64]) -> bool {
     let samples: Vec<f64> = values
         .iter()

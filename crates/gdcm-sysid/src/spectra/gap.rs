@@ -6,7 +6,7 @@ use gdcm_model::simulation::Signal;
 
 use super::signal_names::names;
 
-/// Cause of a gap.
+/// Why there is a gap.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
     /// Rows have no time stamp.
@@ -26,7 +26,7 @@ pub enum Cause {
 pub enum Treatment {
     /// Replaced by straight lines.
     Bridged,
-    /// The missing samples are unknowns of the fit, and the other channels are used (M14.21).
+    /// The missing samples are unknowns in the fit, and the other channels are used (M14.21).
     Estimated,
     CutOut,
 }

@@ -1,4 +1,4 @@
-//! Missing samples as unknowns of the likelihood (M14.21).
+//! Missing samples as unknowns in the likelihood (M14.21).
 //!
 //! ```text
 //! true signal = signal filled by a straight line + sum_q c_q hat_q
@@ -14,14 +14,14 @@ use nalgebra::Complex;
 
 use gdcm_model::dataset::channel::ChannelSide;
 
-/// Spectral lines of a hat function in a gap of a channel.
+/// Spectral lines of a hat function in a channel's gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GapHat {
     /// Whether an input or an output misses the samples.
     pub side: ChannelSide,
-    /// Index of the channel on its side, counted from 0.
+    /// Channel index on its side, from 0.
     pub channel: usize,
-    /// `b_q` at each line of the spectrum.
+    /// `b_q` at each line in the spectrum.
     pub lines: Vec<Complex<f64>>,
 }
 
@@ -36,18 +36,18 @@ impl GapHat {
     }
 }
 
-/// Missing samples of a channel within a segment.
+/// A channel's missing samples within a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelGap {
     /// Whether an input or an output misses the samples.
     pub side: ChannelSide,
-    /// Index of the channel on its side, counted from 0.
+    /// Channel index on its side, from 0.
     pub channel: usize,
-    /// Indices of the missing samples; neither the first nor the last sample of the segment.
+    /// Indices of the missing samples; the segment's first and last sample are not among them.
     pub samples: Range<usize>,
 }
 
-/// The sampling of a segment and the highest line used.
+/// A segment's sampling, and the highest line used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HatGrid {
     /// `dt` \[s\].
@@ -58,7 +58,7 @@ pub(crate) struct HatGrid {
     pub(crate) highest: f64,
 }
 
-/// Returns the number of hats for `missing` samples and lines up to `highest` \[rad/s\].
+/// Returns how many hats describe `missing` samples for lines up to `highest` \[rad/s\].
 pub(crate) fn hat_count(missing: usize, sample_time_s: f64, highest: f64) -> usize {
     let gap_s = (missing + 1) as f64 * sample_time_s;
     let wanted = (2.0 * highest * gap_s / PI).ceil() as usize;
@@ -66,12 +66,12 @@ pub(crate) fn hat_count(missing: usize, sample_time_s: f64, highest: f64) -> usi
 }
 
 impl ChannelGap {
-    /// Returns the number of hats that describe the missing samples.
+    /// Returns how many hats describe the missing samples.
     pub(crate) fn hat_count(&self, grid: HatGrid) -> usize {
         hat_count(self.samples.len(), grid.sample_time_s, grid.highest)
     }
 
-    /// Computes the lines of all hats at `omega` \[rad/s\].
+    /// Computes all hats' lines at `omega` \[rad/s\].
     pub(crate) fn hats(&self, grid: HatGrid, omega: &[f64]) -> Vec<GapHat> {
         let count = self.hat_count(grid);
         // The knots divide the interval from the last sample before the gap to the first after it.

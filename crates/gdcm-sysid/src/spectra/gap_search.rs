@@ -1,8 +1,8 @@
-//! Search for the gaps of a record: missing rows, stamps and samples, frozen outputs (M14.1).
+//! Finds a record's gaps: missing rows, stamps and samples, frozen outputs (M14.1).
 //!
 //! A gap lies between two stamps or, in a channel, between two valid samples. Gaps up to the length
 //! that the settings allow are bridged by straight lines (`valid_samples`), others are cut out
-//! (`preparation`), which also adds the parts that are too short to be used.
+//! (`preparation`). Parts too short to be used become gaps there too.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::gap::{Cause, Gap, Treatment};
 use super::record_clock::{Clock, StampRange};
 use super::valid_samples::ValidSamples;
 
-/// Maximum step between two stamps without a missing row, in sample times.
+/// Largest step between two stamps without a missing row, in sample times.
 const LONGEST_STEP: f64 = 1.5;
 
 /// Finds the gaps in the channels, then the gaps between the stamps.
@@ -61,14 +61,14 @@ fn channel_gaps(clock: &Clock, channels: &[ValidSamples]) -> Vec<Gap> {
     gaps
 }
 
-/// Returns the treatment of a gap in a channel; a gap at an end of the record is cut out.
+/// Returns how a gap in a channel is treated; at an end of the record it is cut out.
 fn treatment(channel: &ValidSamples, clock: &Clock, stamps: StampRange) -> Treatment {
     let interval = Interval::surrounding(stamps, clock);
     let is_inside = stamps.from > 0 && stamps.to < clock.times.len();
     Treatment::for_gap(is_inside && interval.end_s - interval.start_s <= channel.longest_step_s)
 }
 
-/// Times relative to the first stamp of the record.
+/// Start and end \[s\], relative to the record's first stamp.
 struct Interval {
     start_s: f64,
     end_s: f64,

@@ -1,5 +1,5 @@
-//! The samples of a record on its uniform grid, and the parts in which missing samples can be
-//! estimated (M14.1, M14.21).
+//! Reads a record's samples on its uniform grid, and divides them into parts in which missing
+//! samples can be estimated (M14.1, M14.21).
 //!
 //! ```text
 //! hole: consecutive grid points at which a channel misses its value
@@ -20,28 +20,27 @@ use super::record_clock::Clock;
 use super::spectrum::{FIRST_LINE, LineRange};
 use super::valid_samples::{ValidSamples, read_row};
 
-/// Ratio of the real values in a part's lines to the hats, above which missing samples are
-/// estimated.
+/// Missing samples are estimated while a part's lines hold more than this many real values per hat.
 const VALUES_A_HAT: usize = 10;
 
 /// Indices of consecutive rows.
 pub(crate) type RowRange = Range<usize>;
 
-/// Values of all channels at consecutive points of a record's grid.
+/// All channels' values at consecutive points on a record's grid.
 pub(crate) struct GridRows {
-    /// Index of the first grid point, an integer value.
+    /// Index `k` at the first grid point, an integer value.
     pub(crate) first: f64,
-    /// Number of input channels; they come first.
+    /// Number of input channels, which come first.
     inputs: usize,
     /// Number of channels.
     width: usize,
-    /// Sample `n` of channel `c` at `n width + c`; `None` where it is missing.
+    /// Row after row: channel `c` in row `n` at `n width + c`; `None` where a sample is missing.
     values: Vec<Option<f64>>,
 }
 
 /// Reads a record on the grid `k dt`, relative to its first stamp. `inputs` channels come first.
 ///
-/// A time without stamps that is longer than the rest of the record is left out: rows end there.
+/// Rows end at a gap without stamps that is longer than all stretches with stamps together.
 pub(crate) fn grid_rows(clock: &Clock, channels: &[ValidSamples], inputs: usize) -> Vec<GridRows> {
     let grid = clock.grid();
     let stamped: usize = grid.iter().map(|stretch| stretch.points).sum();
@@ -75,7 +74,7 @@ pub(crate) fn grid_rows(clock: &Clock, channels: &[ValidSamples], inputs: usize)
 }
 
 impl GridRows {
-    /// Returns the number of rows.
+    /// Returns the row count.
     fn count(&self) -> usize {
         self.values.len() / self.width.max(1)
     }
@@ -101,7 +100,7 @@ impl GridRows {
         })
     }
 
-    /// Returns the runs of rows in a range at which every channel has a value.
+    /// Returns the runs of complete rows in a range: every channel has a value.
     pub(crate) fn runs(&self, range: RowRange) -> Vec<RowRange> {
         let mut runs = Vec::new();
         let mut start = None;
@@ -122,7 +121,7 @@ impl GridRows {
         runs
     }
 
-    /// Returns the missing samples of every channel in a range, counted from its first row.
+    /// Returns every channel's missing samples in a range, counted from its first row.
     pub(crate) fn gaps(&self, range: RowRange) -> Vec<ChannelGap> {
         let mut gaps: Vec<ChannelGap> = Vec::new();
         let rows = self.rows(range.clone());
@@ -166,7 +165,7 @@ impl GridRows {
         let Some(lines) = lines else {
             return runs;
         };
-        // Number of hats in the hole after each run.
+        // How many hats the hole after each run takes.
         let mut hats_after = Vec::with_capacity(runs.len());
         for pair in runs.windows(2) {
             let mut hats = 0;
@@ -177,7 +176,7 @@ impl GridRows {
         }
         let outputs = self.width - self.inputs;
         let mut parts = Vec::new();
-        // Ranges of runs that are still to be examined, the earliest last.
+        // Run ranges that are still to be examined, the earliest last.
         let mut open = Vec::new();
         if !runs.is_empty() {
             open.push(0..runs.len());
@@ -200,7 +199,7 @@ impl GridRows {
     }
 }
 
-/// Returns the number of lines of a segment in a range.
+/// Counts a segment's lines in a range.
 fn line_count(lines: LineRange, duration_s: f64) -> usize {
     let lowest = (lines.lowest * duration_s / TAU).max(FIRST_LINE).ceil();
     let highest = (lines.highest * duration_s / TAU).floor();

@@ -1,6 +1,6 @@
 //! Linear interpolation between ascending values.
 
-/// Neighbours of a value in an ascending list, with the weight of the second neighbour.
+/// Neighbours of a value in an ascending list.
 pub(crate) struct Neighbours {
     pub(crate) before: usize,
     pub(crate) after: usize,

@@ -1,4 +1,5 @@
-//! The local polynomial method: the frequency response from the spectral lines, without a model.
+//! Measures the frequency response from spectral lines without a model, by the local polynomial
+//! method.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -10,15 +11,15 @@ use super::polynomial_window::Window;
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::Spectrum;
 
-/// Half-width of a window, relative to its centre frequency (M14.2).
+/// Window half-width, relative to the centre frequency (M14.2).
 const HALF_WIDTH_SHARE: f64 = 0.2;
 
-/// Estimates the response at each of `omegas` \[rad/s\] from all segments' lines (M14.2).
+/// Estimates the response at `omegas` \[rad/s\] from all segments' lines (M14.2).
 ///
 /// After R. Pintelon, J. Schoukens, G. Vandersteen & K. Barbé, "Estimation of nonparametric noise
 /// and FRF models for multivariable systems", Mech. Syst. Signal Process. 24, 2010, with separate
 /// transients for the records. Around each frequency, with `x = (omega_k - omega) / h`, the lines
-/// of record `r` obey
+/// in record `r` obey
 ///
 /// ```text
 /// Y = (G0 + G1 x + G2 x^2) U + (t0 + t1 x + t2 x^2)_r + V
@@ -34,9 +35,9 @@ const HALF_WIDTH_SHARE: f64 = 0.2;
 /// 5  coherence = 1 - |V|^2 / |B|^2,   partial coherence = 1 - |V|^2 / |V without the input|^2
 /// ```
 ///
-/// `U` and `Y` are the lines of the inputs and outputs, `V` the noise with the covariance `Cv`, `t0`
-/// to `t2` the transient of a record; `freedom` is the number of lines less the number of unknowns.
-/// Step 1 is in `polynomial_window`, step 2 in `polynomial_regression`.
+/// `U` and `Y` are the input and output lines, `V` the noise with the covariance `Cv`, `t0` to `t2`
+/// a record's transient; `freedom` is the line count less the unknowns. Step 1 is in
+/// `polynomial_window`, step 2 in `polynomial_regression`.
 ///
 /// # Errors
 /// No lines, channels that differ, values that are not finite, records too short for a window.
@@ -51,8 +52,8 @@ pub fn local_polynomial(
     Ok(ResponseEstimate { points })
 }
 
-/// Fits local polynomials around each of `omegas` \[rad/s\]; `share` is the half-width of a window
-/// relative to its centre. See [`local_polynomial`].
+/// Fits local polynomials around each frequency in `omegas` \[rad/s\]; `share` is the window
+/// half-width over the centre frequency. See [`local_polynomial`].
 pub(crate) fn local_fits(
     spectra: &[Spectrum],
     omegas: &[f64],
@@ -100,9 +101,9 @@ pub(crate) struct LocalFit {
     r: DMatrix<Complex<f64>>,
     inputs: usize,
     outputs: usize,
-    /// Summed line power of each output.
+    /// Summed line power for each output.
     power: DVector<f64>,
-    /// Number of lines less the number of unknowns.
+    /// Number of lines less number of unknowns.
     pub(crate) freedom: usize,
 }
 
@@ -126,12 +127,12 @@ impl LocalFit {
         self.window.terms * self.inputs
     }
 
-    /// Returns the mean line power of each output.
+    /// Returns each output's mean line power.
     pub(crate) fn power(&self) -> DVector<f64> {
         &self.power / self.window.count as f64
     }
 
-    /// Returns `Cov V` of a line, outputs x outputs.
+    /// Returns `Cov V` at a line, outputs x outputs.
     pub(crate) fn covariance(&self) -> DMatrix<Complex<f64>> {
         let residual = self.r.view(
             (self.unknowns(), self.unknowns()),
@@ -166,12 +167,12 @@ impl LocalFit {
         inverse.rows(0, self.inputs) * inverse.rows(0, self.inputs).adjoint()
     }
 
-    /// Returns the squared norms of the output columns of the factor, from row `from` on.
+    /// Returns the squared norms of the factor's output columns, from row `from` on.
     fn squares(&self, from: usize) -> Vec<f64> {
         squares_below(&self.r, self.unknowns(), self.outputs, from)
     }
 
-    /// Returns the multiple coherence of each output.
+    /// Returns each output's multiple coherence.
     pub(crate) fn coherence(&self) -> Vec<f64> {
         let residual = self.squares(self.unknowns());
         let total = self.squares(0);
@@ -182,8 +183,8 @@ impl LocalFit {
             .collect()
     }
 
-    /// Returns `|V|^2` of each output with input `i` left out, from the triangular factor without
-    /// the columns of this input, made triangular again. Column `power inputs + i` of `A` belongs to
+    /// Returns each output's `|V|^2` with input `i` left out: the triangular factor loses this
+    /// input's columns and is made triangular again. Column `power inputs + i` in `A` belongs to
     /// input `i`.
     fn residual_without(&self, i: usize) -> Vec<f64> {
         let unknowns = self.unknowns();
@@ -208,7 +209,7 @@ impl LocalFit {
         coherence
     }
 
-    /// Returns the estimate at the centre of the window; see [`local_polynomial`].
+    /// Returns the estimate at the window centre; see [`local_polynomial`].
     fn estimate(&self) -> EstimatePoint {
         let inputs = self.inputs;
         let outputs = self.outputs;
@@ -250,7 +251,7 @@ fn explained(residual: f64, total: f64) -> f64 {
     }
 }
 
-/// Returns the square of the ratio of the largest to the smallest singular value.
+/// Returns the squared ratio between the largest and the smallest singular value.
 pub(crate) fn condition(matrix: DMatrix<Complex<f64>>) -> f64 {
     let singular = matrix.singular_values();
     let greatest = singular.max();

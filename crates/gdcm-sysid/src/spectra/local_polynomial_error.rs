@@ -9,7 +9,7 @@ pub enum LocalPolynomialError {
         of these is missing"
     )]
     Nothing,
-    /// A segment has other channel counts than the first; index of its record, counted from 0.
+    /// A segment has other channel counts than the first; its record index, from 0.
     #[error("record {} differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
@@ -21,7 +21,7 @@ pub enum LocalPolynomialError {
         longer, or leave out channels"
     )]
     TooFewLines {
-        /// Number of lines in all records.
+        /// Number of spectral lines in all records.
         lines: usize,
         needed: usize,
     },

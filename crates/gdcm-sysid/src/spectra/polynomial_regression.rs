@@ -1,4 +1,4 @@
-//! The linear regression of a local polynomial (step 2 of [`local_polynomial`]).
+//! The linear regression for a local polynomial (step 2 in [`local_polynomial`]).
 //!
 //! ```text
 //! row of a line    [U, x U, x^2 U | Y],   x = (omega_k - omega) / h;   Y in the last columns
@@ -13,19 +13,20 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::polynomial_window::Window;
 use super::spectrum::Spectrum;
 
-/// Ridge relative to the column length; it bounds the estimate if one input is a copy of another.
+/// Ridge relative to the column length; it bounds the estimate if an input copies another.
 const RIDGE: f64 = 1e-9;
 
 /// The linear regression in a window.
 pub(super) struct Regression {
-    /// Rows `[A B]` of all records with the transients removed, followed by the rows of the ridge.
+    /// Rows `[A B]` from all records with the transients removed, then the ridge's rows.
     pub(super) rows: DMatrix<Complex<f64>>,
-    /// Sum of `|Y|^2` of each output.
+    /// Sum of `|Y|^2` for each output.
     pub(super) power: DVector<f64>,
 }
 
 impl Regression {
-    /// Fills the rows of all records in the window, each without its transient, and adds the ridge.
+    /// Fills all records' rows in the window, each record without its transient, and adds the
+    /// ridge.
     pub(super) fn new(spectra: &[Spectrum], window: &Window) -> Self {
         let inputs = spectra[0].inputs.nrows();
         let outputs = spectra[0].outputs.nrows();
@@ -34,7 +35,7 @@ impl Regression {
             rows: DMatrix::zeros(window.count + unknowns, unknowns + outputs),
             power: DVector::zeros(outputs),
         };
-        // Row of the record's first line.
+        // Row for the record's first line.
         let mut top = 0;
         for (spectrum, lines) in spectra.iter().zip(&window.lines) {
             if lines.is_empty() {
@@ -70,7 +71,7 @@ impl Regression {
         }
     }
 
-    /// Subtracts from the rows of a record their projection on its polynomial transient.
+    /// Subtracts from a record's rows their projection on its polynomial transient.
     fn remove_transient(&mut self, top: usize, x: &[f64], terms: usize) {
         let powers = DMatrix::from_fn(x.len(), terms, |line, power| x[line].powi(power as i32));
         let transient = powers.qr().q().map(Complex::from);
@@ -79,7 +80,7 @@ impl Regression {
         record_rows -= explained;
     }
 
-    /// Adds a ridge proportional to the lengths of the columns of `A`.
+    /// Adds a ridge proportional to the column lengths in `A`.
     fn add_ridge(&mut self, top: usize, unknowns: usize) {
         for column in 0..unknowns {
             let length = self.rows.column(column).norm();

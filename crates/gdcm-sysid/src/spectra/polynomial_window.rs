@@ -1,4 +1,4 @@
-//! The window of a local polynomial: the spectral lines around a frequency (M14.12).
+//! Chooses the window for a local polynomial: the spectral lines around a frequency (M14.12).
 //!
 //! ```text
 //! h = max(0.45, share omega), times 1.2 once and then times 1.05 until the window holds
@@ -16,17 +16,16 @@ use super::spectrum::Spectrum;
 
 /// Number of polynomial terms (1, x) if there are too few lines for three.
 const FEWER_TERMS: usize = 2;
-/// Minimum half-width of a window \[rad/s\] (M14.2).
+/// Minimum window half-width \[rad/s\] (M14.2).
 const LEAST_HALF_WIDTH: f64 = 0.45;
 /// First factor by which a window with too few lines is widened (M14.12).
 const FIRST_WIDENING: f64 = 1.2;
 /// Factor for each further widening (M14.12).
 const FURTHER_WIDENING: f64 = 1.05;
-/// Number of lines that a window with three terms needs in addition to the number of unknowns and
-/// outputs (M14.12).
+/// Number of lines that a window with three terms needs in addition to one per unknown and output
+/// (M14.12).
 const SPARE_LINES: usize = 6;
-/// Number of lines that a window with two terms needs in addition to the number of unknowns and
-/// outputs.
+/// Number of lines that a window with two terms needs in addition to one per unknown and output.
 const SPARE_LINES_FEWER_TERMS: usize = 4;
 
 /// The lines around a frequency.
@@ -35,9 +34,9 @@ pub(crate) struct Window {
     pub(crate) omega: f64,
     /// Half-width \[rad/s\].
     pub(crate) half_width: f64,
-    /// Number of polynomial terms.
+    /// Number of polynomial terms: 3, or 2 with few lines.
     pub(super) terms: usize,
-    /// Range of the lines of each spectrum in the window; empty if these are too few.
+    /// For each spectrum, the range of its lines in the window; empty if there are too few.
     pub(super) lines: Vec<Range<usize>>,
     /// Number of spectral lines in the window, over all spectra with enough lines.
     pub(super) count: usize,

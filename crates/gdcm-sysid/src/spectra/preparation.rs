@@ -1,4 +1,4 @@
-//! From flight records as logged to segments on a uniform grid (M14.1, M14.21).
+//! Cuts flight records as logged into segments on a uniform grid (M14.1, M14.21).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::{Executor, each};
@@ -15,10 +15,10 @@ use super::record_use::RecordUse;
 use super::spectrum::LineRange;
 use super::valid_samples::valid_samples;
 
-/// Maximum range of a constant channel, relative to its maximum modulus: interpolation between equal
-/// samples may differ in the last digits.
+/// Largest range for which a channel is constant, relative to its largest modulus: interpolation
+/// between equal samples may differ in the last digits.
 const CONSTANT: f64 = 1e-12;
-/// Relative tolerance of the minimum segment length, so that 500 times 0.02 s count as 10 s.
+/// Relative tolerance on the minimum segment length, so that 500 times 0.02 s count as 10 s.
 const LENGTH_ROUNDING: f64 = 1e-9;
 
 /// Flight records cut into gap-free segments on a uniform time grid.
@@ -29,12 +29,13 @@ pub struct Prepared {
     /// The same records with gaps filled where the missing samples can be estimated, by record and
     /// time.
     pub filled: Vec<FilledSegment>,
-    /// Use of each record, in record order.
+    /// The parts used from each record, in record order.
     pub records: Vec<RecordUse>,
     pub cautions: Vec<RecordCaution>,
 }
 
-/// Cuts flight records into segments, and returns their use and the cautions about them (M14.1).
+/// Cuts flight records into segments, and returns them with the parts used and the cautions
+/// (M14.1).
 ///
 /// ```text
 /// for each record
@@ -47,8 +48,8 @@ pub struct Prepared {
 /// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
 /// ```
 ///
-/// No mean or trend is removed, and nothing is filtered. Gaps are not filled: the filled segments
-/// are those without gaps.
+/// No mean or trend is removed, and nothing is filtered. No gap is filled: `filled` holds the same
+/// segments as `segments`.
 ///
 /// # Errors
 /// Invalid settings, records that do not fit them, time that does not increase or is uneven,
@@ -132,8 +133,7 @@ fn prepare_records(
     })
 }
 
-/// Cuts a record into segments for a comparison with a model in the time domain, as [`prepare`]
-/// does.
+/// Cuts a record into segments as [`prepare`] does, for comparison with a model in the time domain.
 ///
 /// Unlike in [`prepare`], a channel may be constant.
 ///
@@ -159,7 +159,7 @@ pub fn segments_of(
     Ok(segments)
 }
 
-/// Whether a channel is constant within each segment, apart from rounding.
+/// Returns whether a channel is constant within each segment, apart from rounding.
 fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
     segments.iter().all(|segment| {
         let samples = segment.channel(signal);
@@ -244,14 +244,14 @@ fn prepare_record(
 
 /// A run without gaps that is too short for a segment.
 struct DroppedRun {
-    /// Time of the first sample \[s\], on the record's time axis.
+    /// Time at the first sample \[s\], on the record's time axis.
     start_s: f64,
     length_s: f64,
 }
 
-/// The parts of a record that are used, and those that are dropped.
+/// A record's parts that are used, and those that are dropped.
 struct RecordParts<'a> {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     number: usize,
     clock: &'a Clock,
     preparation: &'a Preparation,
@@ -265,7 +265,8 @@ struct RecordParts<'a> {
 }
 
 impl RecordParts<'_> {
-    /// Adds consecutive grid points. A part is used if it has a run for a segment.
+    /// Adds consecutive grid points. A part is used if it has a run that is long enough for a
+    /// segment.
     fn add(&mut self, rows: &GridRows) {
         for part in rows.parts(self.lines, self.clock.sample_time_s) {
             let runs = rows.runs(part.clone());
@@ -293,7 +294,7 @@ impl RecordParts<'_> {
         }
     }
 
-    /// Returns the time of the first row of a range \[s\].
+    /// Returns the time at the first row in a range \[s\].
     fn start_s(&self, rows: &GridRows, range: &RowRange) -> f64 {
         self.clock.start_s + self.clock.sample_time_s * (rows.first + range.start as f64)
     }

@@ -5,19 +5,19 @@ use gdcm_model::simulation::Signal;
 
 use super::signal_names::names;
 
-/// Maximum plausible delay or hold of a channel \[s\].
+/// Longest plausible delay or hold in a channel \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
-/// Maximum gap that may be bridged, in samples.
+/// Longest gap that may be bridged, in samples.
 const LONGEST_BRIDGE: usize = 1000;
 
-/// Meaning of stairs in a channel that is logged more often than it changes (M14.1).
+/// What stairs mean in a channel that is logged more often than it changes (M14.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Hold {
     /// A continuous signal; stairs raise a caution.
     #[default]
     None,
-    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are correct
-    /// as logged.
+    /// The stairs act on the aircraft, or are the sensor's resolution: the samples are correct as
+    /// logged.
     Acts,
     /// A command held for `hold_s` \[s\] and logged when it begins: it acts `hold_s / 2` later.
     Command { hold_s: f64 },
@@ -28,14 +28,14 @@ pub enum Hold {
     FreshSamples,
 }
 
-/// Preparation of a channel: delay to remove, kind of hold, plausible range.
+/// How a channel is prepared: delay to remove, kind of hold, plausible range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelPreparation {
     pub name: String,
     /// Sensor or bus delay to remove \[s\], as stated by the engineer.
     pub delay_s: f64,
     pub hold: Hold,
-    /// Maximum plausible modulus in the channel's unit; a larger value raises a doubt about the
+    /// Largest plausible modulus in the channel's unit; a larger value raises a caution about the
     /// unit.
     pub limit: Option<f64>,
 }
@@ -51,7 +51,7 @@ impl ChannelPreparation {
     }
 
     /// Returns how much later \[s\] a sample is stamped than the channel had its value; negative
-    /// for a command that is stamped when its hold begins.
+    /// for a held command, which is stamped when its hold begins.
     pub(crate) fn shift_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } => self.delay_s - 0.5 * hold_s,
@@ -69,7 +69,7 @@ impl ChannelPreparation {
     }
 }
 
-/// Settings for the preparation of flight records.
+/// Settings for preparing flight records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preparation {
     /// Inputs, in column order.
@@ -78,18 +78,18 @@ pub struct Preparation {
     pub outputs: Vec<ChannelPreparation>,
     /// Whether a record with uneven sample times may be interpolated.
     pub resample: bool,
-    /// Whether samples are kept in which an output is constant while others move; otherwise they
-    /// are a gap.
+    /// Whether samples are kept while an output is constant and others move; otherwise they are a
+    /// gap.
     pub keep_frozen: bool,
-    /// Maximum gap, in samples, that is bridged by a straight line; longer gaps split the record.
+    /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record.
     pub longest_bridge: usize,
     /// Minimum segment length \[s\].
     pub least_segment_s: f64,
 }
 
 impl Preparation {
-    /// Creates the default settings: every channel as logged, gaps of up to 3 samples bridged,
-    /// segments of at least 10 s.
+    /// Creates the default settings: every channel as logged, gaps up to 3 samples bridged,
+    /// segments at least 10 s long.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
         Self {
@@ -124,7 +124,7 @@ impl Preparation {
         })
     }
 
-    /// Returns the settings of a channel; `None` if the channel does not exist.
+    /// Returns a channel's settings; `None` if the channel does not exist.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
         signal
             .role
@@ -132,7 +132,7 @@ impl Preparation {
             .get(signal.index)
     }
 
-    /// Returns the settings of a channel for editing; `None` if the channel does not exist.
+    /// Returns a channel's settings for editing; `None` if the channel does not exist.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         signal
             .role
@@ -178,7 +178,7 @@ pub enum PreparationError {
     NoRecords,
     #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
-    /// The channels of a record differ from the channels in the settings.
+    /// A record has other channels than the settings.
     #[error("record {record} has {found} {role}s, not {named}")]
     ChannelsDiffer {
         record: String,
@@ -186,7 +186,7 @@ pub enum PreparationError {
         found: usize,
         named: usize,
     },
-    /// The columns of a record differ in length.
+    /// A record's columns differ in length.
     #[error(
         "record {record} has {stamps} time stamps, {inputs} input samples and {outputs} output samples"
     )]
@@ -212,7 +212,7 @@ pub enum PreparationError {
     )]
     TimeNotIncreasing {
         record: String,
-        /// Row of the later stamp, counted from 0.
+        /// Row with the later stamp, counted from 0.
         row: usize,
         previous_s: f64,
         time_s: f64,
@@ -222,7 +222,7 @@ pub enum PreparationError {
     )]
     UnevenSampling {
         record: String,
-        /// 95th percentile of the deviations from multiples of the median sample time \[%\].
+        /// The steps' deviation from multiples of the median sample time, 95th percentile \[%\].
         percent: f64,
     },
     /// No segment is long enough.

@@ -1,4 +1,4 @@
-//! Rate limits: a channel that often moves at one constant rate and never faster (M14.24).
+//! Finds rate limits: a channel often moves at one constant rate and never faster (M14.24).
 //!
 //! ```text
 //! s_k      slopes between consecutive samples; moving: |s| > 2 % of R
@@ -10,55 +10,56 @@
 //!          at most 1 % above (1 + tau) R; at least 70 % of the slopes within 5 tau of R are at R
 //! ```
 //!
-//! The last condition tells a limit from the turn of a smooth signal: of a sine, the slopes within
-//! tau of the steepest are 1 / sqrt 5 of those within 5 tau. Beyond 90 % at R, the channel consists
-//! of ramps, as a designed test input does; a limiter cannot be told from that.
+//! The last condition distinguishes a limit from the steepest part of a smooth signal: in a sine,
+//! slopes within tau of the steepest are 1 / sqrt 5 times as frequent as those within 5 tau. From
+//! 90 % at R on, the channel consists of ramps, as a designed test input may, and a limiter cannot
+//! be recognised.
 
 use gdcm_model::statistics::quantile;
 
 use super::finite_samples::Sample;
 use super::fresh_samples::FreshSamples;
 
-/// Minimum slope of a moving sample, relative to the limit.
+/// Minimum slope at which a channel moves, relative to the limit.
 const MOVING: f64 = 0.02;
-/// Quantile of the moving slopes that is the limit, if there is one.
+/// The limit, if there is one, is this quantile of the moving slopes.
 const STEEPEST: f64 = 0.98;
-/// Relative tolerance of a slope at the limit.
+/// Relative tolerance for a slope at the limit.
 const TOLERANCE: f64 = 0.005;
-/// Multiples of the tolerance that are tried: the wider find a limit in a noisy log.
+/// Multiples of the tolerance to try: the wider ones find a limit in a noisy log.
 const MULTIPLES: [f64; 3] = [1.0, 2.0, 4.0];
-/// Maximum relative tolerance.
+/// Largest relative tolerance.
 const COARSEST: f64 = 0.1;
-/// Minimum number of consecutive slopes of a run at the limit.
+/// Minimum number of consecutive slopes in a run at the limit.
 const LEAST_RUN: usize = 3;
 /// Minimum number of runs at the limit.
 const LEAST_RUNS: usize = 3;
-/// Minimum number of moving slopes.
+/// Minimum number of moving slopes in a record that is examined.
 const LEAST_MOVING: usize = 50;
-/// Minimum share of the moving slopes at the limit.
+/// Minimum share of the moving slopes that must be at the limit.
 const LEAST_SHARE: f64 = 0.05;
-/// Share of the moving slopes at the limit from which the channel consists of ramps.
+/// From this share at the limit on, the channel consists of ramps.
 const RAMPS: f64 = 0.9;
-/// Maximum share of the moving slopes above the limit.
+/// Largest share of the moving slopes that may be above the limit.
 const MOST_ABOVE: f64 = 0.01;
-/// Ratio of the wider tolerance to the tolerance.
+/// Ratio between the wider tolerance and the tolerance.
 const WIDER: f64 = 5.0;
-/// Minimum share of the slopes within the wider tolerance that are at the limit.
+/// Within the wider tolerance, at least this share of slopes must be at the limit.
 const SHARP: f64 = 0.7;
-/// Maximum ratio of a time difference to the sample time between consecutive samples.
+/// Samples are consecutive up to this time difference, in sample times.
 const CONSECUTIVE: f64 = 1.5;
 
-/// The rate limit of a channel in a record.
+/// A channel's rate limit in a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RateLimit {
-    /// Units of the channel per second.
+    /// In the channel's unit per second.
     pub(crate) rate: f64,
-    /// Share of the moving slopes at the limit.
+    /// Share of moving slopes at the limit.
     pub(crate) share: f64,
 }
 
 impl RateLimit {
-    /// Finds the rate limit in the samples of a record; `None` if there is none.
+    /// Finds the rate limit in a record's samples; `None` if there is none.
     pub(crate) fn find(samples: Vec<Sample>) -> Option<Self> {
         let fresh = FreshSamples::new(samples);
         let slopes = slopes(&fresh);
@@ -105,7 +106,7 @@ fn slopes(fresh: &FreshSamples) -> Vec<f64> {
     slopes
 }
 
-/// Returns the mean of the slopes within the tolerance of `near`.
+/// Averages the slopes that equal `near` within the tolerance; `near` if there are none.
 fn mean_near(moving: &[f64], near: f64, tolerance: f64) -> f64 {
     let mut sum = 0.0;
     let mut count = 0;
@@ -122,7 +123,7 @@ fn mean_near(moving: &[f64], near: f64, tolerance: f64) -> f64 {
     }
 }
 
-/// Numbers of slopes at, near and above a rate.
+/// Counts slopes at, near and above a rate.
 #[derive(Default)]
 struct Counts {
     moving: usize,
@@ -166,7 +167,7 @@ impl Counts {
         counts
     }
 
-    /// Returns the share of the moving slopes at the rate.
+    /// Returns the share of moving slopes at the rate.
     fn share(&self) -> f64 {
         self.at_rate as f64 / self.moving.max(1) as f64
     }
@@ -179,7 +180,7 @@ impl Counts {
     }
 }
 
-/// Returns whether the size of a slope is within a relative tolerance of a rate.
+/// Returns whether a slope's modulus equals a rate within a relative tolerance.
 fn is_within(slope: f64, rate: f64, tolerance: f64) -> bool {
     (slope.abs() - rate).abs() <= tolerance * rate
 }

@@ -20,7 +20,7 @@ use super::stairs::Stairs;
 
 /// Correlation above which two inputs count as always moved together.
 const TOGETHER: f64 = 0.99;
-/// Correlation above which an output counts as a copy of an input or of another output.
+/// Correlation above which an output counts as a copy of another channel.
 const COPY: f64 = 0.9999;
 
 /// A doubt about the flight records, or a change made to them.
@@ -32,7 +32,7 @@ pub enum RecordCaution {
     )]
     Resampled {
         record: String,
-        /// 95th percentile of the deviations from multiples of the sample time \[%\].
+        /// The steps' deviation from multiples of the sample time, 95th percentile \[%\].
         percent: f64,
     },
     /// A part between two gaps was left out because it is too short.
@@ -47,7 +47,7 @@ pub enum RecordCaution {
     },
     #[error("{0}: no part could be used")]
     RecordUnused(String),
-    /// More than half of the consecutive samples are equal while the channel moves.
+    /// More than half the consecutive samples are equal while the channel moves.
     #[error(
         "{signal}: {percent:.0} % of consecutive samples are equal; it changes every {:.0} ms. \
         State the cause: {}or a signal that really moves in steps (used as logged, as now)",
@@ -55,7 +55,7 @@ pub enum RecordCaution {
     )]
     SampleHold {
         signal: Signal,
-        /// Share of equal samples \[%\].
+        /// Share of samples equal to the one before \[%\].
         percent: f64,
         /// Median time between changes \[s\].
         hold_s: f64,
@@ -64,9 +64,9 @@ pub enum RecordCaution {
     #[error("{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
-        /// Maximum modulus of the samples.
+        /// The samples' largest modulus.
         greatest: f64,
-        /// Maximum plausible modulus.
+        /// Largest plausible modulus.
         limit: f64,
     },
     #[error(
@@ -83,7 +83,7 @@ pub enum RecordCaution {
         if *records > 1 { "these records" } else { "the record" }
     )]
     AtLimit {
-        /// Name of the record with the largest share of samples at the limit.
+        /// The record with the largest share of samples at the limit, by name.
         record: String,
         signal: Signal,
         /// Share of samples at the limit in this record \[%\].
@@ -91,14 +91,14 @@ pub enum RecordCaution {
         /// Number of affected records.
         records: usize,
     },
-    /// Single samples of a channel far off their neighbours (M14.24).
+    /// Single samples in a channel are far off their neighbours (M14.24).
     #[error("{}", spike_text(record, signal, times_s, *deviations))]
     Spike {
         record: String,
         signal: Signal,
-        /// Stamp of the first sample of each spike \[s\], ascending.
+        /// Each spike's first stamp \[s\], ascending.
         times_s: Vec<f64>,
-        /// Distance of the largest spike from its neighbours, in standard deviations of the other
+        /// The largest spike's distance from its neighbours, in standard deviations of the other
         /// samples.
         deviations: f64,
     },
@@ -111,10 +111,10 @@ pub enum RecordCaution {
         if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
     )]
     RateLimited {
-        /// Name of the record with the largest share of slopes at the limit.
+        /// The record with the largest share of slopes at the limit, by name.
         record: String,
         signal: Signal,
-        /// Units of the channel per second.
+        /// In the channel's unit per second.
         rate: f64,
         /// Share of the moving samples at the limit in this record \[%\].
         percent: f64,
@@ -138,7 +138,7 @@ pub enum RecordCaution {
     )]
     Coarse {
         signal: Signal,
-        /// Step size in standard deviations of the channel.
+        /// Step size in the channel's standard deviations.
         steps: f64,
     },
     /// An output copies another channel.
@@ -152,7 +152,7 @@ pub enum RecordCaution {
     },
 }
 
-/// Returns the possible causes of stairs, as text for the caution.
+/// Returns the causes that stairs may have, as text for the caution.
 fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = match role {
@@ -167,7 +167,7 @@ fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
 /// Maximum number of spikes that are listed by time.
 const LISTED_SPIKES: usize = 5;
 
-/// Describes the spikes of a channel in a record, and the remedy.
+/// Describes a channel's spikes in a record, and the remedy.
 fn spike_text(record: &str, signal: &Signal, times_s: &[f64], deviations: f64) -> String {
     let mut times: Vec<String> = times_s
         .iter()
@@ -189,14 +189,14 @@ fn spike_text(record: &str, signal: &Signal, times_s: &[f64], deviations: f64) -
     )
 }
 
-/// Spikes of a channel in a record.
+/// A channel's spikes in a record.
 struct RecordSpikes<'r> {
     record: &'r FlightRecord,
     spikes: Option<Spikes>,
 }
 
 impl<'r> RecordSpikes<'r> {
-    /// Searches the spikes of a channel in each record.
+    /// Searches a channel's spikes in each record.
     fn of_channel(records: &'r [FlightRecord], signal: &Signal) -> Vec<Self> {
         let mut found = Vec::with_capacity(records.len());
         for record in records {
@@ -208,7 +208,7 @@ impl<'r> RecordSpikes<'r> {
         found
     }
 
-    /// Returns the samples of the channel that are in no spike.
+    /// Returns the channel's samples that are in no spike.
     fn other_samples(&self, signal: &Signal) -> Vec<Sample> {
         let mut samples = finite_samples(self.record, signal);
         if let Some(spikes) = &self.spikes {
@@ -217,7 +217,7 @@ impl<'r> RecordSpikes<'r> {
         samples
     }
 
-    /// Returns the values of the channel that are in no spike.
+    /// Returns the channel's values that are in no spike.
     fn other_values(&self, signal: &Signal) -> Vec<f64> {
         self.other_samples(signal)
             .into_iter()
@@ -236,8 +236,7 @@ impl<'r> RecordSpikes<'r> {
     }
 }
 
-/// Returns cautions about the channels of the records as logged, and of the segments made from
-/// them.
+/// Returns cautions about the channels in the records as logged and in the segments made from them.
 ///
 /// Spikes are found first; the other doubts about values are about the remaining samples.
 pub(crate) fn channel_cautions(
@@ -303,7 +302,7 @@ fn stairs_caution(
     if channel.hold != Hold::None {
         return None;
     }
-    // The stairs of a coarse output are its coarse steps, for which there is another caution.
+    // A coarse output's stairs are its coarse steps, for which there is another caution.
     if signal.role == ChannelSide::Output && is_coarse(&values_of_all(records, signal)) {
         return None;
     }
@@ -370,7 +369,7 @@ fn coarse_caution(signal: &Signal, spikes: &[RecordSpikes<'_>]) -> Option<Record
     }
 }
 
-/// Returns the finite values of a channel in all records.
+/// Returns a channel's finite values in all records.
 fn values_of_all(records: &[FlightRecord], signal: &Signal) -> Vec<f64> {
     records
         .iter()
@@ -436,7 +435,8 @@ pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution>
     })
 }
 
-/// Returns the inputs of a record at their limit, each with its share of the samples \[%\].
+/// Returns the inputs that reach their limit in a record, each with its share of samples there
+/// \[%\].
 pub(crate) fn inputs_at_limit(
     record: &FlightRecord,
     preparation: &Preparation,

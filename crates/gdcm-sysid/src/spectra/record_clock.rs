@@ -1,34 +1,34 @@
-//! Time stamps of a record, their jitter and their uniform grid (M14.1).
+//! A record's time stamps, their jitter and their uniform grid (M14.1).
 //!
-//! Rows without a finite stamp are left out. All other code of the preparation counts samples by
-//! their index in [`Clock::times`], which differs from their row in the record.
+//! Rows without a finite stamp are left out. The rest of the preparation counts samples by their
+//! index in [`Clock::times`], which differs from their row in the record.
 
 use gdcm_model::simulation::{FlightRecord, Signal};
 use gdcm_model::statistics::quantile;
 
 use super::preparation_settings::PreparationError;
 
-/// Maximum deviation of even stamps from multiples of the sample time \[%\] (M14.1).
+/// Stamps are even if they deviate from multiples of the sample time by at most this much \[%\]
+/// (M14.1).
 const UNEVEN_PERCENT: f64 = 20.0;
-/// Quantile of the deviations that is compared with the limit: a single late stamp is no jitter.
+/// The quantile of the deviations to compare with the limit: a single late stamp is no jitter.
 const COUNTED: f64 = 0.95;
 /// Tolerance for rounded stamps: relative to the jitter limit, and in samples at a grid point.
 const ROUNDING: f64 = 1e-6;
 
-/// Stamps of a record, with their median step and their jitter.
+/// A record's stamps, with their median step and their jitter.
 pub(crate) struct Clock {
     /// First stamp \[s\].
     pub start_s: f64,
-    /// Median difference of the stamps \[s\]; 0 for fewer than two stamps.
+    /// Median step between stamps \[s\]; 0 for fewer than two stamps.
     pub sample_time_s: f64,
-    /// 95th percentile of the deviations of stamp differences from multiples of the sample time
-    /// \[%\].
+    /// The steps' deviation from multiples of the sample time, 95th percentile \[%\].
     pub jitter_percent: f64,
     /// Indices of the rows with a finite stamp.
     pub rows: Vec<usize>,
-    /// Stamps of these rows \[s\], counted from the first stamp.
+    /// Stamps in these rows \[s\], relative to the first stamp.
     pub times: Vec<f64>,
-    /// Maximum time between two samples \[s\] that is no gap, or a gap that is bridged.
+    /// Stamps further apart than this \[s\] have a gap between them that is not bridged.
     pub longest_step_s: f64,
 }
 
@@ -36,7 +36,6 @@ pub(crate) struct Clock {
 pub(crate) struct GridStretch {
     /// First `k`, an integer value.
     pub first: f64,
-    /// Number of points.
     pub points: usize,
 }
 
@@ -69,7 +68,7 @@ impl Clock {
         })
     }
 
-    /// Whether the jitter exceeds 20 % of the sample time.
+    /// Returns whether the jitter exceeds 20 % of the sample time.
     pub fn is_uneven(&self) -> bool {
         // Rounded stamps may be just at the limit.
         self.jitter_percent > UNEVEN_PERCENT * (1.0 + ROUNDING)
@@ -80,7 +79,7 @@ impl Clock {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the stretches of the grid `k dt` between gaps.
+    /// Returns the grid `k dt` in stretches between gaps.
     pub fn grid(&self) -> Vec<GridStretch> {
         let mut grid = Vec::new();
         let mut from = 0;
@@ -111,14 +110,14 @@ pub(crate) struct StampRange {
     pub to: usize,
 }
 
-/// Values of a channel at the stamps of a clock.
+/// A channel's values at a clock's stamps.
 pub(crate) struct StampedValues {
     pub signal: Signal,
     pub values: Vec<f64>,
 }
 
 impl StampedValues {
-    /// Takes the values of a signal at the rows of the record that have a stamp.
+    /// Takes a signal's values in the rows that have a stamp.
     pub fn new(record: &FlightRecord, clock: &Clock, signal: Signal) -> Self {
         let samples = record.channel(&signal);
         Self {

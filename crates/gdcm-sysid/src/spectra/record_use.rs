@@ -1,10 +1,10 @@
-//! Use of a record in an identification: its parts, gaps, and inputs at their limit.
+//! What an identification uses of a record: its parts and gaps, and inputs at their limit.
 
 use gdcm_model::simulation::{FlightRecord, Signal};
 
 use super::gap::{Gap, Treatment};
 
-/// The parts of a record that are used, and its gaps.
+/// The parts used from a record, and its gaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordUse {
     /// Record name.
@@ -17,14 +17,13 @@ pub struct RecordUse {
     pub used_s: f64,
     /// Gaps, sorted by their start.
     pub gaps: Vec<Gap>,
-    /// Inputs at their limit, each with its share of samples there \[%\]. They need no caution: a
-    /// saturated actuator position is a valid input.
+    /// Inputs that reach their limit, each with its share of samples there \[%\]. They need no
+    /// caution: a saturated actuator position is a valid input.
     pub inputs_at_limit: Vec<(Signal, f64)>,
 }
 
 impl RecordUse {
-    /// Returns the first and the last time \[s\] of each part that remains after the gaps are cut
-    /// out.
+    /// Returns where the parts that remain after the gaps are cut out begin and end \[s\].
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
         let mut stamps = record
             .time_s

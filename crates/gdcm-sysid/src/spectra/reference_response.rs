@@ -1,5 +1,5 @@
-//! The response measured through a recorded reference that drove the loop from outside, and is
-//! therefore not biased by feedback (M14.15).
+//! Measures the response through a recorded reference that drove the loop from outside, so that
+//! feedback does not bias it (M14.15).
 //!
 //! ```text
 //! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line
@@ -12,10 +12,10 @@
 //! 5  valid where the coherence between an input and R is at least 0.6: elsewhere R does not excite
 //! ```
 //!
-//! `U`, `Y` and `R` are the spectral lines of inputs, outputs and references, `Gamma_y` and `Gamma_u`
-//! the rows of `Gamma0` for outputs and inputs, `F` the regressors `[R, x R, x^2 R]` without the
-//! transient, `N` the noise of `[Y; U]`. In instrumental-variable identification, such a reference is
-//! called the instrument.
+//! `U`, `Y` and `R` are the spectral lines of inputs, outputs and references, `Gamma_y` and
+//! `Gamma_u` the output and input rows in `Gamma0`, `F` the regressors `[R, x R, x^2 R]` without
+//! the transient, `N` the noise in `[Y; U]`. In instrumental-variable identification, such a
+//! reference is called the instrument.
 //!
 //! The leverage excludes the ends of a chirp's band, where its smooth spectrum and the
 //! transient look alike. The cost per degree of freedom is far below 1 and meaningless.
@@ -32,16 +32,16 @@ use super::local_polynomial_error::LocalPolynomialError;
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::{LineRange, Spectrum};
 
-/// Half-width of a window, relative to its centre frequency.
+/// Window half-width, relative to the centre frequency.
 const HALF_WIDTH: f64 = 0.15;
-/// Minimum singular value of `Gamma_u` that counts, relative to the largest.
+/// Smallest singular value of `Gamma_u` that counts, relative to the largest.
 const TOLERANCE: f64 = 1e-3;
 /// Lines with at least this leverage are left out.
 const LEVERAGE: f64 = 0.5;
 /// Minimum coherence for widening a band: below it, the widening does not increase any further.
 const LEAST_COHERENCE: f64 = 0.01;
 
-/// Response of inputs and outputs to the reference at a frequency.
+/// How inputs and outputs respond to the reference at a frequency.
 struct InstrumentPoint {
     /// `Gamma0`, (outputs, then inputs) x references.
     gamma: DMatrix<Complex<f64>>,
@@ -60,7 +60,7 @@ pub(crate) struct Instrument {
 
 impl Instrument {
     /// Measures the response from lines whose inputs are the references and whose outputs are the
-    /// outputs of the model, followed by its inputs.
+    /// model's outputs, then its inputs.
     pub(crate) fn new(
         lines: &[Spectrum],
         used: LineRange,
@@ -99,8 +99,7 @@ impl Instrument {
 }
 
 impl InstrumentPoint {
-    /// Divides the responses of the outputs to the reference by the responses of the inputs (step
-    /// 2).
+    /// Divides the outputs' responses to the reference by the inputs' responses (step 2).
     fn new(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
@@ -183,7 +182,7 @@ impl ResponseEstimate {
     }
 }
 
-/// Returns the lines as measured through the reference, without those of high leverage, which
+/// Returns the lines as measured through the reference, without those with high leverage, which
 /// determine their own estimate (step 3).
 fn through_reference(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
     let omegas: Vec<f64> = points.iter().map(|point| point.estimate.omega).collect();

@@ -8,16 +8,17 @@ use gdcm_model::statistics::median;
 
 use super::scales::Scales;
 
-/// Number of terms of a local polynomial: 1, x, x^2.
+/// Number of terms in a local polynomial: 1, x, x^2.
 pub(crate) const TERMS: usize = 3;
-/// Minimum median partial coherence of an input that was swept by itself (M14.2).
+/// Minimum median partial coherence for an input that was swept by itself (M14.2).
 const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
-/// Maximum condition number of the spectral matrix of inputs that were moved independently (M14.2).
+/// Largest condition number of the inputs' spectral matrix if they were moved independently
+/// (M14.2).
 const GREATEST_CONDITION: f64 = 1e3;
-/// Minimum partial coherence of a trusted point (M14.2).
+/// Minimum partial coherence at which a point is trusted (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
-/// Minimum share of the band, in logarithmic frequency, without a response at an end for the band
-/// to count as too wide there (M14.10).
+/// The band is too wide at an end if at least this share of it shows no response there, in
+/// logarithmic frequency (M14.10).
 const END: f64 = 0.2;
 
 /// The measured response at a frequency.
@@ -28,23 +29,23 @@ pub struct EstimatePoint {
     /// `G0`, outputs x inputs.
     pub response: DMatrix<Complex<f64>>,
     /// `E |error of G0|^2`, outputs x inputs. Real and imaginary part have one half each, so
-    /// `sqrt(variance / 2) / |G0|` is the standard deviation of the log modulus \[Np\] and of the
-    /// phase \[rad\].
+    /// `sqrt(variance / 2) / |G0|` is the standard deviation of log modulus \[Np\] and phase
+    /// \[rad\].
     pub variance: DMatrix<f64>,
-    /// Real part of `Cv`, the noise covariance of a spectral line; outputs x outputs.
+    /// Real part of `Cv`, the noise covariance at a spectral line; outputs x outputs.
     pub noise: DMatrix<f64>,
-    /// Mean line power of each output around this frequency.
+    /// Each output's mean line power around this frequency.
     pub power: DVector<f64>,
-    /// Multiple coherence of each output: the share of its power that all inputs explain, 0 to 1.
+    /// Each output's multiple coherence: the share of its power that all inputs explain, 0 to 1.
     pub coherence: DVector<f64>,
-    /// Partial coherence, outputs x inputs: the share, 0 to 1, that this input explains of the
-    /// power left unexplained by the other inputs.
+    /// Partial coherence, outputs x inputs: the share, 0 to 1, that an input explains of the output
+    /// power which the other inputs leave unexplained.
     pub partial_coherence: DMatrix<f64>,
-    /// Condition number of the spectral matrix `S_uu` of the inputs, in scaled units.
+    /// Condition number of the inputs' spectral matrix `S_uu`, in scaled units.
     pub condition: f64,
-    /// `h`, half-width of the window \[rad/s\].
+    /// `h`, window half-width \[rad/s\].
     pub half_width: f64,
-    /// Degrees of freedom of `noise`: the number of spectral lines less the number of unknowns.
+    /// Degrees of freedom in `noise`: spectral lines less unknowns.
     pub freedom: usize,
 }
 
@@ -55,8 +56,8 @@ impl EstimatePoint {
         (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
     }
 
-    /// Returns the maximum partial coherence of an input over the outputs, less the share that as
-    /// many columns of noise would explain: `1 - (1 - c) (freedom + 3) / freedom`.
+    /// Returns an input's largest partial coherence over the outputs, less the share that as many
+    /// noise columns would explain: `1 - (1 - c) (freedom + 3) / freedom`.
     ///
     /// Without this correction, the maximum over many outputs would hardly ever be small.
     fn greatest_coherence(&self, input: usize) -> f64 {
@@ -70,7 +71,7 @@ impl EstimatePoint {
         (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
     }
 
-    /// Whether at least one input is coherent with an output.
+    /// Returns whether at least one input is coherent with an output.
     fn is_shown(&self) -> bool {
         (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
     }
@@ -91,31 +92,31 @@ impl EstimatePoint {
     }
 }
 
-/// Independent excitation of each input.
+/// How far each input was excited independently.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// Maximum partial coherence of each input over the outputs, as a median over frequency, 0 to
-    /// 1.
+    /// Each input's largest partial coherence over the outputs, as a median over frequency, 0 to 1.
     pub partial_coherence: Vec<f64>,
-    /// Median over frequency of the condition number of the spectral matrix of the inputs.
+    /// Condition number of the inputs' spectral matrix, as a median over frequency.
     pub condition: f64,
 }
 
 impl Excitation {
-    /// Returns the inputs, counted from 0, with a median partial coherence below 0.3: the responses
-    /// to them are not identified.
+    /// Returns the inputs, by index from 0, whose median partial coherence is below 0.3: the
+    /// responses to them are not identified.
     pub fn not_identified(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.partial_coherence.len())
             .filter(|&i| self.partial_coherence[i] < LEAST_PARTIAL_COHERENCE)
     }
 
-    /// Returns the largest median partial coherence of an input; 0 without inputs.
+    /// Returns the most coherent input's median partial coherence; 0 without inputs.
     #[must_use]
     pub fn greatest_coherence(&self) -> f64 {
         self.partial_coherence.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Whether the median condition number exceeds 1000: some inputs were moved only together.
+    /// Returns whether the median condition number exceeds 1000: some inputs were moved only
+    /// together.
     #[must_use]
     pub fn moved_together(&self) -> bool {
         self.condition > GREATEST_CONDITION
@@ -130,7 +131,7 @@ pub struct ResponseEstimate {
 }
 
 impl ResponseEstimate {
-    /// Returns the part of a band \[rad/s\] in which the records show a response, if its lower or
+    /// Returns the narrower band \[rad/s\] in which the records show a response, if the lower or
     /// upper fifth (in logarithm) shows none: no input is coherent with any output there.
     #[must_use]
     pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
@@ -177,7 +178,7 @@ impl ResponseEstimate {
         .ok()
     }
 
-    /// Tabulates a value of every response over frequency. `points` must not be empty.
+    /// Tabulates a value for every response over frequency. `points` must not be empty.
     fn table(&self, value: fn(&EstimatePoint, (usize, usize)) -> f64) -> PairTable<Vec<f64>> {
         let (outputs, inputs) = self.points[0].response.shape();
         PairTable::from_fn(outputs, inputs, |pair: Pair| {
@@ -188,7 +189,7 @@ impl ResponseEstimate {
         })
     }
 
-    /// Computes the independent excitation of each input.
+    /// Computes how far each input was excited independently.
     ///
     /// A coupled response may be weak although its input was moved enough: the maximum partial
     /// coherence over the outputs counts at each frequency.

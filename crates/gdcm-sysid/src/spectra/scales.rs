@@ -1,15 +1,15 @@
-//! Scales of the channels: the rms about the mean (M14.1).
+//! Channel scales: the rms about the mean (M14.1).
 
 use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Segment;
 
-/// Minimum rms of a channel relative to its maximum modulus; below it, the channel is constant
-/// apart from rounding.
+/// Minimum rms relative to the largest modulus; below it, a channel is constant apart from
+/// rounding.
 const CONSTANT: f64 = 1e-12;
 
-/// Scale of every channel, in file units: its rms about the mean of each segment, over all segments
+/// Scale for every channel, in file units: its rms about each segment's mean, over all segments
 /// (M14.1).
 ///
 /// ```text
@@ -17,9 +17,9 @@ const CONSTANT: f64 = 1e-12;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
-    /// Scales of the inputs, greater than 0.
+    /// Input scales, greater than 0.
     pub inputs: Vec<f64>,
-    /// Scales of the outputs, greater than 0.
+    /// Output scales, greater than 0.
     pub outputs: Vec<f64>,
 }
 
@@ -28,10 +28,10 @@ pub struct Scales {
 pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,
-    /// A segment has other channel counts than the first; index of the segment, counted from 0.
+    /// A segment, by index from 0, has other channel counts than the first.
     #[error("piece {} of the flight records differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
-    /// A sample or its square is not finite; index of the segment, counted from 0.
+    /// A sample or its square is not finite in the segment with this index, from 0.
     #[error("piece {} of the flight records has values that are not finite or too large", .0 + 1)]
     NotFinite(usize),
     /// The channel is constant in every segment.
@@ -95,12 +95,12 @@ fn divide_columns(samples: &mut DMatrix<f64>, scales: &[f64]) {
     }
 }
 
-/// Returns the inputs or the outputs of a segment.
+/// Returns a segment's inputs or outputs.
 fn samples_of_side(segment: &Segment, role: ChannelSide) -> &DMatrix<f64> {
     role.pick(&segment.inputs, &segment.outputs)
 }
 
-/// Computes the rms of each channel about its mean in each segment, over all segments.
+/// Computes each channel's rms about its segment means, over all segments.
 fn rms_of_side(segments: &[Segment], role: ChannelSide) -> Result<Vec<f64>, ScalingError> {
     let channels = segments
         .first()

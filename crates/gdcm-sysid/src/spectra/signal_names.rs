@@ -1,8 +1,8 @@
-//! Lists of signal names in messages.
+//! Lists signal names for messages.
 
 use gdcm_model::simulation::Signal;
 
-/// Joins the names of signals: `P, Q and R`.
+/// Joins signal names: `P, Q and R`.
 pub(crate) fn names(signals: &[Signal]) -> String {
     let names: Vec<&str> = signals.iter().map(|signal| signal.name.as_str()).collect();
     listed(&names)

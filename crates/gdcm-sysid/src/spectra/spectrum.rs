@@ -1,4 +1,4 @@
-//! Spectral lines of a segment: its Fourier transform without a window (M14.2).
+//! A segment's spectral lines: its Fourier transform without a window (M14.2).
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ use super::gap_hat::GapHat;
 /// that the lines are used from the second on (M14.12).
 pub(crate) const FIRST_LINE: f64 = 1.5;
 
-/// Spectral lines of a segment (M14.2): columns are lines, rows are channels.
+/// A segment's spectral lines (M14.2): columns are lines, rows are channels.
 ///
 /// ```text
 /// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt)
@@ -25,7 +25,7 @@ pub(crate) const FIRST_LINE: f64 = 1.5;
 /// contain it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Index of the record, counted from 0.
+    /// Record index, from 0.
     pub record: usize,
     /// `T` \[s\].
     pub duration_s: f64,
@@ -35,7 +35,7 @@ pub struct Spectrum {
     pub inputs: DMatrix<Complex<f64>>,
     /// `Y`, outputs x lines.
     pub outputs: DMatrix<Complex<f64>>,
-    /// Missing samples of the channels; empty for a segment without gaps.
+    /// Missing samples as hats; empty for a segment without gaps.
     pub hats: Vec<GapHat>,
 }
 
@@ -56,18 +56,18 @@ impl Spectrum {
     }
 }
 
-/// Frequency range of the lines used.
+/// Frequency range in which lines are used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineRange {
-    /// Minimum frequency \[rad/s\].
+    /// Lowest frequency \[rad/s\].
     pub(crate) lowest: f64,
-    /// Maximum frequency \[rad/s\].
+    /// Highest frequency \[rad/s\].
     pub(crate) highest: f64,
 }
 
 impl LineRange {
-    /// Transforms the segments and keeps the lines in the range, from the second line of each
-    /// segment on.
+    /// Transforms the segments and keeps the lines in the range, from each segment's second line
+    /// on.
     ///
     /// Segments without a line in the range are omitted.
     pub(crate) fn spectra(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
@@ -88,8 +88,8 @@ impl LineRange {
     }
 }
 
-/// Computes the lines of every segment up to `highest` \[rad/s\] and below half the sampling
-/// frequency, in segment order.
+/// Computes every segment's lines up to `highest` \[rad/s\] and below half the sampling frequency,
+/// in segment order.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let segments: Vec<&Segment> = segments.iter().collect();
@@ -112,7 +112,7 @@ pub(crate) fn spectra_of(
     })
 }
 
-/// Computes the lines of a segment up to `highest`; `plan` is a transform of its length.
+/// Computes a segment's lines up to `highest`; `plan` is a transform with its length.
 fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
     let duration_s = segment.duration_s();
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
@@ -131,7 +131,7 @@ fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectru
     }
 }
 
-/// Computes the lines 1 to `lines` of each column of `samples`, times `factor`; rows are channels.
+/// Computes lines 1 to `lines` for each column in `samples`, times `factor`; rows are channels.
 fn transform(
     samples: &DMatrix<f64>,
     lines: usize,

@@ -1,4 +1,4 @@
-//! Spikes: single wrong samples, as a faulty transmission leaves them (M14.24).
+//! Finds spikes: single wrong samples, as after a faulty transmission (M14.24).
 //!
 //! ```text
 //! candidate  at most 3 consecutive samples, at most 0.1 s (a single sample always), on one side of
@@ -12,69 +12,67 @@
 //! no spikes  more than 2 % of the samples: the channel moves in pulses
 //! ```
 //!
-//! A step does not return, a pulse of a test input lasts longer, the kick of a controller rises and
-//! falls over several samples, and in vibration or in a binary
-//! sequence the neighbourhood is as rough as the candidate.
+//! A step does not return, a test pulse lasts longer, a controller's kick rises and falls over
+//! several samples, and in vibration or in a binary sequence the neighbourhood is as rough as the
+//! candidate.
 
 use gdcm_model::statistics::quantile;
 
 use super::finite_samples::Sample;
 use super::fresh_samples::FreshSamples;
 
-/// Maximum number of samples of a spike.
+/// Maximum number of samples in a spike.
 const MOST_SAMPLES: usize = 3;
-/// Maximum duration of a spike of several samples \[s\].
+/// Longest spike with several samples \[s\].
 const LONGEST_S: f64 = 0.1;
-/// Minimum ratio of the nearest to the farthest sample of a spike, as distances from the line.
+/// A spike's nearest sample is at least this far from the line, relative to its farthest.
 const EVEN: f64 = 0.5;
-/// Maximum difference of the neighbours, relative to the nearest distance.
+/// Largest difference between the neighbours, relative to the nearest distance.
 const RETURNED: f64 = 0.5;
-/// Quantile of the distances of single samples in the record.
+/// Quantile of single samples' distances in the record.
 const USUAL: f64 = 0.95;
-/// Quantile of the distances of single samples nearby.
+/// Quantile of single samples' distances nearby.
 const USUAL_NEARBY: f64 = 0.9;
 /// Number of samples on each side that are nearby.
 const NEARBY: usize = 25;
-/// Minimum distance of a spike, relative to the usual distance.
+/// Minimum distance at which a sample is a spike, relative to the usual distance.
 const OVER_USUAL: f64 = 6.0;
-/// Minimum distance of a spike in standard deviations of the other samples.
+/// Minimum distance in standard deviations of the other samples.
 const LEAST_DEVIATIONS: f64 = 1.0;
-/// Minimum distance of a spike in steps of the log.
+/// Minimum distance in logging steps.
 const LEAST_STEPS: f64 = 3.0;
-/// Maximum difference between a neighbour and the sample beyond it, relative to the nearest
+/// Largest difference between a neighbour and the sample beyond it, relative to the nearest
 /// distance.
 const ABRUPT: f64 = 0.25;
-/// Maximum share of samples in spikes; a channel with more moves in pulses.
+/// Largest share of samples in spikes; a channel with more moves in pulses.
 const MOST_SHARE: f64 = 0.02;
-/// Maximum time between the neighbours of a spike beyond its samples, in sample times.
+/// A spike's neighbours are at most this far apart, in sample times, beyond its sample count.
 const SLACK: f64 = 1.5;
 
-/// Spikes of a channel in a record.
+/// A channel's spikes in a record.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spikes {
-    /// Stamp of the first sample of each spike \[s\], ascending.
+    /// Each spike's first stamp \[s\], ascending.
     pub(crate) times_s: Vec<f64>,
-    /// Distance of the largest spike from the line between its neighbours, in standard deviations
-    /// of the samples without spikes.
+    /// The largest spike's distance from the line between its neighbours, in standard deviations of
+    /// the other samples.
     pub(crate) deviations: f64,
-    /// First and last stamp of each spike \[s\].
+    /// Each spike's first and last stamp \[s\].
     spans_s: Vec<[f64; 2]>,
 }
 
-/// Consecutive samples beside the line between their neighbours.
+/// Consecutive samples on one side of the line between their neighbours.
 struct Candidate {
-    /// Index of the first sample.
     first: usize,
-    /// Number of samples.
     count: usize,
-    /// Nearest distance from the line.
+    /// Smallest distance from the line.
     nearest: f64,
-    /// Farthest distance from the line.
+    /// Largest distance from the line.
     farthest: f64,
 }
 
 impl Spikes {
-    /// Finds the spikes of a channel in the samples of a record; `None` if there are none.
+    /// Finds spikes among a channel's samples in a record; `None` if there are none.
     pub(crate) fn find(samples: Vec<Sample>) -> Option<Self> {
         let fresh = FreshSamples::new(samples);
         let samples = &fresh.samples;
@@ -126,7 +124,7 @@ impl Spikes {
     }
 }
 
-/// Returns the distance of each sample from the middle of its neighbours; 0 at the ends.
+/// Returns each sample's distance from the mean of its neighbours; 0 at the ends.
 fn single_distances(samples: &[Sample]) -> Vec<f64> {
     let mut distances = vec![0.0; samples.len()];
     for (k, near) in samples.windows(3).enumerate() {
@@ -174,7 +172,7 @@ fn candidate(fresh: &FreshSamples, first: usize) -> Option<Candidate> {
     None
 }
 
-/// Returns the larger difference between a neighbour of a candidate and the sample beyond it.
+/// Returns the larger difference between a candidate's neighbour and the sample beyond it.
 fn outer_step(samples: &[Sample], first: usize, count: usize) -> f64 {
     let mut largest = 0.0;
     if first >= 2 {
@@ -194,7 +192,7 @@ impl Candidate {
         if self.nearest < OVER_USUAL * usual {
             return false;
         }
-        // The neighbours of a spike are far from the middle of theirs as well.
+        // A spike's neighbours are left out: they too are far from the mean of theirs.
         let before = &distances[(self.first - 1).saturating_sub(NEARBY)..self.first - 1];
         let last = (self.first + self.count + 1).min(distances.len());
         let after = &distances[last..(last + NEARBY).min(distances.len())];

@@ -1,5 +1,5 @@
-//! Stairs: a channel that repeats its samples although it moves, because it is held or logged more
-//! often than it changes (M14.1).
+//! Recognises stairs: a channel repeats its samples although it moves, because it is held or logged
+//! more often than it changes (M14.1).
 //!
 //! ```text
 //! run    consecutive samples that are exactly equal
@@ -12,10 +12,9 @@ use gdcm_model::statistics::median;
 
 use super::finite_samples::Sample;
 
-/// A moving channel has stairs if more than this share of its consecutive samples are equal
-/// (M14.1).
+/// A moving channel has stairs if consecutive samples are equal more often than this share (M14.1).
 const STAIR_SHARE: f64 = 0.5;
-/// Maximum duration of a stair \[s\]; a channel with equal samples for longer is at rest.
+/// Longest stair \[s\]; a channel with equal samples for longer is at rest.
 const REST_S: f64 = 1.0;
 /// Minimum number of moving samples for recognising stairs.
 const LEAST_MOVING: usize = 50;

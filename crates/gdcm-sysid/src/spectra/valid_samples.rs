@@ -1,7 +1,7 @@
-//! Valid samples of each channel, and the straight lines between them (M14.1).
+//! Each channel's valid samples, and the straight lines between them (M14.1).
 //!
-//! A sample is valid if it is finite and not frozen, and of a slow sensor only if it is fresh. The
-//! straight lines bridge short gaps.
+//! A sample is valid if it is finite and not frozen and, for a slow sensor, fresh. The straight
+//! lines bridge short gaps.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::{FlightRecord, Signal};
@@ -11,10 +11,10 @@ use super::frozen_outputs::frozen_runs;
 use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 use super::record_clock::{Clock, StampRange, StampedValues};
 
-/// Tolerance of a time beyond the last sample, relative to the sample time.
+/// Tolerance for a time beyond the last sample, relative to the sample time.
 const ROUNDING: f64 = 1e-6;
 
-/// Finds the valid samples of each channel in `record`: inputs, then outputs.
+/// Finds each channel's valid samples in `record`: inputs, then outputs.
 pub(crate) fn valid_samples(
     record: &FlightRecord,
     clock: &Clock,
@@ -36,21 +36,21 @@ pub(crate) fn valid_samples(
     found
 }
 
-/// Valid samples of a channel, at times relative to the first stamp of the record.
+/// A channel's valid samples, at times relative to the record's first stamp.
 pub(crate) struct ValidSamples {
     pub signal: Signal,
-    /// Runs of samples that are not finite or frozen.
+    /// Runs in which samples are not finite or frozen.
     pub invalid: Vec<InvalidRun>,
-    /// Maximum time between two samples \[s\] that is no gap, or a gap that is bridged.
+    /// Samples further apart than this \[s\] have a gap between them that is not bridged.
     pub longest_step_s: f64,
     times: Vec<f64>,
     values: Vec<f64>,
-    /// Delay of the stamps \[s\].
+    /// How much later the stamps are than the values \[s\].
     shift_s: f64,
-    /// Tolerance of a time beyond the last sample \[s\].
+    /// Tolerance for a time beyond the last sample \[s\].
     rounding_s: f64,
-    /// Tolerance of a time beyond the samples at the ends of a gap \[s\]: rounded grid times may
-    /// lie just beyond a stamp. It is 0 for a delayed channel, which is interpolated between its
+    /// Tolerance for a time beyond the samples at a gap's ends \[s\]: rounded grid times may lie
+    /// just beyond a stamp. It is 0 for a delayed channel, which is interpolated between its
     /// stamps, and only where both are valid.
     gap_rounding_s: f64,
 }
@@ -92,7 +92,7 @@ impl ValidSamples {
     }
 }
 
-/// Reads the samples of a channel at ascending times.
+/// Reads a channel's samples at ascending times.
 pub(crate) struct SampleReader<'a> {
     samples: &'a ValidSamples,
     /// Index of the first sample after the last time read.
@@ -100,8 +100,8 @@ pub(crate) struct SampleReader<'a> {
 }
 
 impl SampleReader<'_> {
-    /// Returns the value of the channel at `t` \[s\], on the straight line between two samples;
-    /// `None` in a gap that is cut out, and beyond the ends.
+    /// Returns the channel's value at `t` \[s\], on the straight line between two samples; `None`
+    /// in a gap that is cut out, and beyond the ends.
     pub fn at(&mut self, t: f64) -> Option<f64> {
         let ValidSamples { times, values, .. } = self.samples;
         let t = t + self.samples.shift_s;
@@ -148,14 +148,14 @@ fn validity(values: &[f64], frozen: &[StampRange]) -> Vec<bool> {
     is_valid
 }
 
-/// A run of invalid samples.
+/// Consecutive invalid samples.
 pub(crate) struct InvalidRun {
     pub stamps: StampRange,
-    /// Whether some of the samples are frozen.
+    /// Whether some samples are frozen.
     pub is_frozen: bool,
 }
 
-/// Finds the runs of invalid samples.
+/// Finds runs in which samples are invalid.
 fn invalid_runs(is_valid: &[bool], frozen: &[StampRange]) -> Vec<InvalidRun> {
     let mut runs = Vec::new();
     let mut from = 0;
@@ -175,11 +175,11 @@ fn invalid_runs(is_valid: &[bool], frozen: &[StampRange]) -> Vec<InvalidRun> {
     runs
 }
 
-/// Keeps in `places` the fresh samples of a slow sensor, and returns its sample time \[s\].
+/// Keeps only a slow sensor's fresh samples in `places`, and returns its sample time \[s\].
 ///
-/// A sample is fresh if it differs from the preceding sample, or if the sample time of the sensor
-/// (the median time between changes) has passed since the last fresh sample: a sensor may read the
-/// same value twice.
+/// A sample is fresh if it differs from the preceding sample, or if the sensor's sample time (the
+/// median time between changes) has passed since the last fresh sample: a sensor may read the same
+/// value twice.
 fn keep_fresh_samples(channel: &StampedValues, clock: &Clock, places: &mut Vec<usize>) -> f64 {
     let mut changes = Vec::new();
     for pair in places.windows(2) {

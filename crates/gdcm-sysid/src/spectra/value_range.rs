@@ -1,6 +1,6 @@
-//! Minimum and maximum of a channel.
+//! A channel's minimum and maximum.
 
-/// Minimum and maximum of a channel.
+/// A channel's minimum and maximum.
 pub(crate) struct ValueRange {
     pub(crate) least: f64,
     pub(crate) greatest: f64,

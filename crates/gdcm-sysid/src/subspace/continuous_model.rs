@@ -1,11 +1,11 @@
-//! Conversion of a model of the Laguerre projections to continuous time (M14.3).
+//! Converts a model of the Laguerre projections to continuous time (M14.3).
 
 use nalgebra::DMatrix;
 
 use gdcm_model::dataset::StateSpace;
 
-/// Returns the continuous-time model that corresponds to the model `law` of the Laguerre
-/// projections with the pole `pole` \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
+/// Returns the continuous-time model that corresponds to `law`, a model of the Laguerre projections
+/// with the pole `pole` \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
 ///
 /// ```text
 /// xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k,   y~_k = Co xi_k + Do u~_k + e~_k,   k = 0, 1, ...

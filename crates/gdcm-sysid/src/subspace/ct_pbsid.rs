@@ -1,4 +1,4 @@
-//! CT-PBSID: models of all orders from the triangular factor of the data matrix (M14.3).
+//! Computes models of all orders from the data matrix's triangular factor: CT-PBSID (M14.3).
 //!
 //! ```text
 //! z_k = [u~_k; y~_k]: k-th Laguerre projections of the inputs u and the outputs y (`data_matrix`)
@@ -23,7 +23,7 @@ use gdcm_model::dataset::StateSpace;
 use super::continuous_model::continuous;
 use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
 
-/// Dimensions of a data matrix and of its map to the future.
+/// Dimensions of a data matrix and its map to the future.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SubspaceShape {
     pub(crate) inputs: usize,
@@ -39,7 +39,7 @@ pub(crate) struct SubspaceShape {
 pub(crate) struct Subspace {
     pole: f64,
     inputs: usize,
-    /// The leading (p + 1) q columns and rows of `R`.
+    /// The leading (p + 1) q rows and columns in `R`.
     factor: DMatrix<f64>,
     /// `Gamma K`, the map to the future.
     map: DMatrix<f64>,
@@ -51,7 +51,7 @@ pub(crate) struct Subspace {
 
 impl Subspace {
     /// Computes the states (steps 1 to 3) from the triangular factor at a Laguerre pole \[rad/s\];
-    /// `ridge` is relative to columns of unit length.
+    /// `ridge` applies to columns scaled to unit length.
     ///
     /// Returns `None` if the regressors depend on each other or an iteration does not converge.
     pub(crate) fn new(
@@ -81,8 +81,8 @@ impl Subspace {
             map.view_mut((row * outputs, row * channels), (outputs, kept))
                 .copy_from(&theta.columns(0, kept));
         }
-        // The transposed triangular factor of (Gamma K Z0')' shares its left factors with Gamma K
-        // Z0'.
+        // (Gamma K Z0')' is tall: the transpose of its small triangular factor has the same left
+        // singular vectors and singular values as Gamma K Z0'.
         let mut transposed = TriangularFactor::empty(future * outputs);
         transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
         let decomposition =
@@ -104,7 +104,7 @@ impl Subspace {
         })
     }
 
-    /// Computes the continuous-time model of an order (step 4); `None` if the data do not contain
+    /// Computes the continuous-time model at an order (step 4); `None` if the data do not contain
     /// so many states.
     pub(crate) fn model(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;

@@ -1,5 +1,5 @@
-//! The data matrix of CT-PBSID: Laguerre projections of inputs and outputs, and its triangular
-//! factor (M14.3).
+//! Computes the data matrix for CT-PBSID, from Laguerre projections of inputs and outputs, and its
+//! triangular factor (M14.3).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,13 +9,13 @@ use gdcm_model::simulation::Segment;
 use super::laguerre::LaguerreBank;
 use super::triangular_factor::TriangularFactor;
 
-/// Maximum share of a segment that is lost to the incomplete projections at its end.
+/// Largest share of a segment that may be lost to the incomplete projections at its end.
 const LARGEST_END: f64 = 0.3;
 /// Number of parts whose rows are factored in parallel. Two parts keep two cores busy with three
-/// poles; merging a further part costs as much as a segment of 6 s.
+/// poles; merging a further part costs as much as a 6 s segment.
 const PARTS: usize = 2;
 
-/// Settings of the data matrix in CT-PBSID (M14.3).
+/// Settings for the data matrix in CT-PBSID (M14.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Projections {
     /// Laguerre pole `a` \[rad/s\].
@@ -27,7 +27,7 @@ pub(crate) struct Projections {
 }
 
 impl Projections {
-    /// Computes the rows of a segment, including its trim and drift.
+    /// Computes a segment's rows, including its trim and drift.
     ///
     /// ```text
     /// row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)]
@@ -48,7 +48,7 @@ impl Projections {
             let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
             let projections = bank.projections(&signal, self.past);
             for (k, projection) in projections.column_iter().enumerate() {
-                // Block k holds the projections z_k of all channels.
+                // Block k holds all channels' projections z_k.
                 let mut column = rows.column_mut(k * channels + channel);
                 for (to, &instant) in column.iter_mut().zip(&instants) {
                     *to = projection[instant];
@@ -58,7 +58,7 @@ impl Projections {
         rows
     }
 
-    /// Returns the indices of the samples at which the rows of a segment are taken.
+    /// Returns the sample indices at which a segment's rows are taken.
     fn instants(&self, segment: &Segment) -> Vec<usize> {
         let samples = segment.inputs.nrows();
         let duration = samples as f64 * segment.sample_time_s;
@@ -68,7 +68,7 @@ impl Projections {
         (0..last).step_by(step).collect()
     }
 
-    /// Computes the triangular factor of the data matrix of all segments.
+    /// Computes the triangular factor of the data matrix over all segments.
     ///
     /// Trim and drift are projected out of each segment first. The result is bit for bit the same
     /// with any number of threads: they do not decide which segments are factored together.
@@ -85,7 +85,7 @@ impl Projections {
         factor
     }
 
-    /// Computes the triangular factor of the data matrix of some segments.
+    /// Computes the triangular factor of the data matrix over some segments.
     fn factor_part(&self, segments: &[Segment]) -> TriangularFactor {
         let channels = segments.first().map_or(0, |segment| {
             segment.inputs.ncols() + segment.outputs.ncols()

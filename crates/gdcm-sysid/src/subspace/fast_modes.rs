@@ -1,4 +1,4 @@
-//! Removal of the modes far above the band; their static gain is kept.
+//! Removes modes far above the band, but keeps their static gain.
 //!
 //! ```text
 //! 1  Q = [Q1 Q2] orthonormal, Q1 spans the slow modes:   Q' A Q = [A1 A12; 0 A2]
@@ -42,7 +42,7 @@ pub(crate) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<State
 }
 
 /// Returns a real orthonormal basis whose first `count` columns span the same space as the first
-/// `count` columns of `q`. Complex vectors of `q` occur there only with their conjugates.
+/// `count` columns of `q`. Among these, complex vectors come only with their conjugates.
 fn real_basis(q: &DMatrix<Complex<f64>>, count: usize) -> DMatrix<f64> {
     let order = q.nrows();
     // The projector on the span is real, with the eigenvalues 1 and 0.

@@ -21,9 +21,9 @@ use nalgebra::DMatrix;
 /// The filters for a Laguerre pole at a sample time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LaguerreBank {
-    /// Gain of the first filter.
+    /// The first filter's gain.
     gain: f64,
-    /// Negative pole of every filter, and zero of the all-pass filters.
+    /// Every filter has its pole at `-alpha`; the all-pass filters have their zero at `-1/alpha`.
     alpha: f64,
 }
 
@@ -37,7 +37,7 @@ impl LaguerreBank {
         }
     }
 
-    /// Computes the projections at every sample of a signal that ends near 0 (steps 3 to 5), with a
+    /// Computes the projections at every sample in a signal that ends near 0 (steps 3 to 5), with a
     /// column for each k = 0 ... `past`. The caller subtracts the last sample (step 2).
     pub(crate) fn projections(self, signal: &[f64], past: usize) -> DMatrix<f64> {
         let samples = signal.len();

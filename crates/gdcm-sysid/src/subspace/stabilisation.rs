@@ -1,12 +1,12 @@
-//! Stabilisation diagram: poles that change little while the order rises (M14.3).
+//! Finds poles that change little while the order rises, for the stabilisation diagram (M14.3).
 
 use nalgebra::Complex;
 
-/// Maximum distance of a stable pole from the nearest pole of the model whose order is lower by
-/// two, relative to the modulus.
+/// A pole is stable if the model whose order is lower by two has a pole at most this far away,
+/// relative to the modulus.
 const STABLE: f64 = 0.05;
 
-/// Poles of the model of an order.
+/// Poles of the model at an order.
 pub(crate) struct PolesOfOrder {
     pub(crate) order: usize,
     /// Poles \[rad/s\].
@@ -18,7 +18,7 @@ pub(crate) struct PolesOfOrder {
 pub struct StabilisationPoint {
     /// Model order.
     pub order: usize,
-    /// Pole \[rad/s\]; of a complex pair, the pole with positive imaginary part.
+    /// Pole \[rad/s\]; from a complex pair, the one with positive imaginary part.
     pub pole: Complex<f64>,
     /// Whether the model whose order is lower by two has a pole within 5 %, relative to the
     /// modulus.

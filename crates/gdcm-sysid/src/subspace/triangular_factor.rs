@@ -1,4 +1,4 @@
-//! The triangular factor of a tall matrix that arrives in row blocks.
+//! Computes the triangular factor of a tall matrix that arrives in row blocks.
 //!
 //! ```text
 //! R <- qr([R; rows]), R upper triangular, for each column panel J with the width w:
@@ -9,9 +9,9 @@
 //! 3  columns right of J: W = T' (R_J + V' rows), R_J -= W, rows -= V W     (two matrix products)
 //! ```
 //!
-//! Nothing is squared. Householder QR in the compact form of R. Schreiber & C. Van Loan, "A
-//! storage-efficient WY representation for products of Householder transformations", SIAM J. Sci.
-//! Stat. Comput. 10, 1989. The upper part of each reflector is a single entry because R is already
+//! Householder QR, so that nothing is squared, in the compact form of R. Schreiber & C. Van Loan,
+//! "A storage-efficient WY representation for products of Householder transformations", SIAM J.
+//! Sci. Stat. Comput. 10, 1989. Each reflector's upper part is a single entry because R is already
 //! triangular (J. Demmel, L. Grigori, M. Hoemmen & J. Langou, "Communication-optimal parallel and
 //! sequential QR and LU factorizations", SIAM J. Sci. Comput. 34, 2012).
 
@@ -19,8 +19,8 @@ use nalgebra::{DMatrix, DMatrixView, DVector};
 
 /// Number of columns in a panel.
 const PANEL: usize = 16;
-/// Maximum number of rows appended at once: a row block and the panel fit in the second-level cache
-/// of a processor.
+/// Maximum number of rows appended at once: a row block and the panel fit in a processor's
+/// second-level cache.
 const ROWS: usize = 256;
 
 /// `R` of `A = Q R` for the appended rows of `A`: square and upper triangular, with arbitrary row
@@ -70,8 +70,8 @@ impl TriangularFactor {
         }
     }
 
-    /// Reflects the columns of a panel (steps 1 and 2). Stores the vectors of the reflectors in the
-    /// columns of `rows`, and returns `T`.
+    /// Reflects a panel's columns (steps 1 and 2). Stores the reflectors' vectors in the columns of
+    /// `rows`, and returns `T`.
     fn reflect_panel(
         &mut self,
         rows: &mut DMatrix<f64>,
@@ -155,8 +155,8 @@ pub(crate) fn ridge_solution(
     }
 }
 
-/// Computes `X = argmin |A X - Y|^2` by a triangular factor with scaled columns; `None` if the
-/// columns of `A` depend on each other.
+/// Computes `X = argmin |A X - Y|^2` by a triangular factor with scaled columns; `None` if columns
+/// in `A` depend on each other.
 pub(crate) fn least_squares(a: &DMatrix<f64>, y: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut both = DMatrix::zeros(a.nrows(), a.ncols() + y.ncols());
     both.columns_mut(0, a.ncols()).copy_from(a);

@@ -1,42 +1,42 @@
-//! Model orders and past windows to try, as far as the amount of data allows (M14.13).
+//! Chooses the orders and past windows to try, as far as the amount of data allows (M14.13).
 //!
-//! A data matrix has a block of columns for each of the `past + 1` projections, and a row for each
-//! instant; a model of order n needs a map to the future with at least n rows.
+//! A data matrix has `past + 1` column blocks, one for each projection, and a row for each instant;
+//! a model with n states needs a map to the future with at least n rows.
 
 use std::ops::RangeInclusive;
 
 /// Low orders, which are all tried.
 const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
-/// Range of the higher orders, of which the even ones are tried.
+/// Higher orders: only the even ones are tried.
 const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
-/// Maximum odd order that is tried for any number of channels.
+/// Largest odd order that is tried however many channels there are.
 const LAST_ODD_ORDER: usize = 3;
-/// Maximum number of channels for which higher odd orders are tried.
+/// Up to this channel count, higher odd orders are tried too.
 const ODD_ORDERS_CHANNELS: usize = 6;
-/// Past windows to try for any number of channels.
+/// Past windows to try however many channels there are.
 const PASTS: [usize; 4] = [8, 10, 12, 16];
 /// Further past window to try for few channels.
 const LONG_PAST: usize = 24;
-/// Maximum number of channels for which `LONG_PAST` is tried.
+/// Up to this channel count, `LONG_PAST` is tried.
 const LONG_PAST_CHANNELS: usize = 4;
-/// Minimum past window.
+/// Shortest past window.
 const LEAST_PAST: usize = 3;
-/// Minimum ratio of rows to columns in a data matrix.
+/// Minimum number of rows per column in a data matrix.
 const ROWS_PER_COLUMN: f64 = 2.0;
-/// Minimum ratio of rows to columns if no past window reaches `ROWS_PER_COLUMN`.
+/// Minimum number of rows per column if no past window reaches `ROWS_PER_COLUMN`.
 const ROWS_PER_COLUMN_SHORT: f64 = 1.5;
-/// Number of states for which the map to the future has enough rows.
+/// Number of states for which the map to the future must have enough rows.
 const FUTURE_STATES: usize = 30;
-/// Minimum value of the maximum number of block rows in the map to the future.
+/// Minimum of [`Extent::longest_future`].
 const LEAST_FUTURE: usize = 12;
 /// Time between instants (rows of the data matrix) times the upper band end \[rad\].
 pub(crate) const SPACING: f64 = 1.2;
-/// Minimum number of real values ("figures") in the spectral lines for each parameter ("unknown") of
-/// a model (M14.13).
+/// Minimum number of real values ("figures") in the spectral lines per model parameter ("unknown")
+/// (M14.13).
 pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
 
-/// Counts the parameters of a model with this order, without those that only change the state
-/// basis: `n (m + l) + m l`.
+/// Counts a model's parameters at this order, without those that only change the state basis: `n (m
+/// + l) + m l`.
 pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
     order * (inputs + outputs) + inputs * outputs
 }
@@ -46,9 +46,9 @@ pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -
 pub(crate) struct Extent {
     pub(crate) inputs: usize,
     pub(crate) outputs: usize,
-    /// Number of real values in all lines, less the unknowns of the transients.
+    /// Number of real values in all lines, less the unknowns in the transients.
     pub(crate) figures: usize,
-    /// Total length of the records times the upper band end \[rad\].
+    /// Total record length times the upper band end \[rad\].
     pub(crate) radians: f64,
 }
 
@@ -57,8 +57,8 @@ impl Extent {
         self.inputs + self.outputs
     }
 
-    /// Returns the maximum number of block rows in the map to the future: enough for 30
-    /// states, and at least 12.
+    /// Returns the most block rows that the map to the future may have: enough for 30 states, and
+    /// at least 12.
     pub(crate) fn longest_future(self) -> usize {
         FUTURE_STATES
             .div_ceil(self.outputs.max(1))
@@ -95,7 +95,7 @@ impl Extent {
             .collect()
     }
 
-    /// Whether there are enough real values for the parameters of an order.
+    /// Returns whether there are enough real values for the parameters at an order.
     fn carries(self, order: usize) -> bool {
         let parameters = parameters_of_order(order, self.inputs, self.outputs);
         FIGURES_AN_UNKNOWN * parameters <= self.figures

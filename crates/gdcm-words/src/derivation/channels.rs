@@ -9,14 +9,14 @@ use super::{Context, Derivation};
 use crate::leads::servo_words;
 use crate::solution_details::proof_text;
 
-/// An objective as an equation, with the units of its value.
+/// An objective as an equation, with its value's unit.
 struct Objective {
     equation: &'static str,
-    /// Unit of the displayed value, with a leading space.
+    /// The displayed value's unit, with a leading space.
     unit: &'static str,
     /// Factor from the stored to the displayed value.
     scale: f64,
-    /// Section in the description of the method.
+    /// Section in the method description.
     section: &'static str,
 }
 
@@ -51,7 +51,7 @@ impl Objective {
     }
 }
 
-/// Derives the net gain `k_o k_i` of a response.
+/// Derives a response's net gain `k_o k_i`.
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of_pair(pair);
@@ -75,7 +75,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Derives the net delay `τ_o + τ_i` \[ms\] of a response.
+/// Derives a response's net delay `τ_o + τ_i` \[ms\].
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of_pair(pair);
@@ -120,7 +120,7 @@ fn constraint_words(
     }
 }
 
-/// Derives the gain `k` of a channel; `None` for a channel that the dataset does not have.
+/// Derives a channel's gain `k`; `None` for a channel that the dataset does not have.
 pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = *result.gains.channels().get(channel)?;
@@ -144,8 +144,8 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
     })
 }
 
-/// Derives the delay or signed delay `τ` \[ms\] of a channel; `None` for a channel that the dataset
-/// does not have.
+/// Derives a channel's delay or signed delay `τ` \[ms\]; `None` for a channel that the dataset does
+/// not have.
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = s_to_ms(*result.delays.channels().get(channel)?);
@@ -181,7 +181,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     })
 }
 
-/// Derives the minimised objective of the gains.
+/// Derives the objective that the gains minimise.
 pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     let optimum = Optimum {
         context,
@@ -191,7 +191,7 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_gains(context))
 }
 
-/// Derives the minimised objective of the delays.
+/// Derives the objective that the delays minimise.
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     let problem = &context.result.delay_problem;
     let optimum = Optimum {
@@ -202,7 +202,7 @@ pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_delays(problem))
 }
 
-/// Gain or delay problem of a condition, with its solution.
+/// A condition's gain or delay problem, with its solution.
 struct Optimum<'a> {
     context: &'a Context<'a>,
     problem: &'a Problem,
@@ -210,8 +210,8 @@ struct Optimum<'a> {
 }
 
 impl Optimum<'_> {
-    /// Lists the constrained products or sums that contain the channel, then its bounds with
-    /// `last`, the name and the value of the channel, between them.
+    /// Lists the constrained products or sums that contain the channel, then its bounds with `last`
+    /// between them: the channel's name and value.
     fn steps(&self, channel: Channel, last: &str) -> Vec<String> {
         let is_gain = self.problem.quantity.is_gain();
         let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
@@ -267,7 +267,7 @@ impl Optimum<'_> {
         rests_on
     }
 
-    /// Derives the value of the objective: fit term plus regularisation term.
+    /// Derives the objective's value: fit term plus regularisation term.
     fn objective(&self, objective: &Objective) -> Derivation {
         let Objective { unit, scale, .. } = *objective;
         let value = scale * self.solution.objective;

@@ -1,4 +1,4 @@
-//! Condition of an explained result, and descriptions of its models and choices.
+//! The condition of an explained result, and texts about its models and choices.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::Mismatch;
@@ -7,14 +7,14 @@ use gdcm_model::units::six_digits;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-/// A condition of an analysis, with its result.
+/// A condition in an analysis, with its result.
 pub(super) struct Context<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) result: &'a ConditionAnalysis,
 }
 
 impl<'a> Context<'a> {
-    /// Returns the context of a condition; `None` if the condition has no result.
+    /// Returns the context for a condition; `None` if it has no result.
     pub(super) fn new(analysis: &'a Analysis, condition: ConditionId) -> Option<Self> {
         Some(Self {
             analysis,
@@ -40,7 +40,7 @@ impl<'a> Context<'a> {
         channel.name_in(&self.analysis.study.dataset)
     }
 
-    /// Returns a title from the name of a result: "net gain of LON → Q, condition 3".
+    /// Returns a title from a result's name: "net gain of LON → Q, condition 3".
     pub(super) fn title(&self, figure: &str) -> String {
         format!("{figure}, condition {}", self.result.condition.id())
     }
@@ -55,8 +55,8 @@ impl<'a> Context<'a> {
             .as_ref()
     }
 
-    /// Returns the mismatch with the leads of the channels applied, or without leads if there are
-    /// none (M15.5).
+    /// Returns the mismatch with the channels' leads applied, or without leads if there are none
+    /// (M15.5).
     pub(super) fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         match &self.result.compensated {
             Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),
@@ -79,8 +79,7 @@ impl<'a> Context<'a> {
         ]
     }
 
-    /// Describes the frequencies at which responses are compared: their number, and the ends of the
-    /// band.
+    /// Describes the frequencies at which responses are compared: their number, and the band ends.
     pub(super) fn band(&self) -> String {
         let settings = self.settings();
         format!(
@@ -100,7 +99,7 @@ impl<'a> Context<'a> {
         words
     }
 
-    /// Lists the names of responses; "none" if there are none.
+    /// Lists response names; "none" if there are none.
     pub(super) fn pairs(&self, pairs: impl Iterator<Item = Pair>) -> String {
         let names: Vec<String> = pairs.map(|pair| self.pair(pair)).collect();
         if names.is_empty() {

@@ -13,10 +13,10 @@ use super::sample_words::median_words;
 use super::{Context, Derivation};
 use crate::assessment::correction_source;
 
-/// Maximum number of terms written out in a sum.
+/// Maximum number of terms that are written out in a sum.
 const MOST_TERMS: usize = 8;
 
-/// Section that defines J in the description of the method.
+/// Section that defines J in the method description.
 const COST_SECTION: &str = "M4, eq. (14) to (19)";
 
 /// Writes a sum: "a + b + c + … (20 terms)".
@@ -58,7 +58,7 @@ fn model_words(model: &Model) -> Vec<String> {
     words
 }
 
-/// Derives the score of a model: its mean distance to the other kept models.
+/// Derives a model's score: its mean distance to the other kept models.
 pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     let result = context.result;
     let kind = model.bundle;
@@ -103,8 +103,8 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Derives the discontinuity ratio of a physics model: its distance to other models, relative to
-/// the distance that the difference in trim explains.
+/// Derives a physics model's discontinuity ratio: its distance to other models, relative to the
+/// distance that the difference in trim explains.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
         divided by its maximum, w_k ≥ 0 by least absolute deviations";
@@ -168,7 +168,7 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Returns the word for the average over frequency in an equation.
+/// Returns the word that an equation uses for the average over frequency.
 fn average_word(average: CostAverage) -> &'static str {
     match average {
         CostAverage::Median => "median",
@@ -199,7 +199,7 @@ fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     ]
 }
 
-/// Describes the net gain and the net delay of a correction.
+/// Describes a correction's net gain and net delay.
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
     let [output, input] = Channel::of_pair(pair).map(|channel| context.channel(channel));
     format!(
@@ -209,7 +209,7 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
     )
 }
 
-/// Derives J of a response before the correction.
+/// Derives a response's J before the correction.
 pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.uncorrected;
     let average = context.settings().cost_average;
@@ -226,7 +226,7 @@ pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivatio
     })
 }
 
-/// Derives J of a response under the condition's own correction.
+/// Derives a response's J under the condition's own correction.
 pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.corrected;
     let average = context.settings().cost_average;
@@ -245,7 +245,7 @@ pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation
     })
 }
 
-/// Derives the change in J of a response in an assessment.
+/// Derives the change in a response's J in an assessment.
 pub(super) fn change(
     context: &Context<'_>,
     pair: Pair,

@@ -36,7 +36,7 @@ fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     }
 }
 
-/// Derives the delta gain `G` of a response.
+/// Derives a response's delta gain `G`.
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;
@@ -61,7 +61,8 @@ pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Derives a delta gain that is the geometric mean over all pairs of kept models.
+/// Derives a delta gain that is the geometric mean over all pairs of kept models, not that of the
+/// representatives.
 fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     let [physics, identified] = BundleKind::BOTH.map(|kind| {
         let scores = &context.result.representative(kind).scores;
@@ -83,8 +84,8 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     }
 }
 
-/// Derives the delta delay `D` of a response: the band delay if the delays are fitted to it,
-/// otherwise the median.
+/// Derives a response's delta delay `D`: the band delay if the delays are fitted to it, otherwise
+/// the median.
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
@@ -120,7 +121,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Writes the least-squares slope of the missing phase over frequency as a quotient.
+/// Writes the missing phase's least-squares slope over frequency as a quotient.
 fn band_delay_words(context: &Context<'_>, mismatch: &Mismatch) -> String {
     let omega = mismatch.omega(context.omega());
     let phase = mismatch.phase_difference(context.omega());

@@ -1,4 +1,4 @@
-//! Error bars of explained results, and each result after another model is substituted for a
+//! Error bars for explained results, and each result with another model substituted for a
 //! representative (M13).
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
@@ -17,8 +17,8 @@ pub const SPREAD_ALONE: &str = "its identification part is the spread of the mod
     too small if the models share records; the standard errors of the models themselves count \
     only for G, D and held net gains (M13.2)";
 
-/// Describes the error bar of a result with its parts, and the result after each substitution of a
-/// model; empty if no error bar is available.
+/// Describes a result's error bar with its parts, and the result after each substituted model;
+/// empty if no error bar is available.
 pub(super) fn error_bar_lines(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
     lines_of(analysis, target).unwrap_or_default()
 }
@@ -40,8 +40,8 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
     Some(lines)
 }
 
-/// Returns the condition and the key of a result's error bar; `None` for results without error
-/// bars.
+/// Returns the condition and the key that a result's error bar has; `None` for results without
+/// error bars.
 fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
@@ -90,7 +90,7 @@ fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> St
     }
 }
 
-/// Formats a standard deviation: of a delay in ms, of a gain in percent.
+/// Formats a standard deviation: in ms for a delay, in percent for a gain.
 fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     if scalar.is_delay() {
         format!("{:.2} ms", s_to_ms(deviation))
@@ -99,7 +99,7 @@ fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     }
 }
 
-/// Describes a result after the substitution of a model: "with physics model roll+5: 1.0423".
+/// Describes a result after a model was substituted: "with physics model roll+5: 1.0423".
 fn swap_words(result: &ConditionAnalysis, swap: &ModelSwap, scalar: Scalar) -> String {
     let kind = swap.bundle;
     let name = &result.condition.bundle(kind)[swap.model].name;

@@ -4,7 +4,7 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_study::results::assessment_table::AssessmentChoice;
 
-/// A result of an analysis whose derivation can be displayed.
+/// A result in an analysis whose derivation can be displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExplainTarget {
     /// A response's delta gain `G`.
@@ -17,16 +17,16 @@ pub enum ExplainTarget {
     Delay(ConditionId, Channel),
     GainBounds(ConditionId),
     DelayBound(ConditionId),
-    /// J of the uncorrected physics representative in a response.
+    /// The uncorrected physics representative's J in a response.
     CostBefore(ConditionId, Pair),
-    /// J of the physics representative in a response, with the condition's own correction.
+    /// The physics representative's J in a response, with the condition's own correction.
     CostAfter(ConditionId, Pair),
-    /// Change in J of a response in an assessment.
+    /// Change in a response's J in an assessment.
     CostChange(ConditionId, Pair, AssessmentChoice),
     DiscontinuityRatio(ModelId),
     Score(ModelId),
     GainObjective(ConditionId),
     DelayObjective(ConditionId),
-    /// Scheduled gain of a channel at an airspeed \[kt\].
+    /// A channel's scheduled gain at an airspeed \[kt\].
     ScheduledGain(Channel, f64),
 }

@@ -1,5 +1,5 @@
-//! Derivations of results: the equation with its symbols explained, the equation with numbers, and
-//! the underlying models and choices.
+//! Derivations of results: the equation with its symbols explained, the same with numbers, and the
+//! underlying models and choices.
 
 mod bounds;
 mod channels;
@@ -19,32 +19,32 @@ use context::Context;
 pub use error_bars::SPREAD_ALONE;
 pub use explain_target::ExplainTarget;
 
-/// Derivation of a result: equation, equation with numbers, and the models and choices on which the
+/// A result's derivation: equation, equation with numbers, and the models and choices on which the
 /// result rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivation {
-    /// Name of the result with its condition: "G of LON → Q, condition 3".
+    /// The result's name with its condition: "G of LON → Q, condition 3".
     pub title: String,
-    /// The equation, as in the description of the method.
+    /// The equation, as in the method description.
     pub equation: String,
     /// The equation with numbers, step by step; the last step contains the result.
     pub with_numbers: Vec<String>,
     /// Models, band, points and choices on which the result rests.
     pub rests_on: Vec<String>,
-    /// Section in the description of the method: "M6, eq. (5)".
+    /// Section in the method description: "M6, eq. (5)".
     pub section: &'static str,
-    /// The result, in the unit of the steps; for bounds, the upper bound.
+    /// The result, in the unit that the steps have; for bounds, the upper bound.
     pub value: f64,
 }
 
 impl Derivation {
-    /// Returns the symbols of the equation with their meanings, in order of appearance.
+    /// Returns the equation's symbols with their meanings, in order of appearance.
     pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
         terms::terms_of(&self.equation)
     }
 }
 
-/// Derives a result of `analysis`; `None` if the result does not exist. This is cheap: at most a
+/// Derives a result in `analysis`; `None` if the result does not exist. This is cheap: at most a
 /// few medians over frequency are computed.
 pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let mut derivation = derivation_without_bar(analysis, target)?;

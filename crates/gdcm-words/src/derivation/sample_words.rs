@@ -1,4 +1,4 @@
-//! Descriptions of samples by their range and their median.
+//! Describes samples by their range and their median.
 
 use gdcm_model::number_format::five_digits;
 

@@ -8,10 +8,10 @@ use gdcm_study::Analysis;
 
 use super::Derivation;
 
-/// Powers of the scaled airspeed in a polynomial, up to the maximum degree of a schedule.
+/// Powers of the scaled airspeed in a polynomial, up to a schedule's maximum degree.
 const POWERS: [&str; 4] = ["", " v", " v²", " v³"];
 
-/// Derives the scheduled gain of a channel at an airspeed \[kt\].
+/// Derives a channel's scheduled gain at an airspeed \[kt\].
 pub(super) fn scheduled_gain(
     analysis: &Analysis,
     channel: Channel,
@@ -130,7 +130,7 @@ fn scaled_airspeed_words(schedule: &Schedule, airspeed_kt: f64) -> String {
     )
 }
 
-/// Describes the table points on either side of an airspeed.
+/// Describes the table points below and above an airspeed.
 fn neighbours_words(airspeeds_kt: &[f64], values: &[f64], airspeed_kt: f64) -> String {
     let point = |at: usize| {
         format!(

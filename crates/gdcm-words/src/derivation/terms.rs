@@ -1,6 +1,6 @@
-//! Symbols of the equations with their meanings.
+//! Symbols in the equations, with their meanings.
 
-/// Symbols of the derived equations with their meaning and, if any, their unit (docs/method.md).
+/// Symbols in the derived equations with their meaning and, if any, their unit (docs/method.md).
 const TERMS: [(&str, &str); 30] = [
     (
         "G",
@@ -56,7 +56,7 @@ const TERMS: [(&str, &str); 30] = [
     ("V", "airspeed [kt]"),
 ];
 
-/// Returns the symbols of an equation with their meanings, in order of appearance.
+/// Returns an equation's symbols with their meanings, in order of appearance.
 pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     let mut found: Vec<(usize, (&str, &str))> = Vec::new();
     for (symbol, meaning) in TERMS {
@@ -68,8 +68,7 @@ pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     found.into_iter().map(|(_, term)| term).collect()
 }
 
-/// Returns the position of a symbol in an equation; occurrences inside a longer symbol do not
-/// count.
+/// Returns a symbol's position in an equation; occurrences inside a longer symbol do not count.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     for (place, _) in equation.match_indices(symbol) {
         let before = equation[..place].chars().next_back();

@@ -1,13 +1,13 @@
-//! The Gain-Delay Correction Method: a gain and a delay for each channel of a physics-based
-//! helicopter model, so that the model matches flight.
+//! The Gain-Delay Correction Method: gives each channel in a physics-based helicopter model a gain
+//! and a delay, so that the model matches flight.
 //!
 //! Equation numbers refer to "Bridging the Gap: Data Driven Method for Linearized Model Fidelity
 //! Enhancement", section numbers (M1, M2, ...) to `docs/method.md`.
 //!
 //! # The problem
 //!
-//! A flight condition has a bundle of physics models, linearised at the trim and at perturbed trims,
-//! and a bundle of models identified from flight. Each is a p x m frequency response
+//! A flight condition has a bundle of physics models, linearised at the trim and at perturbed
+//! trims, and a bundle with models identified from flight. Each is a p x m frequency response
 //!
 //! ```text
 //! H(j omega) = C (j omega I - A)^-1 B + D.                                                   (M2)
@@ -20,8 +20,8 @@
 //! ```
 //!
 //! which multiply the response of output `o` to input `i` by the net gain `k_o k_i` and delay it by
-//! `tau_o + tau_i`. Each bundle is represented by its medoid among the models that the engineer keeps
-//! (M5). Comparing the two representatives, each response needs
+//! `tau_o + tau_i`. Each bundle is represented by its medoid among the models that the engineer
+//! keeps (M5). Comparing the two representatives, each response needs
 //!
 //! ```text
 //! G_oi = median |H_ref| / |H_sim|,   D_oi = median Delta phi(H_sim, H_ref) / omega. (eq. 5, 9, M6)
@@ -37,9 +37,9 @@
 //! ```
 //!
 //! The weight `w_oi` is 1 for a fitted response and 0 for an ignored response. The first problem is
-//! not convex; its global minimum is found and proven. Where the constrained values are out of
-//! reach, the nearest feasible values replace them, and the result names the entries, the distance
-//! and the reason. The cost J measures how well a model matches,
+//! not convex; its global minimum is found and proven. Where the constrained values are infeasible,
+//! the nearest feasible values replace them, and the result names the entries, the distance and the
+//! reason. The cost J measures how well a model matches,
 //!
 //! ```text
 //! J = 20 median(e_dB^2) + 20 * 0.0175 median(e_deg^2),                         (eq. 14-19, M4)
@@ -57,17 +57,17 @@
 //! L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2).
 //! ```
 //!
-//! Couplings and modes, which no channel reaches, can be corrected by an input mixing `M~` and a
-//! feedback `K` from outputs to inputs, constant over all conditions and found by linear least
-//! squares. All steps above then use `H~` instead of `H`:
+//! Couplings and modes, which no gain or delay changes, can be corrected by an input mixing `M~`
+//! and a feedback `K` from outputs to inputs, constant over all conditions and found by linear
+//! least squares. All steps above then use `H~`, not `H`:
 //!
 //! ```text
 //! H~ = (I - H K)^-1 H M~,   R' = L_o^-1 R L_i^-1 = H (M + K R'),   M~ = M diag(M)^-1.      (M16)
 //! ```
 //!
-//! Which number of the physics model is wrong, and by how much, follows from models linearised with
-//! one named parameter moved. Their differences make a family `H(z)`, fitted to all conditions with
-//! gains and delays of the channels left free:
+//! Models linearised with one named parameter moved show which parameter is wrong, and by how much.
+//! Their differences make a family `H(z)`, fitted to all conditions with free channel gains and
+//! delays:
 //!
 //! ```text
 //! ln R = ln H_oi(z) + a_oc + b_ic - j omega (tau_o + tau_i).                               (M18)
@@ -105,7 +105,7 @@
 //! | [`physics`] | named parameters of the physics model, fitted to all conditions (M18) |
 //! | [`requirements`] | bandwidth, time histories, modes, summary costs (M17) |
 //!
-//! The crate is independent of files, windows and threads: a caller with several cores supplies an
+//! The crate uses no files, windows or threads: a caller with several cores supplies an
 //! [`Executor`](gdcm_model::executor::Executor).
 //!
 //! # Example

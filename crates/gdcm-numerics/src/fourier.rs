@@ -1,11 +1,11 @@
-//! Fourier transforms of real signals.
+//! Fourier transforms for real signals.
 
 use std::sync::Arc;
 
 use nalgebra::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 
-/// Planner of Fourier transforms; transforms with equal lengths share their twiddle factors.
+/// Plans Fourier transforms; transforms with equal lengths share their twiddle factors.
 #[derive(Default)]
 pub struct FourierPlanner(RealFftPlanner<f64>);
 

@@ -3,7 +3,7 @@
 //! **Question answered:** how are generic algorithms compiled only once?
 //!
 //! Generic code is recompiled with every crate and test that uses it; in `gdcm-method` and
-//! `gdcm-sysid` it made up a quarter of the instructions. This crate compiles it once.
+//! `gdcm-sysid` it made up a quarter of the machine code. This crate compiles it once.
 //!
 //! ```
 //! use gdcm_numerics::FourierPlanner;

@@ -1,21 +1,21 @@
-//! A comparison with independent figures, and its outcome.
+//! A comparison with independent figures, and the deviations it finds.
 
 use crate::reference_study::ReferenceStudy;
 
-/// A comparison of the program with independent figures.
+/// Comparison between the program's results and independent figures.
 #[derive(Clone, Copy, Debug)]
 pub struct Check {
     /// Stable code, for scripts and tests.
     pub code: &'static str,
-    /// Sections of `docs/method.md` and the pages beside it: "M8", "M3 to M7".
+    /// Sections in `docs/method.md` and the pages beside it: "M8", "M3 to M7".
     pub sections: &'static str,
     /// What is compared.
     pub what: &'static str,
-    /// Origin of the expected values.
+    /// Independent code, closed form or publication that gives the expected values.
     pub source: &'static str,
-    /// Unit or reference of deviation and tolerance.
+    /// Unit for deviation and tolerance, or the quantity they are relative to.
     pub measure: &'static str,
-    /// Maximum deviation, in the unit of `measure`.
+    /// Maximum deviation, in the unit that `measure` names.
     pub tolerance: f64,
     /// Reason for the tolerance.
     pub reason: &'static str,
@@ -26,12 +26,11 @@ pub struct Check {
 /// Deviations from the expected values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
-    /// Number of problems, models or conditions that are compared.
+    /// Count of compared problems, models or conditions.
     pub instances: usize,
-    /// Number of compared values.
     pub values: usize,
-    /// Maximum deviation, in the unit of the check's measure. Infinite where a value is not a number
-    /// or a yes-or-no result differs.
+    /// Maximum deviation, in the unit that [`Check::measure`] names; infinite if a value is not a
+    /// number or a yes-or-no result differs.
     pub worst: f64,
 }
 
@@ -63,7 +62,7 @@ impl Found {
         self.deviation((found - expected) / expected.abs().max(scale));
     }
 
-    /// Compares lists of values as [`Self::scaled`] does; lists of different lengths disagree.
+    /// Compares two lists as [`Self::scaled`] does; lists with different lengths disagree.
     pub fn all_scaled(&mut self, found: &[f64], expected: &[f64], scale: f64) {
         if found.len() != expected.len() {
             self.agree(false);

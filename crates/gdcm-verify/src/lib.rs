@@ -1,12 +1,12 @@
-//! Comparison of the program with figures that independent code computed.
+//! Compares the program's results with figures that independent code computed.
 //!
 //! **Question answered:** does this program, on this machine, compute what other programs and closed
 //! forms give?
 //!
-//! [`CHECKS`] is the list of comparisons: what is compared, by which equation, the source of the
-//! expected values, the tolerance with its reason. [`Verification::new`] runs all of them from
-//! embedded reference values, within seconds, without files. [`page`] makes `docs/verification.md`
-//! from the figures that the tests record.
+//! [`CHECKS`] lists the comparisons: what is compared, the section in `docs/method.md`, where the
+//! expected values come from, and the tolerance with its reason. [`Verification::new`] runs all
+//! comparisons from embedded reference values, within seconds, without files. [`page`] makes
+//! `docs/verification.md` from the figures that the tests record.
 //!
 //! # Example
 //!

@@ -8,7 +8,7 @@ use gdcm_model::response::FrequencyResponse;
 
 use crate::check::CheckFault;
 
-/// An embedded file of reference values.
+/// An embedded JSON file with reference values.
 #[derive(Clone, Copy)]
 pub(crate) struct ReferenceFile {
     pub(crate) name: &'static str,
@@ -59,7 +59,7 @@ const MODELS: [(&str, ReferenceFile); 5] = [
     ),
 ];
 
-/// Returns the file of a model from the literature.
+/// Returns the file for a model from the literature, by its name in [`RESPONSES`].
 pub(crate) fn model_file(name: &str) -> Result<ReferenceFile, CheckFault> {
     for (known, file) in MODELS {
         if known == name {
@@ -89,7 +89,7 @@ impl ReferenceFile {
     }
 }
 
-/// A part of a reference file, with its place.
+/// A JSON value in a reference file, with its place there for messages.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     file: &'static str,
@@ -122,7 +122,7 @@ impl Reference {
         self.value.get(name).is_some_and(|value| !value.is_null())
     }
 
-    /// Returns the elements of this list.
+    /// Returns this list's elements.
     pub(crate) fn elements(&self) -> Result<Vec<Self>, CheckFault> {
         let Some(values) = self.value.as_array() else {
             return Err(self.fault("list"));
@@ -138,7 +138,7 @@ impl Reference {
         Ok(elements)
     }
 
-    /// Returns the elements of a member.
+    /// Returns a member's elements.
     pub(crate) fn list(&self, name: &str) -> Result<Vec<Self>, CheckFault> {
         self.member(name)?.elements()
     }
@@ -153,7 +153,7 @@ impl Reference {
         self.member(name)?.as_number()
     }
 
-    /// Returns this value as a list of numbers.
+    /// Returns this list as numbers.
     pub(crate) fn as_numbers(&self) -> Result<Vec<f64>, CheckFault> {
         let mut numbers = Vec::new();
         for element in self.elements()? {
@@ -162,7 +162,7 @@ impl Reference {
         Ok(numbers)
     }
 
-    /// Returns a member as a list of numbers.
+    /// Returns a member, a list, as numbers.
     pub(crate) fn numbers(&self, name: &str) -> Result<Vec<f64>, CheckFault> {
         self.member(name)?.as_numbers()
     }
@@ -182,7 +182,7 @@ impl Reference {
         }
     }
 
-    /// Returns a member as a list of texts.
+    /// Returns a member, a list, as texts.
     pub(crate) fn texts(&self, name: &str) -> Result<Vec<String>, CheckFault> {
         let mut texts = Vec::new();
         for element in self.list(name)? {
@@ -205,7 +205,7 @@ impl Reference {
         member.value.as_bool().ok_or_else(|| self.fault(name))
     }
 
-    /// Returns this list of rows as a matrix.
+    /// Returns this value, a list with one list per row, as a matrix.
     pub(crate) fn as_matrix(&self) -> Result<DMatrix<f64>, CheckFault> {
         let mut rows = Vec::new();
         for row in self.elements()? {
@@ -225,7 +225,7 @@ impl Reference {
         self.member(name)?.as_matrix()
     }
 
-    /// Returns a member, a list of rows (outputs x inputs), as a table of numbers.
+    /// Returns a member, a list with one row per output, as a table of numbers.
     pub(crate) fn table(&self, name: &str) -> Result<PairTable<f64>, CheckFault> {
         let matrix = self.matrix(name)?;
         Ok(PairTable::from_fn(
@@ -261,7 +261,7 @@ impl Reference {
         )))
     }
 
-    /// Returns this list of two numbers as a complex number.
+    /// Returns this list, real and imaginary part, as a complex number.
     pub(crate) fn as_complex(&self) -> Result<Complex<f64>, CheckFault> {
         match self.as_numbers()?.as_slice() {
             [re, im] => Ok(Complex::new(*re, *im)),

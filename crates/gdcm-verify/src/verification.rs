@@ -1,4 +1,4 @@
-//! The run of all comparisons.
+//! Runs all comparisons.
 
 use gdcm_model::progress::{Cancelled, Progress};
 
@@ -12,7 +12,7 @@ pub struct Verification {
     pub results: Vec<CheckResult>,
 }
 
-/// Outcome of a comparison.
+/// Outcome for one [`Check`].
 #[derive(Clone, Debug)]
 pub struct CheckResult {
     pub check: &'static Check,
@@ -50,7 +50,7 @@ impl Verification {
         Ok(Self { results })
     }
 
-    /// Returns the number of comparisons that passed.
+    /// Counts the comparisons that passed.
     pub fn passed(&self) -> usize {
         self.results.iter().filter(|result| result.passed()).count()
     }

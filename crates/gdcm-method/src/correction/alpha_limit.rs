@@ -1,9 +1,9 @@
-//! The limit `alpha -> 0+` of the regularisation weight: step 4 of `solve` (M8, M9).
+//! Limit `alpha -> 0+` for the regularisation weight: step 4 in `solve` (M8, M9).
 //!
-//! With `alpha = 0`, the objective does not depend on a common shift of the scales in a *floating
-//! piece*, a group of components that fitted entries connect with one another, but not with the
-//! ground ([`Objective::floating_pieces`]). With a positive `alpha`, every component with a
-//! regularised channel is connected with the ground.
+//! With `alpha = 0`, the objective does not depend on a common shift of all scales in a *floating
+//! piece*: components that fitted entries connect with one another, but not with the ground
+//! ([`Objective::floating_pieces`]). With a positive `alpha`, every component with a regularised
+//! channel is connected with the ground.
 
 use gdcm_model::statistics::mean;
 
@@ -11,9 +11,9 @@ use super::branch_and_bound::objective::Objective;
 use super::components::{ChannelCoordinates, Components, Placement};
 use super::quantity::{GainObjective, Quantity};
 
-/// Takes the limit `alpha -> 0+`: the fit does not determine a common shift of the scales in a
-/// floating piece, which is therefore set to the value that minimises the regularised deviations
-/// from neutral.
+/// Takes the limit `alpha -> 0+`: the fit leaves the common shift of a floating piece's scales
+/// undetermined, so that the shift which minimises the regularised deviations from neutral is
+/// taken.
 pub(super) fn take_alpha_limit(
     quantity: Quantity,
     components: &Components,
@@ -31,7 +31,7 @@ pub(super) fn take_alpha_limit(
     });
 }
 
-/// Selects the values of the nodes that belong to a group of components.
+/// Selects the values at nodes whose component is in `piece`.
 fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64> {
     let mut selected = Vec::new();
     for (node, &value) in nodes.iter().zip(values) {
@@ -42,8 +42,8 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift of a group's scales that minimises the regularised deviations from neutral; it
-/// raises the coordinates of the inputs and lowers those of the outputs by the same amount. The
+/// Returns the shift for a group's scales that minimises the regularised deviations from neutral;
+/// it raises the input coordinates and lowers the output coordinates by the same amount. The
 /// outputs are regularised (the inputs, if the group has no output); for signed delays, both.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;

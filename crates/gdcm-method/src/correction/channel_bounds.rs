@@ -1,13 +1,13 @@
-//! Bounds on the channel gains and delays, from the spread over the band of what the responses need
-//! (M7).
+//! Bounds on the channel gains and delays, from the spread over the band of the gains and delays
+//! that the responses need (M7).
 //!
 //! ```text
 //! gains    LB = min(1, q-quantile),  UB = max(1, (1-q)-quantile)    of |H_ref| / |H_sim|
 //! delays                             UB = max(0, (1-q)-quantile)    of Delta phi(H_sim, H_ref) / omega
 //! ```
 //!
-//! The quantiles are taken over all frequencies of the pooled responses together. The lower bound on
-//! a signed delay follows from the lead filters instead (`lead_design`).
+//! The quantiles pool all frequencies and responses. The lower bound on a signed delay follows from
+//! the lead filters instead (`lead_design`).
 
 use serde::{Deserialize, Serialize};
 
@@ -17,8 +17,8 @@ use gdcm_model::statistics::quantile;
 use super::delta::{delays, ratios};
 use crate::fidelity::Mismatch;
 
-/// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`; delays \[s\], with
-/// `lower` zero; signed delays \[s\], `lower <= 0 <= upper` (M15.4).
+/// Minimum and maximum value, the same for every channel (M7): gains `0 < lower <= upper`; delays
+/// \[s\], with `lower` zero; signed delays \[s\], `lower <= 0 <= upper` (M15.4).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Bounds {
@@ -67,7 +67,7 @@ pub fn delay_upper_s(
     quantile(&mut pool, 1.0 - q).max(0.0)
 }
 
-/// Selects the mismatches to be pooled: those of the responses in `measuring`, or all if none of
+/// Selects the mismatches to be pooled: those for the responses in `measuring`, or all if none of
 /// these is defined.
 fn pooled<'a>(
     mismatch: &'a PairTable<Option<Mismatch>>,

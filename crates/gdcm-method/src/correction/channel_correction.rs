@@ -1,5 +1,5 @@
-//! Correction of a model, a gain and a delay or lead filter for each channel (M10, M15), and its
-//! effect on a response.
+//! Correction with a gain and a delay or lead filter for each channel (M10, M15), and its effect on
+//! a response.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{GainDelay, LeadFilter};
@@ -11,13 +11,13 @@ use super::channels::{Channel, Channels};
 /// (M15).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelCorrection {
-    /// Gains of the m input channels.
+    /// Input channel gains, m values.
     pub input_gains: Vec<f64>,
-    /// Gains of the p output channels.
+    /// Output channel gains, p values.
     pub output_gains: Vec<f64>,
-    /// Delays \[s\] of the m input channels; not negative.
+    /// Input channel delays \[s\], m values; not negative.
     pub input_delays_s: Vec<f64>,
-    /// Delays \[s\] of the p output channels; not negative.
+    /// Output channel delays \[s\], p values; not negative.
     pub output_delays_s: Vec<f64>,
     /// Signed delays and their lead filters. The positive signed delays equal the delays above;
     /// each negative one is realised by a filter. `None` if leads are not requested (M15).
@@ -45,18 +45,17 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the net gain of a response, `k_o k_i` (M11).
+    /// Returns a response's net gain, `k_o k_i` (M11).
     pub fn net_gain(&self, pair: Pair) -> f64 {
         self.output_gains[pair.output] * self.input_gains[pair.input]
     }
 
-    /// Returns the net delay of a response, `tau_o + tau_i` \[s\]; a negative net delay is a lead
-    /// (M15).
+    /// Returns a response's net delay, `tau_o + tau_i` \[s\]; a negative net delay is a lead (M15).
     pub fn net_delay_s(&self, pair: Pair) -> f64 {
         self.delay_s(Channel::Output(pair.output)) + self.delay_s(Channel::Input(pair.input))
     }
 
-    /// Returns the gain of a channel.
+    /// Returns a channel's gain.
     pub fn gain(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_gains[input],
@@ -64,7 +63,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the delay of a channel \[s\]; a negative delay is a lead (M15).
+    /// Returns a channel's delay \[s\]; a negative delay is a lead (M15).
     pub fn delay_s(&self, channel: Channel) -> f64 {
         match &self.leads {
             Some(leads) => leads.taus_s[channel],
@@ -72,7 +71,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the delay of a channel \[s\], zero instead of a lead.
+    /// Returns a channel's delay \[s\], zero instead of a lead.
     pub fn pure_delay_s(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_delays_s[input],
@@ -80,17 +79,17 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the delay of every channel \[s\]; a negative delay is a lead (M15).
+    /// Returns all channel delays \[s\]; a negative delay is a lead (M15).
     pub fn signed_delays_s(&self) -> Channels<f64> {
         self.channels(|channel| self.delay_s(channel))
     }
 
-    /// Computes a value for each channel of this correction, the inputs first.
+    /// Computes a value for each channel in this correction, the inputs first.
     pub fn channels<T>(&self, value: impl FnMut(Channel) -> T) -> Channels<T> {
         Channels::from_fn(self.input_gains.len(), self.output_gains.len(), value)
     }
 
-    /// Returns the lead filter of a channel; `None` if it has no lead (M15).
+    /// Returns a channel's lead filter; `None` if it has no lead (M15).
     pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
         self.leads.as_ref()?.filters()[channel]
     }
@@ -103,14 +102,14 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the correction factor of a response; `None` if its net gain is not positive, which
-    /// is possible if `k` itself is scheduled.
+    /// Returns the gain, delay and lead filters that correct a response; `None` if its net gain is
+    /// not positive, which is possible if `k`, not `ln k`, is scheduled.
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
         let leads = Channel::of_pair(pair).map(|channel| self.lead(channel));
         Some(self.without_leads_on(pair)?.with_leads(leads))
     }
 
-    /// Returns the factor as [`ChannelCorrection::on`], but without the lead filters; used for a
+    /// Returns the same as [`ChannelCorrection::on`], but without the lead filters; used for a
     /// response to which the filters have already been applied.
     pub fn without_leads_on(&self, pair: Pair) -> Option<GainDelay> {
         let gain = self.net_gain(pair);

@@ -1,4 +1,4 @@
-//! Signed delays of all channels, with the lead filters that realise the negative ones (M15.5).
+//! Signed channel delays, with the lead filters that realise the negative ones (M15.5).
 
 use std::sync::{Arc, OnceLock};
 
@@ -16,7 +16,7 @@ use super::lead_design::LeadDesign;
 pub struct ChannelLeads {
     /// Design that converts a signed delay to a filter.
     pub design: Arc<LeadDesign>,
-    /// Signed delay of each channel \[s\].
+    /// Signed channel delays \[s\].
     pub taus_s: Channels<f64>,
     filters: Arc<OnceLock<Channels<Option<LeadFilter>>>>,
     curves: Arc<OnceLock<Channels<Option<LeadCurve>>>>,
@@ -40,20 +40,19 @@ impl ChannelLeads {
         }
     }
 
-    /// Returns the lead filter of every channel; `None` if the signed delay is not negative.
+    /// Returns each channel's lead filter; `None` if the signed delay is not negative.
     pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
         self.filters
             .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
-    /// Returns the pure delay of every channel \[s\], which is the positive part of its signed
-    /// delay.
+    /// Returns each channel's pure delay \[s\], the positive part of its signed delay.
     pub fn delays_s(&self) -> Channels<f64> {
         self.taus_s.map(|_, tau_s| tau_s.max(0.0))
     }
 
-    /// Returns magnitude and phase of the filters on the input and output of a response, at each
-    /// frequency of the design's band; `None` if neither has a filter.
+    /// Returns magnitude and phase of the filters on a response's input and output, at each
+    /// frequency in the design's band; `None` if neither channel has a filter.
     pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
         let curves = self.curves.get_or_init(|| {
             self.filters().map(|_, filter| {
@@ -69,7 +68,7 @@ impl ChannelLeads {
     }
 }
 
-/// Magnitude \[dB\] and phase \[rad\] of a filter, or of two filters in series.
+/// Magnitude \[dB\] and phase \[rad\] over the band, for one filter or two in series.
 #[derive(Clone, Debug)]
 pub struct LeadCurve {
     /// `20 log10 |L|` at each frequency.
@@ -90,7 +89,7 @@ impl LeadCurve {
         }
     }
 
-    /// Returns the curve of both filters in series.
+    /// Returns the curve for both filters in series.
     fn in_series(&self, other: &Self) -> Self {
         Self {
             magnitude_db: sums(&self.magnitude_db, &other.magnitude_db),

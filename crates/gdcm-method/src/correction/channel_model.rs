@@ -1,10 +1,10 @@
-//! State-space models of the delay or lead filter of a channel.
+//! State-space models for a channel's delay or lead filter.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use gdcm_model::response::{LeadFilter, LeadOrder};
 
-/// The delay or lead filter of a channel as a state-space model with a single input and output.
+/// A channel's delay or lead filter as a state-space model with a single input and output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelModel {
     /// System matrix, n x n.
@@ -17,8 +17,8 @@ pub struct ChannelModel {
 }
 
 impl ChannelModel {
-    /// Creates an exact delay by `count` samples, `z^-count`: a chain of `count` states, each equal
-    /// to the previous state one sample earlier. With `count = 0` it is `y = u`.
+    /// Creates an exact delay by `count` samples, `z^-count`: a chain with `count` states, each
+    /// equal to the previous state one sample earlier. With `count = 0` it is `y = u`.
     pub fn samples(count: usize) -> Self {
         Self {
             a: DMatrix::from_fn(count, count, |row, column| f64::from(row == column + 1)),
@@ -28,8 +28,8 @@ impl ChannelModel {
         }
     }
 
-    /// Creates a lead filter in continuous time, which is exact (M15.3). With `w1 = 1 / a` and
-    /// `w2 = 1 / b`, where `a` and `b` are the time constants of numerator and denominator, and the
+    /// Creates a lead filter in continuous time, which is exact (M15.3). With `w1 = 1 / a` and `w2
+    /// = 1 / b`, where `a` and `b` are the numerator's and denominator's time constants, and the
     /// gain at infinite frequency `R`, `(a / b)^2` or `a / b`:
     ///
     /// ```text
@@ -74,7 +74,7 @@ impl ChannelModel {
         })
     }
 
-    /// Returns the number of states.
+    /// Returns the state count `n`.
     pub fn order(&self) -> usize {
         self.b.len()
     }

@@ -1,4 +1,4 @@
-//! Channels of a correction, their names, and tables with a value for each channel.
+//! Input and output channels, their names, and tables with a value for each channel.
 
 use std::ops::Index;
 
@@ -19,7 +19,7 @@ impl Channel {
             .chain((0..outputs).map(Self::Output))
     }
 
-    /// Returns the output and the input of a response.
+    /// Returns a response's output and input.
     pub fn of_pair(pair: Pair) -> [Self; 2] {
         [Self::Output(pair.output), Self::Input(pair.input)]
     }
@@ -29,7 +29,7 @@ impl Channel {
         Self::of_pair(pair).contains(&self)
     }
 
-    /// Returns the name of the channel; if the name list is too short, its index counted from 1.
+    /// Returns the channel name; if the name list is too short, the index counted from 1.
     pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Channel::Input(index) => inputs
@@ -43,12 +43,12 @@ impl Channel {
         }
     }
 
-    /// Iterates over the channels of a dataset, the inputs first.
+    /// Iterates over a dataset's channels, the inputs first.
     pub fn of_dataset(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
         Self::inputs_then_outputs(dataset.inputs().len(), dataset.outputs().len())
     }
 
-    /// Returns the name of the channel in a dataset.
+    /// Returns the channel's name in a dataset.
     pub fn name_in(self, dataset: &Dataset) -> String {
         let (inputs, outputs) = dataset.names_of_channels();
         self.name(&inputs, &outputs)
@@ -78,9 +78,9 @@ pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> Stri
 /// A value for each input and each output channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channels<T> {
-    /// Values of the m inputs.
+    /// Input values, m of them.
     pub inputs: Vec<T>,
-    /// Values of the p outputs.
+    /// Output values, p of them.
     pub outputs: Vec<T>,
 }
 
@@ -126,7 +126,7 @@ impl<T> Channels<T> {
         Ok(converted)
     }
 
-    /// Returns the value of a channel; `None` if there is no such channel.
+    /// Returns a channel's value; `None` if there is no such channel.
     pub fn get(&self, channel: Channel) -> Option<&T> {
         match channel {
             Channel::Input(input) => self.inputs.get(input),

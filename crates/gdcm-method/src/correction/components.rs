@@ -1,14 +1,14 @@
-//! Channels connected by constrained entries, and whether the constraints are feasible together (M8
-//! and M9).
+//! Groups of channels that constrained entries connect, and whether the constraints are feasible
+//! together (M8 and M9).
 //!
 //! ```text
 //! value of a node = offset + s,      s: the scale of its component
 //! ```
 //!
-//! The *components* are the connected components of the graph whose nodes are the channels and
-//! whose edges are the constrained entries ([`super::constraints`]). A constrained entry prescribes
-//! a difference of two nodes in one component, which does not depend on `s`: the constraints leave
-//! the scales free, within the box.
+//! The *components* are the connected components in a graph with the channels as nodes and the
+//! constrained entries as edges ([`super::constraints`]). A constrained entry prescribes the
+//! difference between two nodes in one component, which does not depend on `s`: the constraints
+//! leave the scales free, within the box.
 
 use gdcm_model::dataset::Pair;
 
@@ -16,23 +16,23 @@ use super::branch_and_bound::rounded::Rounded;
 use super::constraints::{Constraints, PairNodes};
 use super::interval::Interval;
 
-/// Infeasibility up to which a component is accepted as feasible: well below the 1e-8 of M8, so
-/// that the relative error of a product of gains stays below 1e-9.
+/// Infeasibility up to which a component is accepted as feasible: well below 1e-8, the tolerance in
+/// M8, so that a gain product's relative error stays below 1e-9.
 pub(crate) const ACCEPTED_INFEASIBILITY: f64 = 1e-9;
 
-/// The components, each with the interval of its free scale. A channel without a constrained entry
-/// is a component by itself.
+/// The components, each with the permitted interval for its scale. A channel without a constrained
+/// entry is a component by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
-    /// Placements of the inputs, then of the outputs.
+    /// Placements: inputs, then outputs.
     nodes: Vec<Placement>,
     inputs: usize,
-    /// Minimum scale of each component for which all its channels are inside the box.
+    /// For each component, the minimum scale at which all its channels are inside the box.
     pub(crate) lower: Vec<f64>,
-    /// Maximum scale of each component for which all its channels are inside the box.
+    /// For each component, the maximum scale at which all its channels are inside the box.
     pub(crate) upper: Vec<f64>,
-    /// Infeasibility of each component: the largest inconsistency among constraints that form a
-    /// loop, or the amount by which the box is too narrow.
+    /// For each component, its infeasibility: the largest inconsistency among constraints that form
+    /// a loop, or the amount by which the box is too narrow.
     infeasibility: Vec<f64>,
 }
 
@@ -76,13 +76,13 @@ impl Components {
         self.lower.len()
     }
 
-    /// Returns the placements of the input nodes and of the output nodes.
+    /// Returns the placements, inputs and outputs separately.
     pub(crate) fn nodes(&self) -> Nodes<'_> {
         let (inputs, outputs) = self.nodes.split_at(self.inputs);
         Nodes { inputs, outputs }
     }
 
-    /// Returns the sum `x_i + y_o` of two channels in the same component, which does not depend on
+    /// Returns the sum `x_i + y_o` for two channels in the same component; it does not depend on
     /// the scale.
     pub(crate) fn sum(&self, pair: Pair) -> f64 {
         self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
@@ -95,13 +95,12 @@ impl Components {
             .all(|infeasibility| *infeasibility <= ACCEPTED_INFEASIBILITY)
     }
 
-    /// Returns whether the component of an entry is infeasible.
+    /// Returns whether an entry's component is infeasible.
     pub(crate) fn is_infeasible(&self, pair: Pair) -> bool {
         self.infeasibility[self.nodes[pair.input].component] > ACCEPTED_INFEASIBILITY
     }
 
-    /// Returns the coordinate of every channel (logarithm of the gain, or delay) at the given
-    /// scales.
+    /// Returns every channel's coordinate (gain logarithm, or delay) at the given scales.
     pub(crate) fn channels(&self, scales: &[f64]) -> ChannelCoordinates {
         let nodes = self.nodes();
         ChannelCoordinates {
@@ -110,7 +109,7 @@ impl Components {
                 .iter()
                 .map(|node| node.offset.value + scales[node.component])
                 .collect(),
-            // `0.0 -` instead of a negation, which would turn zero into -0.
+            // `0.0 - x`, not `-x`, which would turn zero into -0.
             outputs: nodes
                 .outputs
                 .iter()
@@ -119,11 +118,11 @@ impl Components {
         }
     }
 
-    /// Step 3: shifts the offsets so that scale 0 is the middle of each component's interval, and
-    /// no channel is far outside the box there. Leaves the intervals unchanged.
+    /// Step 3: shifts the offsets so that scale 0 is in the middle of each component's interval,
+    /// and no channel is far outside the box there. Leaves the intervals unchanged.
     fn centre_offsets(&mut self, range: Interval) {
-        // A scale at its end has two rounding errors: the end of the range, and the subtraction of
-        // the offset.
+        // A scale at an interval end has two rounding errors: in the range end, and from
+        // subtracting the offset.
         let error = 2.0 * f64::EPSILON * range.low.abs().max(range.high.abs());
         for node in &mut self.nodes {
             let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
@@ -134,7 +133,7 @@ impl Components {
         }
     }
 
-    /// Steps 2 and 3: sets the interval of every scale. An empty interval is replaced by its
+    /// Steps 2 and 3: sets the interval for every scale. An empty interval is replaced by its
     /// midpoint and recorded as infeasibility.
     fn set_intervals(&mut self, constraints: &Constraints) {
         self.lower.fill(f64::NEG_INFINITY);
@@ -157,8 +156,7 @@ impl Components {
         }
     }
 
-    /// Step 4: raises the infeasibility of every component to the largest inconsistency of its
-    /// loops.
+    /// Step 4: raises every component's infeasibility to the largest inconsistency among its loops.
     fn check_loops(&mut self, constraints: &Constraints) {
         for entry in &constraints.entries {
             let miss = (self.sum(entry.pair) - entry.sum).abs();
@@ -168,21 +166,19 @@ impl Components {
     }
 }
 
-/// The component of a node, and its offset in it.
+/// A node's component, and its offset there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub(crate) component: usize,
-    /// Value of the node if the scale of its component is 0. Its error accumulates over the
-    /// constrained sums between the first node of the component and this node; both ends of the
-    /// scale contribute too.
+    /// Node value at scale 0. Its error accumulates over the constrained sums between the
+    /// component's first node and this node; both ends of the scale's interval contribute too.
     pub(crate) offset: Rounded,
 }
 
 impl Placement {
-    /// Returns the placement of the node at the other end of a constrained entry, `by` above this
-    /// node.
+    /// Returns the placement for the node at a constrained entry's other end, `by` above this node.
     fn across(self, by: f64) -> Self {
-        // Error: the conversion of `by` to a logarithm or another time unit has rounded once.
+        // Error: converting `by` to a logarithm or another time unit has rounded once.
         let mut offset = Rounded {
             value: by,
             error: f64::EPSILON * by.abs(),
@@ -192,14 +188,13 @@ impl Placement {
     }
 }
 
-/// Placements of the input nodes and of the output nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nodes<'a> {
     pub(crate) inputs: &'a [Placement],
     pub(crate) outputs: &'a [Placement],
 }
 
-/// Coordinates of the inputs and of the outputs.
+/// Channel coordinates, inputs and outputs separately.
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelCoordinates {
     pub(crate) inputs: Vec<f64>,

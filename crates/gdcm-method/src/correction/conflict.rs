@@ -1,4 +1,4 @@
-//! Conflicts: constrained entries and bounds that exclude one another.
+//! Conflicts: constrained entries and bounds that cannot all be met.
 
 use gdcm_model::dataset::Pair;
 
@@ -6,28 +6,27 @@ use super::channel_bounds::Bounds;
 use super::channels::Channel;
 use super::quantity::Quantity;
 
-/// A minimal infeasible set of constrained entries and bounds: releasing any of its members makes
-/// the others feasible.
+/// Minimal infeasible set of constrained entries and bounds: releasing any one makes the others
+/// feasible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
     /// Constrained quantity: gains, delays \[s\], or signed delays \[s\].
     pub quantity: Quantity,
-    /// Constrained entries; releasing any of them resolves the conflict.
+    /// Constrained entries; releasing any one resolves the conflict.
     pub entries: Vec<Pair>,
     /// Bounds on the channels.
     pub bounds: Bounds,
     pub kind: ConflictKind,
 }
 
-/// Kind of conflict between constrained entries and bounds. Suggested bounds are rounded to three
-/// digits in the sufficient direction.
+/// How constrained entries and bounds conflict. Suggested bounds are rounded to three digits in the
+/// sufficient direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConflictKind {
     /// The net value prescribed for two channels exceeds the maximum that the upper bound permits.
     AboveUpper {
-        /// The input and the output.
         channels: [Channel; 2],
-        /// Product of gains, or sum of delays \[s\], prescribed by the entries.
+        /// Gain product, or delay sum \[s\], prescribed by the entries.
         asked: f64,
         /// Minimum sufficient upper bound.
         upper: f64,
@@ -35,19 +34,16 @@ pub enum ConflictKind {
     /// The net value prescribed for two channels is below the minimum that the lower bound permits;
     /// for delays, it is a phase lead.
     BelowLower {
-        /// The input and the output.
         channels: [Channel; 2],
-        /// Product of gains, or (negative) sum of delays \[s\], prescribed by the entries.
+        /// Gain product, or (negative) delay sum \[s\], prescribed by the entries.
         asked: f64,
         /// Maximum sufficient lower bound; `None` for delays, whose lower bound is fixed.
         lower: Option<f64>,
     },
-    /// The ratio of two gains, or difference of two delays, prescribed by the entries exceeds the
-    /// range between the bounds.
+    /// The entries prescribe a ratio between two gains, or a difference between two delays, that
+    /// exceeds the range between the bounds.
     TooFarApart {
-        /// Channel with the larger value.
         greater: Channel,
-        /// Channel with the smaller value.
         lesser: Channel,
         /// Ratio, or difference \[s\], prescribed by the entries.
         asked: f64,
@@ -56,9 +52,9 @@ pub enum ConflictKind {
         /// Maximum sufficient lower bound if the upper bound is unchanged; `None` for delays.
         lower: Option<f64>,
     },
-    /// The entries form a loop with contradictory targets, which no change of the bounds resolves.
+    /// The entries form a loop with contradictory targets, which no other bounds resolve.
     Loop {
-        /// Deviation of the loop's product from 1 \[dB\], or of its sum from 0 \[s\].
+        /// The loop's product \[dB\] or sum \[s\], which would be 0 without a contradiction.
         mismatch: f64,
     },
     /// The entries are infeasible together, but rounding obscures the cause.
@@ -91,7 +87,7 @@ impl Conflict {
         }
     }
 
-    /// Returns whether the conflict is a loop, which no change of the bounds resolves.
+    /// Returns whether the conflict is a loop, which no other bounds resolve.
     pub(crate) fn is_loop(&self) -> bool {
         matches!(self.kind, ConflictKind::Loop { .. })
     }

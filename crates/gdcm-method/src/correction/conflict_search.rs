@@ -1,8 +1,8 @@
-//! Search for the conflict behind each constrained entry whose target could not be met in stage 1.
+//! Finds the conflict behind each constrained entry that stage 1 could not meet.
 //!
-//! The nodes, their values `s` and the entries as prescribed differences of nodes are those of
+//! Nodes, their values `s` and entries as prescribed differences between nodes are defined in
 //! [`super::constraints`]. A missed entry is a *pull* from one node to another; the pulls are the
-//! directed edges of a graph, the *flow* ([`super::pull_flow`]).
+//! directed edges in a graph, the *flow* ([`super::pull_flow`]).
 
 use gdcm_model::dataset::Pair;
 
@@ -26,11 +26,11 @@ pub(crate) struct EntryConflict {
 /// Finds the smallest conflict behind each entry that stage 1 missed by more than `tolerance` (in
 /// coordinates); the same conflict can appear several times.
 ///
-/// Stage 1 is a least-squares problem, so that its residuals balance: the pull of a missed entry on
-/// a channel is balanced by another missed entry or by an active bound. Every path in the flow from
-/// bound to bound, and every loop, is an infeasible set, and every missed entry lies on such a path
-/// or loop (Farkas). If a part of the path or loop is infeasible by itself, that part is the
-/// conflict, and the residual of the entry is a compromise with it.
+/// Stage 1 is a least-squares problem, so that its residuals balance: where a missed entry pulls at
+/// a channel, another missed entry or an active bound balances the pull. Every path in the flow
+/// from bound to bound, and every loop, is an infeasible set, and every missed entry lies on such a
+/// path or loop (Farkas). If a part of the path or loop is infeasible by itself, that part is the
+/// conflict, and the entry's residual is a compromise with it.
 ///
 /// ```text
 /// for each missed entry
@@ -73,14 +73,14 @@ pub(crate) fn entry_conflicts(
     Ok(found)
 }
 
-/// Shape of a sequence of pulls.
+/// Whether a sequence of pulls is open or closes a loop.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shape {
     Path,
     Loop,
 }
 
-/// The flow of the missed entries, with the problem whose conflicts it explains.
+/// The flow that the missed entries form, with the problem whose conflicts it explains.
 struct ConflictSearch<'a> {
     problem: &'a Problem,
     constraints: &'a Constraints,
@@ -124,9 +124,9 @@ impl ConflictSearch<'_> {
         self.conflict(entries, ConflictKind::Loop { mismatch })
     }
 
-    /// Step 4: returns the conflict in the shortest proper part of a sequence that the bounds at
-    /// its two ends do not permit; `None` if there is none. In a loop, a part may continue from the
-    /// last pull to the first.
+    /// Step 4: returns the conflict in the shortest proper part of the sequence that the bounds at
+    /// the part's two ends do not permit; `None` if there is none. In a loop, a part may continue
+    /// from the last pull to the first.
     fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
         let count = pulls.len();
         for length in 1..count {
@@ -150,8 +150,8 @@ impl ConflictSearch<'_> {
         None
     }
 
-    /// Returns whether the sequence requires more than the difference between the maximum of its
-    /// last node and the minimum of its first node.
+    /// Returns whether the sequence requires more than its last node's maximum less its first
+    /// node's minimum.
     fn is_impossible(&self, run: &[Pull]) -> bool {
         let (Some(first), Some(last)) = (run.first(), run.last()) else {
             return false;
@@ -162,7 +162,7 @@ impl ConflictSearch<'_> {
         needed - (most - least) > ACCEPTED_INFEASIBILITY
     }
 
-    /// Returns the conflict of a path from a node at its minimum to a node at its maximum.
+    /// Returns the conflict on a path from a node at its minimum to a node at its maximum.
     fn path_conflict(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let start = path.first().map_or(0, |pull| pull.from);
@@ -170,10 +170,10 @@ impl ConflictSearch<'_> {
         let coordinate = self.problem.coordinate();
         let start = self.constraints.channel(start);
         let end = self.constraints.channel(end);
-        // The value of an output node is minus its coordinate: at the minimum of the node, the
+        // An output node's value is minus the output's coordinate: at the node's minimum, the
         // output is at its upper bound. From an output to an input, `needed` is therefore the sum
-        // of both coordinates, from an input to an output minus the sum; a bound of half the sum on
-        // both channels suffices.
+        // of both coordinates, from an input to an output minus this sum; a bound of half the sum
+        // on both channels suffices.
         let kind = match (start, end) {
             (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {
                 channels: [end, start],

@@ -1,12 +1,12 @@
-//! Connected components of a graph.
+//! Connected components in a graph.
 
-/// Finds the connected components of a graph with `count` nodes and the given edges; each lists its
+/// Finds the connected components in a graph with `count` nodes and the given edges; each lists its
 /// nodes in ascending order.
 pub(crate) fn connected_pieces(
     count: usize,
     edges: impl Iterator<Item = [usize; 2]>,
 ) -> Vec<Vec<usize>> {
-    // Each piece is numbered after one of its nodes; at first every node is a piece by itself.
+    // A piece's number is the index of a node in it; at first every node is a piece by itself.
     let mut piece_of: Vec<usize> = (0..count).collect();
     for [a, b] in edges {
         let kept = piece_of[a];

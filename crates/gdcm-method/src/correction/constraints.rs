@@ -1,4 +1,4 @@
-//! Constraints of a problem in coordinates: prescribed sums of two channels, and a box (M8, M9).
+//! A problem's constraints in coordinates: prescribed sums over two channels, and a box (M8, M9).
 //!
 //! ```text
 //! x_i + y_o = sum      for each constrained entry (output o, input i), with the coordinates x_i of the inputs and y_o of
@@ -6,9 +6,9 @@
 //! low <= x, y <= high
 //! ```
 //!
-//! The channels are the *nodes* of a graph, the inputs first, then the outputs. The value of an
-//! input node is `x_i`, that of an output node `-y_o`, so that a constrained entry prescribes the
-//! difference between two nodes.
+//! The channels are the *nodes* in a graph, the inputs first, then the outputs. An input node has
+//! the value `x_i`, an output node `-y_o`, so that a constrained entry prescribes the difference
+//! between two nodes.
 
 use gdcm_model::dataset::Pair;
 
@@ -22,7 +22,7 @@ pub(crate) struct Constraints {
     pub(crate) outputs: usize,
     pub(crate) inputs: usize,
     pub(crate) entries: Vec<ConstrainedSum>,
-    /// Permitted range of the coordinate, the same for every channel.
+    /// Permitted coordinates, the same for every channel.
     pub(crate) range: Interval,
 }
 
@@ -30,11 +30,11 @@ pub(crate) struct Constraints {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstrainedSum {
     pub(crate) pair: Pair,
-    /// Prescribed sum of the two channels' coordinates.
+    /// Prescribed sum `x_i + y_o`.
     pub(crate) sum: f64,
 }
 
-/// The nodes of a response's input and output.
+/// Nodes for a response's input and output.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairNodes {
     pub(crate) input: usize,
@@ -64,12 +64,12 @@ impl Constraints {
         Self { entries, ..*self }
     }
 
-    /// Returns the number of nodes, inputs plus outputs.
+    /// Returns the node count, inputs plus outputs.
     pub(crate) fn nodes(&self) -> usize {
         self.inputs + self.outputs
     }
 
-    /// Returns the nodes of an entry's input and output channel.
+    /// Returns the nodes for an entry's input and output channel.
     pub(crate) fn nodes_of(&self, pair: Pair) -> PairNodes {
         PairNodes {
             input: pair.input,
@@ -77,7 +77,7 @@ impl Constraints {
         }
     }
 
-    /// Returns the channel of a node.
+    /// Returns the channel that a node represents.
     pub(crate) fn channel(&self, node: usize) -> Channel {
         if node < self.inputs {
             Channel::Input(node)
@@ -86,7 +86,7 @@ impl Constraints {
         }
     }
 
-    /// Returns the permitted range of a node's value.
+    /// Returns the permitted range for a node's value.
     pub(crate) fn node_range(&self, node: usize) -> Interval {
         if node < self.inputs {
             self.range

@@ -1,5 +1,5 @@
-//! A corrected model `M_O H M_I` given by matrices (M10): the model `H` in series with the gain and
-//! the delay or lead filter of each input (`M_I`) and output channel (`M_O`). Its delays are
+//! Corrected model `M_O H M_I` in matrix form (M10): the model `H` in series with a gain and a
+//! delay or lead filter on each input (`M_I`) and output channel (`M_O`). Its delays are
 //! approximated by rational functions if they require states.
 
 use gdcm_model::dataset::StateSpace;
@@ -14,47 +14,46 @@ use super::channels::{Channel, Channels};
 use super::pade::Pade;
 use super::series_connection::Blocks;
 
-/// Maximum deviation of a delay from a whole number of samples, in samples: computed delays have
-/// rounding errors.
+/// How far a delay may be from a whole number of samples, in samples: computed delays have rounding
+/// errors.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
-/// Delay \[s\] below which a delay is set to zero, because rounding errors would give states with
-/// enormous entries. At 12 rad/s such a delay changes the phase by less than a millionth of a
-/// degree.
+/// Delay \[s\] below which a delay is set to zero, because its states would have enormous matrix
+/// entries. At 12 rad/s such a delay changes the phase by less than a millionth of a degree.
 const LEAST_DELAY_S: f64 = 1e-9;
 
-/// The corrected model `M_O H M_I`. It has no delays: the delays of the correction and of the model
-/// itself have been converted to states (M10, M2a).
+/// The corrected model `M_O H M_I`. It has no delays: the correction's delays and the model's own
+/// have been converted to states (M10, M2a).
 ///
 /// In continuous time each delayed channel has the states of a Padé approximant; in discrete time
-/// the delay is exact, with one state for each sample. Gains are exact, and so are lead filters in
+/// the delay is exact, with one state per sample. Gains are exact, and so are lead filters in
 /// continuous time (M15.3); in discrete time lead filters are approximated by Tustin's rule. A
 /// channel without delay and lead adds no state. The states are ordered along the signal: input
-/// leads, input delays, states of the model, output delays, output leads.
+/// leads, input delays, model states, output delays, output leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
     /// State-space matrices, without delays.
     pub model: StateSpace,
-    /// Number of delay states of each channel; those of inputs precede the states of the model,
-    /// those of outputs follow them.
+    /// Delay states per channel; those for inputs precede the model's states, those for outputs
+    /// follow them.
     pub delay_states: Channels<usize>,
-    /// Number of lead filter states of each channel; those of inputs precede all other states,
-    /// those of outputs follow all others.
+    /// Lead filter states per channel; those for inputs precede all other states, those for outputs
+    /// follow all others.
     pub lead_states: Channels<usize>,
-    /// Lead filter of each channel; empty if the correction has no leads.
+    /// Lead filter per channel; empty if the correction has no leads.
     leads: Channels<Option<LeadFilter>>,
     /// `None` in continuous time.
     sample_time_s: Option<f64>,
-    /// Delay of each channel, of correction and model together.
+    /// Delay per channel, correction plus model.
     delays_s: Channels<f64>,
-    /// Approximant of the delays in continuous time.
+    /// Approximant for the delays in continuous time.
     pade: Pade,
 }
 
 /// Reason why a corrected model cannot be represented by matrices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CorrectedModelError {
-    /// A delay of a discrete-time model is not a whole number of samples.
+    /// A discrete-time model's delay is not a whole number of samples.
     #[error(
         "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a whole number \
         of samples",
@@ -65,7 +64,7 @@ pub enum CorrectedModelError {
     )]
     PartOfSample {
         channel: Channel,
-        /// Delay \[s\], of correction and model together.
+        /// Delay \[s\], correction plus model.
         delay_s: f64,
         /// Sample time \[s\].
         sample_time_s: f64,
@@ -78,7 +77,7 @@ pub enum CorrectedModelError {
         number(*longest_s)
     )]
     SlowSamples {
-        /// Sample time of the model \[s\].
+        /// The model's sample time \[s\].
         sample_time_s: f64,
         /// Maximum admissible sample time \[s\].
         longest_s: f64,
@@ -89,10 +88,10 @@ pub enum CorrectedModelError {
         supported"
     )]
     TooManyStates {
-        /// Number of states needed.
+        /// States that the model would need.
         states: usize,
     },
-    /// A matrix of the corrected model is not finite.
+    /// A matrix in the corrected model is not finite.
     #[error("{0}")]
     Matrices(#[from] StateSpaceError),
 }
@@ -109,8 +108,8 @@ impl CorrectedModelError {
     }
 }
 
-/// Returns the number of samples in a delay, rounded to 1e-6: shows the fraction of a sample, but no
-/// rounding error.
+/// Converts a delay to samples, rounded to 1e-6: shows the fraction of a sample, but no rounding
+/// error.
 pub fn samples_of_delay(delay_s: f64, sample_time_s: f64) -> f64 {
     (delay_s / sample_time_s * 1e6).round() / 1e6
 }
@@ -169,11 +168,11 @@ impl CorrectedModel {
         })
     }
 
-    /// Computes the maximum phase error \[rad\] over the responses of the model at `omega`
-    /// \[rad/s\]: the lag missing from the approximated delays, or the phase lost in lead filters
-    /// by Tustin's rule in discrete time.
+    /// Computes the maximum phase error \[rad\] over the model's responses at `omega` \[rad/s\]:
+    /// the lag missing from the approximated delays, or the phase lost in lead filters by Tustin's
+    /// rule in discrete time.
     ///
-    /// The error of a response is the sum over its two channels.
+    /// A response's error is the sum over its two channels.
     pub fn phase_error(&self, omega: f64) -> f64 {
         match self.sample_time_s {
             Some(sample_time_s) => {
@@ -195,13 +194,13 @@ impl CorrectedModel {
     }
 }
 
-/// Returns the number of states of all channels together.
+/// Returns the state count over all channels.
 fn total(states: &Channels<usize>) -> usize {
     states.iter().map(|(_, states)| states).sum()
 }
 
-/// Returns the maximum phase error \[rad\] of the filters at `omega`, given the warped frequency;
-/// both in rad/s.
+/// Returns the filters' maximum phase error \[rad\] at `omega`, given the warped frequency; both in
+/// rad/s.
 fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f64) -> f64 {
     filters
         .iter()
@@ -215,7 +214,7 @@ fn longest(delays_s: &[f64]) -> f64 {
     delays_s.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns the delay of a channel \[s\], the sum of the correction's and the model's own delay.
+/// Returns a channel's delay \[s\], the correction's plus the model's own.
 fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
     let (own_delays_s, index) = match channel {
         Channel::Input(index) => (&timing.input_delays_s, index),
@@ -233,10 +232,11 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
     }
 }
 
-/// Creates the state-space model of a channel's delay.
+/// Creates a state-space model for a channel's delay.
 ///
 /// # Errors
-/// A discrete-time delay that is not a whole number of samples, or too many states.
+/// [`CorrectedModelError`] if a discrete-time delay is not a whole number of samples, or needs too
+/// many states.
 fn delay_model(
     channel: Channel,
     delay_s: f64,
@@ -267,7 +267,7 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// Creates the state-space model of a channel's lead filter; without a filter, the model `y = u`.
+/// Creates a state-space model for a channel's lead filter; without a filter, the model `y = u`.
 fn lead_model(
     filter: Option<LeadFilter>,
     sample_time_s: Option<f64>,

@@ -25,13 +25,13 @@ pub enum GainSource {
     #[default]
     #[serde(rename = "representatives")]
     Representatives,
-    /// All pairs of a kept physics model and a kept identified model: `G = exp(mean(ln G))`.
+    /// All pairs, each a kept physics model and a kept identified model: `G = exp(mean(ln G))`.
     #[serde(rename = "mean")]
     MeanOfPairs,
 }
 
-/// Delta gain `G = median |H_ref| / |H_sim|`, delta delay
-/// `D = median Delta phi(H_sim, H_ref) / omega` (M6), and band delay (M15.2) of every response.
+/// Delta gain `G = median |H_ref| / |H_sim|`, delta delay `D = median Delta phi(H_sim, H_ref) /
+/// omega` (M6), and band delay (M15.2) for every response.
 ///
 /// `None` if the ratio is zero or not finite at any frequency, or if no frequency counts. The
 /// medians are weighted if the reference is measured with coherence (M4a).
@@ -67,7 +67,7 @@ impl Delta {
     }
 }
 
-/// Phase difference `Delta phi(H_sim, H_ref)` of a single response.
+/// Phase difference `Delta phi(H_sim, H_ref)` in a single response.
 struct MissingPhase<'a> {
     mismatch: &'a Mismatch,
     /// Phase \[rad\] at each frequency.
@@ -98,8 +98,8 @@ pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f
 }
 
 /// Computes `sum W omega phase / sum W omega^2` \[s\] from the phase \[rad\] at each frequency
-/// \[rad/s\]: the delay that minimises the mean square of the remaining phase (M15.2). It is linear
-/// in the phase; W = 1 without weights.
+/// \[rad/s\]: the delay that minimises the mean square phase that remains (M15.2). It is linear in
+/// the phase; W = 1 without weights.
 pub(crate) fn band_delay_s(
     phase: impl Iterator<Item = f64>,
     omega: &[f64],
@@ -118,7 +118,7 @@ pub(crate) fn band_delay_s(
     moment / square
 }
 
-/// Computes the mismatch of every response that both models contain and whose ratio is finite and
+/// Computes the mismatch for every response that both models contain and whose ratio is finite and
 /// not zero, at the frequencies that count; `coherence_weights` selects and weights them, otherwise
 /// all count (M4a).
 pub fn mismatch_table(

@@ -1,6 +1,7 @@
-//! Constrained entries whose delta is infeasible, each with the conflict behind it: step 5 of `solve`.
+//! Constrained entries whose delta is infeasible, each with the conflict behind it: step 5 in
+//! `solve`.
 //!
-//! Stage 1 (`reachable_targets`) has replaced the prescribed sum of such an entry by a target, the
+//! Stage 1 (`reachable_targets`) has replaced such an entry's prescribed sum by a target, the
 //! nearest feasible sum.
 
 use super::branch_and_bound::effort::{Effort, SearchStopped};
@@ -12,20 +13,20 @@ use super::quantity::Coordinate;
 use super::reachable_targets::Reached;
 use super::solution::Unmatched;
 
-/// Residual in natural logarithms, or as a fraction of the problem's longest delay, up to which a
-/// constrained entry meets its delta (M8).
+/// Residual up to which a constrained entry meets its delta, in natural logarithms or relative to
+/// the problem's longest delay (M8).
 const MATCHED: f64 = 1e-8;
 
-/// Residual \[s\] up to which a constrained delay meets its delta, however short the delays of the
-/// problem are: the difference between equal phases has rounding errors. At the highest band
-/// frequency, 1e5 rad/s, it is 0.006 degrees.
+/// Residual \[s\] up to which a constrained delay meets its delta, however short the problem's
+/// delays: the difference between equal phases has rounding errors. At the highest band frequency,
+/// 1e5 rad/s, it is 0.006 degrees.
 const MATCHED_DELAY_S: f64 = 1e-9;
 
 /// The constrained entries whose delta is infeasible.
 pub(super) struct Misses {
-    /// Entries in loops whose deviation is within the tolerance of the problem.
+    /// Entries in loops that deviate by at most the problem's tolerance ([`Problem::agreement`]).
     pub(super) agreeing: Vec<Unmatched>,
-    /// All others.
+    /// All other entries whose delta is infeasible.
     pub(super) unmatched: Vec<Unmatched>,
 }
 
@@ -60,8 +61,8 @@ pub(super) fn misses(
     Ok(misses)
 }
 
-/// Returns the residual, in the coordinate of the problem, up to which a constrained entry meets
-/// its delta.
+/// Returns the residual, in the problem's coordinate, up to which a constrained entry meets its
+/// delta.
 fn matching_tolerance(coordinate: Coordinate) -> f64 {
     match coordinate {
         Coordinate::Logarithm => MATCHED,
@@ -106,7 +107,7 @@ fn unmatched(
     }
 }
 
-/// Returns the constraints, in which the entries of accepted loops are replaced by their targets.
+/// Returns the constraints, with the entries in accepted loops replaced by their targets.
 pub(super) fn settled_loops(
     constraints: &Constraints,
     reached: &Reached,
@@ -121,8 +122,7 @@ pub(super) fn settled_loops(
     constraints.with_entries(entries)
 }
 
-/// Collects the distinct conflicts of the infeasible entries: loops first, then by number of
-/// entries.
+/// Collects the infeasible entries' distinct conflicts: loops first, then by entry count.
 pub(super) fn distinct_conflicts(misses: &[Unmatched]) -> Vec<Conflict> {
     let mut conflicts: Vec<Conflict> = Vec::new();
     for miss in misses {

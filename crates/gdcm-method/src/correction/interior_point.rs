@@ -1,5 +1,5 @@
-//! Minimum of a least-squares objective `F(s)` over its box `lower <= s <= upper`, found by the
-//! interior-point method of Clarabel. Its variables `s` are the scales of an [`Objective`].
+//! Minimises a least-squares objective `F(s)` over its box `lower <= s <= upper` by Clarabel's
+//! interior-point method. Its variables `s` are the scales of an [`Objective`].
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
@@ -7,7 +7,7 @@ use super::branch_and_bound::expansion::{Curvature, Differentiable, Expansion};
 use super::branch_and_bound::objective::Objective;
 use super::problem::ProblemError;
 
-/// Returns a point within about 1e-9 of the minimum over the box.
+/// Returns the minimum over the box, to about 1e-9.
 ///
 /// # Errors
 /// [`ProblemError::Program`] unless Clarabel reports the problem as solved ("almost solved" is an
@@ -57,7 +57,7 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
         .map_err(|reason| ProblemError::Program { reason })
 }
 
-/// Returns the matrix of the box constraints, `[I; -I]`, 2 size x size.
+/// Returns the matrix for the box constraints, `[I; -I]`, 2 size x size.
 fn box_sides(size: usize) -> CscMatrix<f64> {
     let columns = (0..=size).map(|column| 2 * column).collect();
     let mut rows = Vec::with_capacity(2 * size);

@@ -1,4 +1,4 @@
-//! Intervals of a single variable.
+//! Interval for a single variable.
 
 /// Interval `low <= u <= high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,7 +8,7 @@ pub(crate) struct Interval {
 }
 
 impl Interval {
-    /// Returns the interval of `-u`.
+    /// Returns the interval for `-u`.
     pub(crate) fn mirrored(self) -> Self {
         Self {
             low: -self.high,
@@ -24,7 +24,7 @@ impl Interval {
         }
     }
 
-    /// Returns the point of the interval nearest to `u`.
+    /// Returns the point in the interval nearest to `u`.
     pub(crate) fn nearest(self, u: f64) -> f64 {
         u.clamp(self.low, self.high)
     }

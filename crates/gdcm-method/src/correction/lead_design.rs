@@ -1,4 +1,4 @@
-//! Design of the lead filter for a negative signed delay (M15.3).
+//! Lead filter design for a negative signed delay (M15.3).
 
 use std::sync::Arc;
 
@@ -12,11 +12,10 @@ use super::delta::band_delay_s;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
     pub order: LeadOrder,
-    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, where `omega_B` is the upper end of the
-    /// band.
+    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, where `omega_B` is the upper band edge.
     #[serde(rename = "n")]
     pub pole: f64,
-    /// `R_max`: maximum gain of a filter at high frequency (ratio, not dB).
+    /// `R_max`: maximum filter gain at high frequency (ratio, not dB).
     #[serde(rename = "r_max")]
     pub limit: f64,
 }
@@ -32,8 +31,7 @@ impl Default for LeadSettings {
     }
 }
 
-/// Design of the lead filters for a band; it assigns exactly one filter to each negative signed
-/// delay (M15.3).
+/// Lead filter design for a band; assigns exactly one filter to each negative signed delay (M15.3).
 ///
 /// With `b = 1 / (n omega_B)` and the lead time `l >= 0`:
 ///
@@ -44,14 +42,14 @@ impl Default for LeadSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDesign {
     settings: LeadSettings,
-    /// Frequencies of the band \[rad/s\].
+    /// Frequencies in the band \[rad/s\].
     omega: Arc<[f64]>,
     /// `LB_tau`, lower bound on a signed delay \[s\].
     lower_s: f64,
 }
 
 impl LeadDesign {
-    /// Creates the design for the frequencies of a band \[rad/s\], which must be rising, positive
+    /// Creates the design for the frequencies in a band \[rad/s\], which must be rising, positive
     /// and not empty.
     pub fn new(settings: LeadSettings, omega: Arc<[f64]>) -> Self {
         let mut design = Self {
@@ -68,12 +66,12 @@ impl LeadDesign {
         self.settings
     }
 
-    /// Returns the frequencies \[rad/s\] over which the band delay of a filter is computed.
+    /// Returns the frequencies \[rad/s\] over which a filter's band delay is computed.
     pub fn omega(&self) -> &[f64] {
         &self.omega
     }
 
-    /// Returns `omega_B` \[rad/s\], the upper end of the band.
+    /// Returns `omega_B` \[rad/s\], the upper band edge.
     pub fn band_top_rad_s(&self) -> f64 {
         self.omega.last().copied().unwrap_or(1.0)
     }
@@ -92,7 +90,7 @@ impl LeadDesign {
         }
     }
 
-    /// Returns `LB_tau = d(l_max)` \[s\], the lower bound on the signed delay of a channel.
+    /// Returns `LB_tau = d(l_max)` \[s\], the lower bound on a channel's signed delay.
     pub fn lower_s(&self) -> f64 {
         self.lower_s
     }
@@ -102,9 +100,8 @@ impl LeadDesign {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
-    /// Computes the band delay of the filter with lead time `l`,
-    /// `d(l) = - sum omega arg L / sum omega^2` \[s\] (M15.2): 0 at `l = 0`, and strictly
-    /// decreasing.
+    /// Computes the band delay for the filter with lead time `l`, `d(l) = - sum omega arg L / sum
+    /// omega^2` \[s\] (M15.2): 0 at `l = 0`, and strictly decreasing.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_for_lead(lead_s);
         -band_delay_s(
@@ -115,8 +112,8 @@ impl LeadDesign {
     }
 
     /// Computes `-d'(l)`, by how much the band delay falls with the lead time, dimensionless. With
-    /// `x = a omega` it is the weighted mean of `(1 + x^2) / (1 + x^4)`, or of `1 / (1 + x^2)` for
-    /// first order.
+    /// `x = a omega` it is the weighted mean of `(1 + x^2) / (1 + x^4)` (second order) or `1 / (1 +
+    /// x^2)` (first order).
     fn band_delay_fall(&self, lead_s: f64) -> f64 {
         let zero_s = self.filter_for_lead(lead_s).zero_s;
         let slopes = self.omega.iter().map(|&omega| {
@@ -153,7 +150,7 @@ impl LeadDesign {
     pub fn lead_s(&self, tau_s: f64) -> f64 {
         /// Far more steps than necessary; a few are typical.
         const STEPS: usize = 100;
-        /// Change of `l` at which the iteration ends (step 4).
+        /// Relative change in `l` at which the iteration ends (step 4).
         const RELATIVE_CHANGE: f64 = 1e-9;
         let mut low = 0.0;
         let mut high = self.longest_lead_s();

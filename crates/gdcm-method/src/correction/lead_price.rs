@@ -1,19 +1,20 @@
-//! Price of lead filters: the frequency up to which a corrected model is valid, and the gain that
-//! the filters add above it (M15.6).
+//! Price paid for lead filters: the frequency up to which a corrected model is valid, and the gain
+//! that the filters add above it (M15.6).
 
 use gdcm_model::dataset::Pair;
 
 use super::channel_leads::ChannelLeads;
 use super::channels::Channels;
 
-/// Multiple of the upper end of the band at which the gain above the band is computed (M15.6).
+/// Frequency, relative to the upper band edge, at which the gain above the band is computed
+/// (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
 
-/// Frequency limit of a model with leads, and the gain that the filters add at ten times this
+/// Frequency limit for a model with leads, and the gain that the filters add at ten times this
 /// frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadPrice {
-    /// Upper end of the band \[rad/s\]; above it the corrected model is not valid.
+    /// Upper band edge \[rad/s\]; above it the corrected model is not valid.
     pub limit_rad_s: f64,
     /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] for each channel \[dB\]; 0 for a channel
     /// without a filter.
@@ -21,7 +22,7 @@ pub struct LeadPrice {
 }
 
 impl LeadPrice {
-    /// Computes the price of leads; `None` if no channel has a filter.
+    /// Computes the price paid for leads; `None` if no channel has a filter.
     pub fn new(leads: &ChannelLeads) -> Option<Self> {
         let filters = leads.filters();
         if filters.iter().all(|(_, filter)| filter.is_none()) {
@@ -38,8 +39,8 @@ impl LeadPrice {
         })
     }
 
-    /// Returns the larger of both gains for each channel; used for a schedule whose leads depend on
-    /// airspeed.
+    /// Returns the larger gain of the two prices for each channel; used for a schedule whose leads
+    /// depend on airspeed.
     #[must_use]
     pub fn or_more(self, other: &Self) -> Self {
         let gains_db = self
@@ -48,12 +49,12 @@ impl LeadPrice {
         Self { gains_db, ..self }
     }
 
-    /// Returns ten times the upper end of the band \[rad/s\].
+    /// Returns ten times the upper band edge \[rad/s\].
     pub fn above_rad_s(&self) -> f64 {
         ABOVE_BAND * self.limit_rad_s
     }
 
-    /// Returns the gain \[dB\] that the filters on the input and output of a response add at
+    /// Returns the gain \[dB\] that the filters on a response's input and output add at
     /// [`LeadPrice::above_rad_s`].
     pub fn of_pair_db(&self, pair: Pair) -> f64 {
         self.gains_db.outputs[pair.output] + self.gains_db.inputs[pair.input]

@@ -1,12 +1,13 @@
-//! Computation of a gain and a delay or lead for each channel from two models (M6 to M10, M15).
+//! Computes a gain and a delay or lead for each channel from two models (M6 to M10, M15).
 //!
 //! [`Delta`](delta::Delta) holds the gain and delay needed by each response; [`solve`] minimises
-//! eq. (7) or the convex eq. (11), in logarithms of gains or in seconds, and proves the global
-//! minimum. The signed delays of M15 are the solution of a convex program in the form of eq. (11);
-//! [`LeadDesign`](lead_design::LeadDesign) converts negative delays to filters. `solve` also explains
-//! infeasible constraints and finds remedies; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](toggles::toggles) compute the cost of each constrained entry. Tables are
-//! `[output, input]`, gains are ratios, delays are in seconds.
+//! eq. (7) or the convex eq. (11), in gain logarithms or in seconds, and proves the global minimum.
+//! The signed delays (M15) solve a convex program that resembles eq. (11);
+//! [`LeadDesign`](lead_design::LeadDesign) converts negative delays to filters. `solve` also
+//! explains infeasible constraints and finds remedies;
+//! [`sensitivities`](sensitivity::sensitivities) and [`toggles`](toggles::toggles) compute the cost
+//! of constraining each entry. Tables are `[output, input]`, gains are ratios, delays are in
+//! seconds.
 //!
 //! ```text
 //! delta, channel_bounds                            G and D from two models; bounds on the channels

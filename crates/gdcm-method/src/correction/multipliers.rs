@@ -1,15 +1,15 @@
-//! Multipliers of the constrained entries and of the active bounds at the minimum.
+//! Lagrange multipliers for the constrained entries and the active bounds at the minimum.
 //!
-//! With the objective `F` as a function of the channels `x` (logarithms of the gains, or delays),
-//! the solution satisfies the Karush-Kuhn-Tucker conditions
+//! With the objective `F` as a function of the channels `x` (gain logarithms, or delays), the
+//! solution satisfies the Karush-Kuhn-Tucker conditions
 //!
 //! ```text
 //! dF/dx_c = mu_c + sum of lambda_e over the constrained entries e of channel c
 //! ```
 //!
-//! The multiplier `lambda_e` is the derivative of the minimum with respect to the entry's
-//! constrained sum of two channels, `mu_c` that with respect to the active bound of channel `c`: at
-//! most 0 for an upper bound, at least 0 for a lower bound, and 0 without an active bound.
+//! The multiplier `lambda_e` is the minimum's derivative with respect to the entry's constrained
+//! sum, `mu_c` its derivative with respect to the active bound of channel `c`: at most 0 for an
+//! upper bound, at least 0 for a lower bound, and 0 without an active bound.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -19,14 +19,14 @@ use super::connected_pieces::connected_pieces;
 use super::problem::{Entry, Problem};
 use super::solution::Solution;
 
-/// Whether the value of a channel equals its lower and its upper bound.
+/// Whether a channel is on its lower bound, and whether it is on its upper bound.
 #[derive(Clone, Copy)]
 struct AtBounds {
     lower: bool,
     upper: bool,
 }
 
-/// Slope of the objective along the common movement of a group of connected channels.
+/// The objective's slope along the common movement of connected channels.
 pub(super) struct Push {
     pub(super) slope: f64,
     /// Channels whose active bounds stop the movement.
@@ -35,13 +35,12 @@ pub(super) struct Push {
 
 /// The minimum, with the channels as variables: inputs first, then outputs.
 pub(super) struct ConstrainedMinimum {
-    /// Number of inputs.
     pub(super) inputs: usize,
-    /// Slope of the objective in the value of each channel.
+    /// The objective's slope in each channel's value.
     slopes: Vec<f64>,
-    /// By channel.
+    /// One entry per channel, inputs first.
     at_bounds: Vec<AtBounds>,
-    /// Constrained entries; each fixes the sum of an input and an output.
+    /// Constrained entries; each fixes an input plus an output.
     pub(super) constrained: Vec<Pair>,
 }
 
@@ -83,8 +82,7 @@ impl ConstrainedMinimum {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// Computes the slope of the objective along the common movement of a group of connected
-    /// channels.
+    /// Computes the objective's slope along the common movement of connected channels.
     pub(super) fn push(&self, piece: &[usize]) -> Push {
         let slope: f64 = piece
             .iter()
@@ -104,7 +102,7 @@ impl ConstrainedMinimum {
     }
 }
 
-/// Derivatives of the minimum objective.
+/// Derivatives of the minimum objective, see the formulas above.
 pub(super) struct Multipliers {
     /// `lambda_e`, in the order of [`ConstrainedMinimum::constrained`].
     pub(super) entries: Vec<f64>,
@@ -116,8 +114,8 @@ impl Multipliers {
     /// Solves the conditions `dF/dx_c = mu_c + sum lambda_e` for the multipliers.
     ///
     /// The slope that pushes a group of connected channels against a bound is divided equally among
-    /// the channels on that bound. The multipliers of the constrained entries balance the
-    /// remainder; in a loop, where they are not unique, their sum of squares is minimal.
+    /// the channels on that bound. The constrained entries' multipliers balance the remainder; in a
+    /// loop, where they are not unique, their sum of squares is minimal.
     pub(super) fn new(minimum: &ConstrainedMinimum) -> Self {
         let mut channels = vec![0.0; minimum.slopes.len()];
         for piece in minimum.pieces() {
@@ -133,8 +131,7 @@ impl Multipliers {
     }
 }
 
-/// Solves for the multipliers `lambda_e` of the constrained entries, given the multipliers `mu_c`
-/// of the bounds.
+/// Solves for the entries' multipliers `lambda_e`, given the bounds' multipliers `mu_c`.
 fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
     if minimum.constrained.is_empty() {
         return Vec::new();
@@ -152,18 +149,18 @@ fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
             0.0
         }
     });
-    // Tolerance of the singular values: their squares are the Laplacian eigenvalues of a bipartite
-    // graph with n channels: 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean
-    // distance in graphs", 1991). Half of `2 / n`, the lower bound on nonzero singular values,
-    // separates them.
+    // Tolerance for the singular values: their squares are a bipartite graph's Laplacian
+    // eigenvalues; with n channels these are 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter
+    // and mean distance in graphs", 1991). Half of `2 / n`, the lower bound on nonzero singular
+    // values, separates them.
     match ties.svd(true, true).solve(&balanced, 1.0 / channels as f64) {
         Ok(multipliers) => multipliers.iter().copied().collect(),
         Err(_) => Vec::new(),
     }
 }
 
-/// Computes `dF/dx_c`, the slope of the objective in the logarithm of each gain, or in each delay;
-/// inputs first.
+/// Computes `dF/dx_c`, the objective's slope in each gain logarithm, or in each delay; inputs
+/// first.
 fn channel_slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let quantity = problem.quantity;
     let inputs = solution.inputs.len();

@@ -1,10 +1,10 @@
-//! Padé approximants of a delay.
+//! Padé approximants for a delay.
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
 use super::channel_model::ChannelModel;
 
-/// Maximum order of a Padé approximant.
+/// Maximum order for a Padé approximant.
 pub const HIGHEST_PADE_ORDER: usize = 8;
 
 /// Padé approximant `[N/N]` of `e^(-tau s)`: among all rational functions of this order it agrees
@@ -14,7 +14,7 @@ pub const HIGHEST_PADE_ORDER: usize = 8;
 /// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent in Lambert's
 /// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction is realised as
 /// an integrator ladder, a state-space model whose controllability and observability Gramians are
-/// both the identity for any order and delay. The entries of its matrices are therefore similar in
+/// both the identity for any order and delay. Its matrix entries are therefore similar in
 /// magnitude.
 ///
 /// Source: NIST Digital Library of Mathematical Functions, 4.39.1 (Lambert's fraction).
@@ -31,7 +31,7 @@ impl Default for Pade {
 }
 
 impl Pade {
-    /// Returns the approximant of an order from 1 to [`HIGHEST_PADE_ORDER`]; `None` for any other
+    /// Returns the approximant for an order from 1 to [`HIGHEST_PADE_ORDER`]; `None` for any other
     /// order.
     pub fn new(order: usize) -> Option<Self> {
         if (1..=HIGHEST_PADE_ORDER).contains(&order) {
@@ -41,12 +41,12 @@ impl Pade {
         }
     }
 
-    /// Returns the order `N`, which is also the number of states.
+    /// Returns the order `N`, which is also the state count.
     pub fn order(self) -> usize {
         self.order
     }
 
-    /// Creates the state-space model of the approximant for a positive delay \[s\].
+    /// Creates the approximant's state-space model for a positive delay \[s\].
     ///
     /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, the first unit vector
     /// `e_1`, and `S` skew-symmetric with 1 directly above the diagonal and 0 elsewhere above it. Then
@@ -71,16 +71,16 @@ impl Pade {
         }
     }
 
-    /// Returns an entry of `K^-1 = L^(1/2) R^-1 L^(1/2)`.
+    /// Returns an entry in `K^-1 = L^(1/2) R^-1 L^(1/2)`.
     fn scaled_inverse(self, row: usize, column: usize) -> f64 {
         ladder_root(row) * ladder_root(column) * self.ladder_inverse(row, column)
     }
 
-    /// Returns an entry of `R^-1`, which is 1, 0 or -1.
+    /// Returns an entry in `R^-1`, which is 1, 0 or -1.
     ///
     /// `R x = b` has the rows `x_1 + x_2 = b_1`, `x_(k+1) - x_(k-1) = b_k` and `-x_(N-1) = b_N`
-    /// (counted from 1; `x_1 = b_1` for N = 1). Solved from the last row, for `k` with the parity
-    /// of N and then upwards from the first row:
+    /// (counted from 1; `x_1 = b_1` for N = 1). Solved from the last row for `k` of the same parity
+    /// as N, then upwards from the first row:
     ///
     /// ```text
     /// x_(k-1) = -(b_k + b_(k+2) + ... + b_N)
@@ -98,8 +98,7 @@ impl Pade {
         }
     }
 
-    /// Returns whether an index, given counted from 0, has the parity of the order when it is
-    /// counted from 1.
+    /// Returns whether `index + 1`, the index counted from 1, has the same parity as the order.
     fn has_parity_of_order(self, index: usize) -> bool {
         (index + 1) % 2 == self.order % 2
     }
@@ -107,10 +106,10 @@ impl Pade {
     /// Computes the lag missing from the approximant \[rad\] at `angle = omega tau`:
     /// `angle - 2 arg theta_N(j angle / 2)`.
     ///
-    /// The approximant is `theta_N(-z) / theta_N(z)` with the reverse Bessel polynomials
-    /// `theta_n = (2n - 1) theta_(n-1) + z^2 theta_(n-2)`. The ratio `theta_n / theta_(n-1)` lies
-    /// above the real axis, so that the sum of the angles of these ratios is `arg theta_N`,
-    /// continuous without extra turns.
+    /// The approximant is `theta_N(-z) / theta_N(z)` with the reverse Bessel polynomials `theta_n =
+    /// (2n - 1) theta_(n-1) + z^2 theta_(n-2)`. The ratio `theta_n / theta_(n-1)` lies above the
+    /// real axis, so that the ratios' angles add up to `arg theta_N`, continuous without extra
+    /// turns.
     pub fn phase_error(self, angle: f64) -> f64 {
         let z = Complex::new(0.0, 0.5 * angle);
         let mut ratio = 1.0 + z;
@@ -123,7 +122,7 @@ impl Pade {
     }
 }
 
-/// Returns the square root of a diagonal entry of `L = diag(1, 3, 5, ...)`, counted from 0.
+/// Returns the square root of a diagonal entry in `L = diag(1, 3, 5, ...)`, counted from 0.
 fn ladder_root(index: usize) -> f64 {
     ((2 * index + 1) as f64).sqrt()
 }

@@ -17,18 +17,18 @@ const GAINS: RangeInclusive<f64> = 1e-50..=1e50;
 /// a proof.
 const GAIN_BOUNDS: RangeInclusive<f64> = 1e-9..=1e9;
 
-/// Maximum magnitude of a delta delay or bound \[s\]; beyond it, its square overflows.
+/// Maximum delta delay or bound \[s\]; larger values overflow when squared.
 const MOST_DELAY_S: f64 = 1e50;
 
-/// Valid weights of the regularisation.
+/// Valid regularisation weights `alpha`.
 const ALPHAS: RangeInclusive<f64> = 0.0..=1e12;
 
-/// Deviation \[s\] up to which a loop of constrained delays is accepted as consistent: half a unit
-/// of the last displayed digit.
+/// Deviation \[s\] up to which constrained delays in a loop are accepted as consistent: half a unit
+/// in the last displayed digit.
 pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 
-/// Problem for the gains (M8), the delays \[s\] (M9) or the signed delays \[s\] (M15.4) of a
-/// condition's correction.
+/// Problem for the gains (M8), delays \[s\] (M9) or signed delays \[s\] (M15.4) in a condition's
+/// correction.
 ///
 /// ```text
 /// min  sum w_oi (G_oi - k_o k_i)^2 + alpha sum (k_o - 1)^2         k_o k_i = G_oi (constrained)        (eq. 7)
@@ -40,7 +40,7 @@ pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     pub quantity: Quantity,
-    /// Delta gain `G` or delta delay `D` \[s\] of each response, p x m; `None` is ignored in the
+    /// Delta gain `G` or delta delay `D` \[s\] per response, p x m; `None` is ignored in the
     /// objective.
     pub delta: PairTable<Option<f64>>,
     /// Entries whose net value is constrained to equal their delta, p x m.
@@ -49,10 +49,10 @@ pub struct Problem {
     pub fitted: PairTable<bool>,
     /// Bounds on every channel.
     pub bounds: Bounds,
-    /// Weight of the deviations of output gains from 1, of output delays from 0, or of all signed
-    /// delays from 0; `alpha = 0` means the limit `alpha -> 0+`.
+    /// Weight on the deviations from neutral: output gains from 1, output delays from 0, or all
+    /// signed delays from 0; `alpha = 0` means the limit `alpha -> 0+`.
     pub alpha: f64,
-    /// Deviation, in dB or seconds, up to which a loop of constrained entries is accepted as
+    /// Deviation, in dB or seconds, up to which constrained entries in a loop are accepted as
     /// consistent.
     pub agreement: f64,
 }
@@ -65,8 +65,8 @@ pub(crate) struct Entry {
 }
 
 impl Problem {
-    /// Creates the problem of eq. (7) in which every entry is fitted: `alpha = 1`, gains compared
-    /// as ratios, no tolerance for loops.
+    /// Creates the problem in eq. (7) with every entry fitted, `alpha = 1`, gains compared as
+    /// ratios and no tolerance for loops.
     pub fn gains(
         delta: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -85,8 +85,8 @@ impl Problem {
         }
     }
 
-    /// Creates the problem of eq. (11) in which every entry is fitted, with `alpha = 1`; all times
-    /// are in seconds.
+    /// Creates the problem in eq. (11) with every entry fitted and `alpha = 1`; all times are in
+    /// seconds.
     pub fn delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -102,7 +102,7 @@ impl Problem {
         }
     }
 
-    /// Creates the convex program of M15.4 in which every entry is fitted, with `alpha = 1`; all
+    /// Creates the problem for signed delays (M15.4) with every entry fitted and `alpha = 1`; all
     /// times are in seconds.
     pub fn signed_delays(
         delta_s: PairTable<Option<f64>>,
@@ -133,7 +133,7 @@ impl Problem {
         }
     }
 
-    /// Checks that a table has the same shape as the table of deltas.
+    /// Checks that a table has the same shape as `delta`.
     fn check_shape(
         &self,
         table: &'static str,
@@ -237,8 +237,8 @@ impl Problem {
     }
 
     /// Returns the coordinate in which a constrained entry is a sum. Times are divided by the
-    /// longest time of the problem (1 s if every time is 0), so that the values are of order 1;
-    /// this scaling does not change the solution.
+    /// problem's longest time (1 s if every time is 0), so that the values are around 1; this
+    /// scaling does not change the solution.
     pub(crate) fn coordinate(&self) -> Coordinate {
         if self.quantity.is_gain() {
             return Coordinate::Logarithm;
@@ -248,8 +248,8 @@ impl Problem {
             .iter()
             .filter_map(|(_, delay_s)| *delay_s)
             .fold(0.0_f64, |most, delay_s| most.max(delay_s.abs()));
-        // Use the deltas rather than a bound, which may be far above any possible value of a
-        // channel.
+        // Use the deltas rather than a bound, which may be far above any value that a channel can
+        // take.
         let unit_s = if asked_s > 0.0 {
             asked_s
         } else {
@@ -267,7 +267,7 @@ impl Problem {
         let high = coordinate.transform(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
-            // Limit the range: along a path of constrained entries, a channel differs by at most
+            // Limit the range: along a path through constrained entries, channels differ by at most
             // one unit per entry, so that an upper bound beyond this sum is never active.
             Coordinate::Time { .. } => {
                 let most = (self.delta.outputs() + self.delta.inputs()) as f64;

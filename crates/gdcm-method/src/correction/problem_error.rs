@@ -10,7 +10,7 @@ use super::quantity::Quantity;
 /// Reason why gains or delays cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
-    /// A table differs in shape from the table of deltas.
+    /// A table differs in shape from the delta table.
     #[error(
         "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} and {}",
         found.0,
@@ -21,9 +21,9 @@ pub enum ProblemError {
     Shape {
         quantity: Quantity,
         table: &'static str,
-        /// Number of outputs and inputs in the table.
+        /// Outputs and inputs in the table.
         found: (usize, usize),
-        /// Number of outputs and inputs in the table of deltas.
+        /// Outputs and inputs in the delta table.
         expected: (usize, usize),
     },
     /// A constrained entry has no delta.

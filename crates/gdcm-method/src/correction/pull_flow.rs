@@ -1,8 +1,8 @@
-//! The constrained entries that stage 1 could not meet, as a directed graph of pulls between nodes, and
-//! the shortest walks in it.
+//! Constrained entries that stage 1 could not meet, as pulls between the nodes in a directed graph,
+//! and the shortest walks there.
 //!
-//! The nodes and their values `s` are those of [`super::constraints`]. A *pull* requires
-//! `s_to - s_from >= weight`, but stage 1 has reached less.
+//! The nodes and their values `s` are defined in [`super::constraints`]. A *pull* requires `s_to -
+//! s_from >= weight`, but stage 1 has reached less.
 
 use std::collections::VecDeque;
 
@@ -11,7 +11,7 @@ use gdcm_model::dataset::Pair;
 use super::constraints::{Constraints, PairNodes};
 use super::reachable_targets::Reached;
 
-/// Residual relative to `1 + |sum|` up to which it is a rounding error of stage 1.
+/// Residual, relative to `1 + |sum|`, up to which it is a rounding error in stage 1.
 const RESIDUAL_ROUNDING: f64 = 1e-11;
 
 /// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the actual
@@ -56,7 +56,7 @@ impl Pull {
     }
 }
 
-/// The missed entries, as a directed graph of pulls between nodes.
+/// The missed entries, as a directed graph with one edge per pull.
 pub(super) struct Flow {
     pub(super) pulls: Vec<Pull>,
     /// For each node, whether its lower bound balances the pulls.
@@ -69,7 +69,7 @@ impl Flow {
     /// Collects the entries missed at `point`, the result of stage 1.
     pub(super) fn new(constraints: &Constraints, reached: &Reached, point: &[f64]) -> Self {
         let mut pulls = Vec::new();
-        // Sum of the pulls on each node: negative downwards, positive upwards.
+        // Net pull on each node: negative downwards, positive upwards.
         let mut net = vec![0.0; constraints.nodes()];
         for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
             let missing = asked.sum - target.sum;
@@ -106,7 +106,7 @@ impl Flow {
         }
     }
 
-    /// Returns the shortest way along the flow from the end of `pull` back to its start.
+    /// Returns the shortest way along the flow that leads from the end of `pull` back to its start.
     pub(super) fn way_back(&self, pull: &Pull) -> Option<Vec<Pull>> {
         self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from)
     }
@@ -123,7 +123,7 @@ impl Flow {
     }
 
     /// Finds the shortest walk from `start` to a node for which `is_end` holds, by breadth-first
-    /// search. Returns its pulls in the order of the walk; `None` if there is no such walk.
+    /// search. Returns its pulls in order; `None` if there is no such walk.
     fn shortest_walk(
         &self,
         start: usize,
@@ -148,7 +148,7 @@ impl Flow {
     }
 }
 
-/// Direction of a walk relative to the pulls.
+/// Direction in which a walk takes the pulls.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Direction {
     Along,

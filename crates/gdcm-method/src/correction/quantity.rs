@@ -1,5 +1,5 @@
-//! Quantity of the channels (gain, delay or signed delay), its residuals, and the coordinate in
-//! which the net value of a response is a sum:
+//! Channel quantity (gain, delay or signed delay), its residuals, and the coordinate in which a
+//! response's net value is a sum:
 //!
 //! ```text
 //! net value     k_o k_i                       tau_o + tau_i
@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Measure of the deviation of `k_o k_i` from G.
+/// How `k_o k_i` is compared with G.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GainObjective {
     /// `sum w (G - k_o k_i)^2 + alpha sum (k_o - 1)^2`, eq. (7), with the weight `w` 1 for a fitted
@@ -26,7 +26,8 @@ pub enum GainObjective {
     Decibel,
 }
 
-/// Quantity of the channels. The gains of two channels multiply; their delays add.
+/// What a channel's value is. In a response, the gains of input and output multiply; their delays
+/// add.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Gains, dimensionless, compared as given by the objective (eq. (7), M8).
@@ -38,13 +39,13 @@ pub enum Quantity {
     SignedDelay,
 }
 
-/// dB per unit of natural logarithm.
+/// dB per natural logarithm unit.
 const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
 
 /// Seconds per millisecond.
 const SECONDS_PER_MS: f64 = 1e-3;
 
-/// `(20 / ln 10)^2`: squared dB per unit of squared natural logarithm.
+/// `(20 / ln 10)^2`: squared dB per squared natural logarithm unit.
 pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
 
 impl Quantity {
@@ -53,13 +54,12 @@ impl Quantity {
         matches!(self, Self::Gain(_))
     }
 
-    /// Returns the value of a channel without effect: gain 1, delay 0.
+    /// Returns the channel value without effect: gain 1, delay 0.
     pub(crate) fn neutral(self) -> f64 {
         if self.is_gain() { 1.0 } else { 0.0 }
     }
 
-    /// Returns whether the deviations of the inputs are regularised, in addition to those of the
-    /// outputs.
+    /// Returns whether input deviations are regularised in addition to output deviations.
     pub(crate) fn regularises_inputs(self) -> bool {
         self == Quantity::SignedDelay
     }
@@ -78,7 +78,7 @@ impl Quantity {
         }
     }
 
-    /// Computes the value of a channel from the net value and the value of the other channel.
+    /// Computes a channel's value from the net value and the other channel's value.
     pub(crate) fn other_channel(self, net: f64, channel: f64) -> f64 {
         if self.is_gain() {
             net / channel
@@ -87,8 +87,8 @@ impl Quantity {
         }
     }
 
-    /// Computes the residual of an entry with the target `delta` (G or D), whose square is summed
-    /// in the objective: a difference of ratios, dB or seconds.
+    /// Computes an entry's residual against `delta` (G or D), whose square is summed in the
+    /// objective: a difference in ratio, dB or seconds.
     pub(crate) fn residual(self, delta: f64, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,
@@ -97,8 +97,8 @@ impl Quantity {
         }
     }
 
-    /// Computes the derivative of an entry's squared residual with respect to the logarithm of a
-    /// gain, or to a delay; it is the same for the output and the input.
+    /// Computes the derivative of an entry's squared residual with respect to a gain's logarithm,
+    /// or to a delay; it is the same for the output and the input.
     pub(crate) fn squared_residual_slope(self, delta: f64, output: f64, input: f64) -> f64 {
         let net = self.net(output, input);
         match self {
@@ -108,7 +108,7 @@ impl Quantity {
         }
     }
 
-    /// Converts a difference of coordinates to dB or seconds.
+    /// Converts a coordinate difference to dB or seconds.
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
         if self.is_gain() {
             difference * DECIBEL
@@ -117,7 +117,7 @@ impl Quantity {
         }
     }
 
-    /// Converts a slope per unit of natural logarithm to a slope per dB, or a slope per second to a
+    /// Converts a slope per natural logarithm unit to a slope per dB, or a slope per second to a
     /// slope per millisecond.
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
         if self.is_gain() {
@@ -141,9 +141,9 @@ impl fmt::Display for Quantity {
 /// Coordinate in which the net value is the sum over two channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Coordinate {
-    /// Natural logarithm of a gain.
+    /// Natural logarithm (gains).
     Logarithm,
-    /// Delay divided by this time \[s\].
+    /// Delay divided by `unit_s`.
     Time { unit_s: f64 },
 }
 
@@ -164,7 +164,7 @@ impl Coordinate {
         }
     }
 
-    /// Converts an objective in this coordinate to the unit of the gain objective, or to s².
+    /// Converts an objective in this coordinate to the gain objective's unit, or to s².
     pub(crate) fn objective(self, objective: f64) -> f64 {
         match self {
             Coordinate::Logarithm => objective,

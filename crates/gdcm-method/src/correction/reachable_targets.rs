@@ -1,4 +1,4 @@
-//! Stage 1: the feasible sums nearest to the prescribed sums of the constrained entries (M8, M9).
+//! Stage 1: the feasible sums nearest to the constrained entries' prescribed sums (M8, M9).
 //!
 //! ```text
 //! min sum (x_i + y_o - sum_oi)^2     over the constrained entries of infeasible components, subject to the box
@@ -16,7 +16,7 @@ use super::constraints::{ConstrainedSum, Constraints};
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
     /// The constrained entries with their targets, the feasible sums nearest to the prescribed
-    /// sums, in the order of [`Constraints::entries`].
+    /// sums, ordered as [`Constraints::entries`].
     pub(crate) targets: Vec<ConstrainedSum>,
     /// Components for the constrained entries at their targets.
     pub(crate) components: Components,
@@ -27,8 +27,8 @@ pub(crate) struct Reached {
 
 /// Finds the targets.
 ///
-/// Feasible components keep their prescribed sums exactly. `minimise` returns the minimum of a sum
-/// of squares over a box; it is called only if an entry is infeasible.
+/// Feasible components keep their prescribed sums exactly. `minimise` minimises a sum of squares
+/// over a box; it is called only if an entry is infeasible.
 pub(crate) fn reach<E>(
     constraints: &Constraints,
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
@@ -57,8 +57,8 @@ pub(crate) fn reach<E>(
     })
 }
 
-/// Builds the least-squares problem of stage 1 for the infeasible components. Its variables, the
-/// scales of an [`Objective`], are the values of the nodes, followed by the ground.
+/// Builds stage 1's least-squares problem for the infeasible components. Its variables, scales in
+/// [`Objective`], are the node values, followed by the ground.
 fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
     let mut lower = Vec::new();
     let mut upper = Vec::new();

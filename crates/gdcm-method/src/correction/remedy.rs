@@ -13,8 +13,8 @@ use super::problem::Problem;
 use super::quantity::Quantity;
 use super::three_digits::three_digits;
 
-/// Single changes, each of which makes all constrained entries feasible at their delta; empty if
-/// several changes are needed.
+/// Single changes that each make all constrained entries feasible at their delta; empty if several
+/// changes are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remedy {
     /// Constrained quantity: gains, delays \[s\] or signed delays \[s\].
@@ -92,11 +92,11 @@ fn sufficient_releases(
     Ok(sufficient)
 }
 
-/// Sufficient ends of the channels' coordinate range, each for an unchanged other end.
+/// Sufficient ends for the channels' coordinate range, each with the other end unchanged.
 ///
-/// In a component with the scale `s`, the offsets `a` of the inputs and `b` of the outputs, the
-/// coordinates are `a + s` and `-(b + s)` ([`Components`]). Some `s` places all of them in
-/// `low ..= high` if and only if
+/// In a component with the scale `s` and offsets `a` (inputs) and `b` (outputs), the coordinates
+/// are `a + s` and `-(b + s)` ([`Components`]). Some `s` places them all in `low ..= high` if and
+/// only if
 ///
 /// ```text
 /// high - low  >=  max a - min a,  max b - min b          (width)
@@ -112,8 +112,7 @@ struct SufficientRange {
 }
 
 impl SufficientRange {
-    /// Finds both ends; both are `None` if a loop is inconsistent, which no change of the bounds
-    /// resolves.
+    /// Finds both ends; both are `None` if a loop is inconsistent, which no other bounds resolve.
     fn new(constraints: &Constraints) -> Self {
         let components = Components::new(constraints);
         for entry in &constraints.entries {
@@ -140,7 +139,7 @@ impl SufficientRange {
             lowest = lowest.min(0.5 * (inputs.low - outputs.high));
             highest = highest.max(0.5 * (inputs.high - outputs.low));
         }
-        // A change of one end is sufficient only if the pairs do not require the other end to move.
+        // Changing one end is sufficient only if the pairs do not require the other end to move.
         let Interval { low, high } = constraints.range;
         let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
         let mut sufficient = Self::default();
@@ -154,8 +153,7 @@ impl SufficientRange {
     }
 }
 
-/// Returns the range of offsets over the nodes of a component; `None` if none of the nodes belongs
-/// to it.
+/// Returns the offset range over a component's nodes; `None` if no node belongs to it.
 fn offset_range(nodes: &[Placement], component: usize) -> Option<Interval> {
     let mut range: Option<Interval> = None;
     for node in nodes {

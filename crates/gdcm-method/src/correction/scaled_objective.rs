@@ -1,4 +1,4 @@
-//! Objective of a problem as a function of the scales that its constrained entries leave free (M8,
+//! A problem's objective as a function of the scales that its constrained entries leave free (M8,
 //! proof).
 //!
 //! ```text
@@ -6,9 +6,9 @@
 //! coordinate of net = offset + s_input - s_output
 //! ```
 //!
-//! `s_input` and `s_output` are the scales of the components ([`super::components`]) of the entry's
-//! input and output. The deviation of a channel from neutral is an entry too; its other scale is a
-//! last scale that is always 0, the *ground*.
+//! `s_input` and `s_output` are the scales of the components ([`super::components`]) that contain
+//! the entry's input and output. A channel's deviation from neutral is an entry too; its other
+//! scale is the *ground*, a last scale that is always 0.
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
 use super::branch_and_bound::objective::Objective;
@@ -19,8 +19,7 @@ use super::components::Components;
 use super::problem::{Entry, Problem};
 use super::quantity::{Coordinate, GainObjective, Quantity, SQUARED_DECIBEL};
 
-/// Builds the objective of `problem` over the scales of `components`, in the coordinate of the
-/// problem.
+/// Builds the objective of `problem` over the scales of `components`, in the problem's coordinate.
 pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Objective {
     let mut entries = fit_entries(problem, components);
     if problem.alpha > 0.0 {
@@ -51,7 +50,7 @@ pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Ob
     }
 }
 
-/// Lists the fitted entries, each with the scales of its two components.
+/// Lists the fitted entries, each with its two components' scales.
 fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let nodes = components.nodes();
     let mut entries = Vec::new();
@@ -71,8 +70,8 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Lists the regularised deviations of the channels from their neutral value, each as an entry
-/// whose other scale is the ground.
+/// Lists the channels' regularised deviations from neutral, each as an entry whose other scale is
+/// the ground.
 fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let ground = components.count();
     let delta = problem.quantity.neutral();
@@ -114,8 +113,8 @@ fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -
 }
 
 /// Combines entries compared as ratios into one term for each pair of scales that share an entry, a
-/// function of `u = s_to - s_from` with `from < to`. Its `forward` part contains the entries with
-/// the input in `to`, its `backward` part those with the input in `from`.
+/// function of `u = s_to - s_from` with `from < to`. Its `forward` part contains the entries whose
+/// input is in component `to`, its `backward` part those whose input is in `from`.
 fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     // The entries with these output and input scales are at `output * scales + input`.
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
@@ -148,11 +147,10 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     TermSum { terms, constant }
 }
 
-/// Returns the rounding level of the objective, in the coordinate of the problem.
+/// Returns the objective's rounding level, in the problem's coordinate.
 ///
 /// It is 1e-9 times the objective without correction (rounding in a sum of squares is proportional
-/// to the magnitude of the summed values), plus `1e-20 alpha` for each output, the square of a
-/// rounding error.
+/// to the summed values), plus `1e-20 alpha` per output, the square of a rounding error.
 pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
     let energy: f64 = problem
@@ -162,7 +160,7 @@ pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     (1e-9 * energy + 1e-20 * problem.alpha * problem.delta.outputs() as f64).max(f64::MIN_POSITIVE)
 }
 
-/// Returns the squared residual of an entry without correction.
+/// Returns an entry's squared residual without correction.
 fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) -> f64 {
     match quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,

@@ -1,4 +1,4 @@
-//! Cost of each constrained entry and each active bound at the solution, from its multiplier.
+//! What each constrained entry and each active bound costs at the solution, from its multiplier.
 //!
 //! The multipliers and the conditions that they satisfy are defined in `multipliers`.
 
@@ -20,13 +20,13 @@ pub enum ActiveConstraint {
     UpperBound(Channel),
 }
 
-/// Sensitivity of the minimum objective to an active constraint, from its multiplier.
+/// The minimum objective's sensitivity to an active constraint, from its multiplier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
     pub quantity: Quantity,
     pub constraint: ActiveConstraint,
-    /// Change of the minimum objective per dB or ms by which the constrained value or the bound is
-    /// raised (to first order).
+    /// Change in the minimum objective if the constrained value or the bound is raised, per dB or
+    /// ms (to first order).
     pub per_unit: f64,
     /// `per_unit` divided by the objective; 0 if the objective is 0.
     pub share_per_unit: f64,
@@ -38,7 +38,7 @@ impl Sensitivity {
     /// below zero.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
-        /// Maximum number of powers of ten: the minimum step is a nanosecond, or 1e-6 dB.
+        /// Maximum count of divisions by ten: the minimum step is a nanosecond, or 1e-6 dB.
         const MOST_POWERS: i32 = 6;
         let share = self.share_per_unit.abs();
         for power in 0..MOST_POWERS {
@@ -51,10 +51,10 @@ impl Sensitivity {
     }
 }
 
-/// Computes the sensitivity to every constrained entry and every active bound, in descending order
-/// of magnitude.
+/// Computes the sensitivity to every constrained entry and every active bound, largest magnitude
+/// first.
 ///
-/// `solution` is the solution of `problem` by [`super::solve`].
+/// `solution` is [`super::solve`]'s result for `problem`.
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let multipliers = Multipliers::new(&minimum);
@@ -101,12 +101,12 @@ fn sensitivity(
     }
 }
 
-/// Computes the Karush-Kuhn-Tucker residual of a solution: the maximum slope of the objective along
-/// a direction in which channels could still move within the bounds and with the entries
-/// constrained. For a convex problem, a residual of zero proves the minimum.
+/// Computes a solution's Karush-Kuhn-Tucker residual: the objective's maximum slope along a
+/// direction in which channels could still move within the bounds and with the entries constrained.
+/// For a convex problem, a residual of zero proves the minimum.
 ///
-/// The unit is that of the objective per channel unit; for delays, s² / s. `solution` is the
-/// solution of `problem` by [`super::solve`].
+/// The unit is the objective's unit per channel unit; for delays, s² / s. `solution` is
+/// [`super::solve`]'s result for `problem`.
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let mut residual = 0.0_f64;

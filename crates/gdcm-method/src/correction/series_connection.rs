@@ -1,5 +1,5 @@
-//! Series connection of a model with the delays or lead filters of its channels, by state-space
-//! matrices (M10).
+//! Connects a model in series with its channels' delays or lead filters, by state-space matrices
+//! (M10).
 //!
 //! ```text
 //! first system (A1, B1, C1, D1), its outputs drive the second (A2, B2, C2, D2):
@@ -24,7 +24,7 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// Returns the matrices of the model with the gains of the channels, without delays.
+    /// Returns the model's matrices with the channel gains, without delays.
     pub(super) fn with_gains(model: &StateSpace, correction: &ChannelCorrection) -> Self {
         let mut blocks = Self {
             a: model.a().clone(),
@@ -43,7 +43,7 @@ impl Blocks {
         blocks
     }
 
-    /// Combines the models of parallel channels into a block-diagonal system.
+    /// Combines parallel channels into a block-diagonal system.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
         let states = channels.iter().map(ChannelModel::order).sum();
         let count = channels.len();
@@ -81,8 +81,8 @@ impl Blocks {
             .then(&Self::block_diagonal(&channels.outputs))
     }
 
-    /// Connects two systems in series: the outputs of this system drive `next`. The states of this
-    /// system come first.
+    /// Connects two systems in series: this system's outputs drive `next`. This system's states
+    /// come first.
     fn then(&self, next: &Self) -> Self {
         let first = self.a.nrows();
         let second = next.a.nrows();

@@ -1,4 +1,4 @@
-//! Solution of a problem: the channel values, the proof that they are optimal, and the constrained
+//! A problem's solution: the channel values, the proof that they are optimal, and the constrained
 //! entries whose delta is infeasible.
 
 use gdcm_model::dataset::{Pair, PairTable};
@@ -44,7 +44,7 @@ impl Outcome {
     }
 }
 
-/// Channel values at a local minimum of the objective.
+/// Channel values at a local minimum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalMinimum {
     pub inputs: Vec<f64>,
@@ -53,7 +53,7 @@ pub struct LocalMinimum {
     pub objective: f64,
 }
 
-/// Result of the search for a proof that the objective is minimal.
+/// Result from the search for a proof that the objective is minimal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
     /// Lower bound on the objective over all channel values that are within the bounds and meet the
@@ -63,14 +63,13 @@ pub struct Proof {
     /// if the objective is smaller, because rounding errors then dominate.
     pub outcome: Outcome,
     pub nodes: usize,
-    /// Distinct local minima within 1 % of the objective, best first; the first is the solution.
+    /// Distinct local minima within 1 % above the objective, best first; the first is the solution.
     pub local_minima: Vec<LocalMinimum>,
     /// Whether the search has excluded any further local minimum within 1 %.
     pub all_minima: bool,
 }
 
-/// A constrained entry whose delta is infeasible because of the bounds or the other constrained
-/// entries.
+/// A constrained entry whose delta the bounds or the other constrained entries make infeasible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unmatched {
     /// Constrained quantity: gains, delays \[s\] or signed delays \[s\].
@@ -78,9 +77,9 @@ pub struct Unmatched {
     pub pair: Pair,
     /// Delta gain `G` or delta delay `D` \[s\]; a negative `D` requires phase lead.
     pub delta: f64,
-    /// Product of gains, or sum of delays \[s\], to which the entry is constrained instead.
+    /// Gain product, or delay sum \[s\], to which the entry is constrained instead.
     pub target: f64,
-    /// Excess of the target over the delta. For gains it is `20 log10 (target / delta)` dB,
+    /// How much the target exceeds the delta. For gains it is `20 log10 (target / delta)` dB,
     /// negative if the correction is too weak; for delays it is `target - delta` in seconds, the
     /// additional lead that would be needed.
     pub excess: f64,
@@ -90,8 +89,8 @@ pub struct Unmatched {
 }
 
 impl Unmatched {
-    /// Computes the phase error \[deg\] that remains at `omega` \[rad/s\] because of an infeasible
-    /// delay: reference minus corrected model.
+    /// Computes the phase error \[deg\] that an infeasible delay leaves at `omega` \[rad/s\]:
+    /// reference minus corrected model.
     pub fn phase_left_deg(&self, omega: f64) -> f64 {
         (self.delta - self.target).to_degrees() * -omega
     }
@@ -102,9 +101,9 @@ impl Unmatched {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     pub quantity: Quantity,
-    /// Values of the m input channels.
+    /// Input channel values, m of them.
     pub inputs: Vec<f64>,
-    /// Values of the p output channels.
+    /// Output channel values, p of them.
     pub outputs: Vec<f64>,
     /// Minimum objective: in squared ratios, squared dB or s².
     pub objective: f64,
@@ -112,17 +111,17 @@ pub struct Solution {
     /// Product or sum to which each entry is constrained, p x m: its delta, if that is feasible (M8
     /// and M9, stage 1). `None` if the entry is not constrained.
     pub targets: PairTable<Option<f64>>,
-    /// Whether every constrained entry meets its delta. The tolerance is 1e-8 in the logarithm of a
-    /// gain, and 1e-8 times the problem's longest delay (at least a nanosecond) for a delay; in a
-    /// loop it is [`Problem::agreement`](super::problem::Problem::agreement).
+    /// Whether every constrained entry meets its delta. The tolerance is 1e-8 in a gain's
+    /// logarithm, and 1e-8 times the problem's longest delay (at least a nanosecond) for a delay;
+    /// in a loop it is [`Problem::agreement`](super::problem::Problem::agreement).
     pub matched: bool,
     /// Constrained entries that do not meet their delta.
     pub unmatched: Vec<Unmatched>,
     /// Loops whose deviation is within the tolerance; their entries are constrained to the nearest
     /// consistent values.
     pub agreeing: Vec<Conflict>,
-    /// Infeasible sets of constrained entries and bounds, without duplicates; loops first, then by
-    /// number of entries.
+    /// Conflicts between constrained entries and bounds, without duplicates; loops first, then by
+    /// entry count.
     pub conflicts: Vec<Conflict>,
     /// Single changes that would make every constrained entry feasible; `None` if every entry is
     /// feasible.
@@ -130,7 +129,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Returns the gain, delay \[s\] or signed delay \[s\] of every channel.
+    /// Returns every channel's gain, delay \[s\] or signed delay \[s\].
     pub fn channels(&self) -> Channels<f64> {
         Channels {
             inputs: self.inputs.clone(),

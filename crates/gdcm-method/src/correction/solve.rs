@@ -31,9 +31,9 @@ use super::solution::{LocalMinimum, Outcome, Proof, Solution};
 /// 5  for each infeasible delta of stage 1: its conflict, and the single changes that would resolve all conflicts
 /// ```
 ///
-/// Entries that are infeasible because of the bounds or of their own loops are constrained to the
-/// nearest feasible products or sums (least squares in logarithms, or in seconds), and listed in
-/// the solution.
+/// Entries that the bounds or their own loops make infeasible are constrained to the nearest
+/// feasible products or sums (least squares in logarithms, or in seconds), and listed in the
+/// solution.
 ///
 /// ```
 /// use gdcm_method::correction::solve::solve;
@@ -111,8 +111,8 @@ pub fn solve(
     })
 }
 
-/// Returns the start of Newton's method. For delays it is so close to the minimum that Newton's
-/// method converges to it exactly, with the correct active bounds.
+/// Returns a starting point for Newton's method. For delays it is so close to the minimum that
+/// Newton's method converges to the minimum exactly, with the correct active bounds.
 fn newton_start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
     if quantity.is_gain() {
         Ok(objective.nearest_to_zero())
@@ -157,7 +157,7 @@ fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     let coordinate = problem.coordinate();
     let low = coordinate.transform(bounds.lower);
     let high = coordinate.transform(bounds.upper);
-    // Tolerance: a few roundings at the magnitude of the range.
+    // Tolerance: a few roundings at the range's magnitude.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let mut values = Vec::with_capacity(coordinates.len());
     for &at in coordinates {
@@ -172,7 +172,7 @@ fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Converts the result of the search to gains or delays.
+/// Converts the search's result to gains or delays.
 fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let local_minima: Vec<LocalMinimum> = found
         .minima

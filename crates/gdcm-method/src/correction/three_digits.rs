@@ -1,4 +1,4 @@
-//! Rounding of suggested bounds to three digits.
+//! Rounds suggested bounds to three digits.
 
 /// Rounds `value` to three significant digits with `round` (`f64::ceil` or `f64::floor`). A value
 /// that already has three digits, apart from rounding errors, is not changed.
@@ -8,7 +8,7 @@ pub(super) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     }
     // `value` is `digits 10^exponent` with `digits` from 100 to 999.
     let exponent = value.abs().log10().floor() as i32 - 2;
-    // Divide instead of multiplying by a negative power: 187 / 100 is 1.87 exactly.
+    // Divide, do not multiply by a negative power: 187 / 100 is 1.87 exactly.
     let digits = if exponent < 0 {
         value * 10f64.powi(-exponent)
     } else {

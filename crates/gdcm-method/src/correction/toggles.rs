@@ -1,5 +1,5 @@
-//! Change of the objective if a single entry is toggled: constrained if it is free, released if it
-//! is constrained. The problem is solved again for each entry.
+//! How the objective changes if a single entry is toggled: constrained if it is free, released if
+//! it is constrained. The problem is solved again for each entry.
 
 use gdcm_model::dataset::Pair;
 
@@ -19,7 +19,7 @@ pub struct Toggle {
     pub before: f64,
     /// Minimum objective after the toggle.
     pub after: f64,
-    /// Number of infeasible constrained entries after the toggle.
+    /// Count of infeasible constrained entries after the toggle.
     pub unmatched_after: usize,
     /// Whether the toggled entry itself is feasible, if it is now constrained.
     pub matched_after: bool,
@@ -28,7 +28,7 @@ pub struct Toggle {
 }
 
 impl Toggle {
-    /// Returns the change of the objective as a share of its value before the toggle; infinite if
+    /// Returns the change in the objective relative to its value before the toggle; infinite if
     /// that value is 0 and the objective changes.
     pub fn share(&self) -> f64 {
         let change = self.after - self.before;
@@ -44,7 +44,7 @@ impl Toggle {
 /// returns true.
 ///
 /// This is meant to run in the background while `solution` is displayed. If it is stopped, the list
-/// is shorter than the number of entries.
+/// does not contain every entry.
 ///
 /// # Errors
 /// [`ProblemError`], as in [`solve`].

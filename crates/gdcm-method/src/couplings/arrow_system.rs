@@ -1,8 +1,8 @@
-//! Solution of normal equations with an arrow matrix (M16.2).
+//! Solves normal equations with an arrow matrix (M16.2).
 //!
-//! An `M_ji` has a column only in the equations of input i, a `K_jo` in the equations of every
-//! input. The normal matrix therefore has a block for each input, and a border for K. The
-//! contributions to K are summed over the inputs before the substitution:
+//! An `M_ji` appears only in the equations for input i, a `K_jo` in the equations for every input.
+//! The normal matrix therefore has a block for each input, and a border for K. The contributions to
+//! K are summed over the inputs before the substitution:
 //!
 //! ```text
 //! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]        1  A_i = L_i L_i^T,  W_i = L_i^-1 B_i,  y_i = L_i^-1 b_i  for every input i
@@ -25,7 +25,7 @@ pub(super) struct ArrowSystem {
     pub(super) right: DVector<f64>,
 }
 
-/// Block row for the unknowns of M in one input column.
+/// Block row for M's unknowns in one input column.
 pub(super) struct ArrowColumn {
     /// Diagonal block `A_i`.
     pub(super) block: DMatrix<f64>,
@@ -35,11 +35,11 @@ pub(super) struct ArrowColumn {
     pub(super) right: DVector<f64>,
 }
 
-/// Solution of the normal equations.
+/// The values that solve the normal equations.
 pub(super) struct ArrowSolution {
-    /// Unknowns of M, for each input column.
+    /// Unknowns in M, per input column.
     pub(super) mixing: Vec<DVector<f64>>,
-    /// Unknowns of K.
+    /// Unknowns in K.
     pub(super) feedback: DVector<f64>,
 }
 
@@ -79,7 +79,7 @@ impl ArrowSystem {
         Some(ArrowSolution { mixing, feedback })
     }
 
-    /// Returns the maximum residual divided by the maximum entry of the right-hand side.
+    /// Returns the maximum residual divided by the right-hand side's maximum entry.
     pub(super) fn residual(&self, solution: &ArrowSolution) -> f64 {
         let mut largest_residual = 0.0_f64;
         let mut largest_right = self.right.amax();
@@ -108,7 +108,7 @@ impl EliminatedColumn {
         })
     }
 
-    /// Solves for the unknowns of M in this column, given the unknowns of K (step 3).
+    /// Solves for M's unknowns in this column, given those in K (step 3).
     fn substitute(&self, feedback: &DVector<f64>) -> Option<DVector<f64>> {
         let right = &self.right - &self.border * feedback;
         self.factors.l_dirty().tr_solve_lower_triangular(&right)

@@ -1,4 +1,4 @@
-//! Closing of the output-to-input loop around a response, frequency by frequency (M16.3).
+//! Closes the output-to-input loop around a response, frequency by frequency (M16.3).
 //!
 //! ```text
 //! F = (I - H K)^-1 H = H (I - K H)^-1: the m x m inverse is used, H p x m, K m x p
@@ -99,7 +99,7 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Returns the column, from `at` on, whose entry in row `at` has the maximum modulus; the last
-    /// of equal entries.
+    /// one if several are equal.
     fn pivot(&self, at: usize) -> usize {
         let inputs = self.feedback.nrows();
         let mut pivot = at;
@@ -136,7 +136,7 @@ impl<'a> ClosedLoop<'a> {
     }
 }
 
-/// Subtraction of `factor` times column `subtracted` from column `from`.
+/// A step that subtracts `factor` times column `subtracted` from column `from`.
 struct ColumnStep {
     from: usize,
     subtracted: usize,

@@ -1,19 +1,19 @@
-//! A condition's contribution to the normal equations `G theta = b` of a pass, assembled from small
-//! blocks; rows of the design matrix are not stored (M16.2).
+//! A condition's contribution to the normal equations `G theta = b` in a pass, assembled from small
+//! blocks; the design matrix's rows are not stored (M16.2).
 //!
-//! The pass minimises, over the entries `theta` of the mixing `M` (m x m) and the feedback `K`
-//! (m x p),
+//! The pass minimises, over the entries `theta` in the mixing `M` (m x m) and the feedback `K` (m x
+//! p),
 //!
 //! ```text
 //! sum q^2 |S R' - F M - F K R'|^2,    S = (I - H K_0)^-1,    F = S H
 //! ```
 //!
 //! over conditions, frequencies and responses. `H` is the physics response and `R'` the flight
-//! response without its channels' delays and leads, both p x m; `K_0` and `M_0` are the couplings of
-//! the previous pass; `q` is the weight of a response (`weighted_condition`).
+//! response without its channels' delays and leads, both p x m; `K_0` and `M_0` are the couplings
+//! from the previous pass; `q` is a response's weight (`weighted_condition`).
 //!
 //! In input column i, the unknowns `M_ji` and `K_jo` multiply the column `F[:,j]` times 1 and times
-//! `R'_oi`. With these factors as `t`, the entries of `G` and `b` are sums over the frequencies:
+//! `R'_oi`. With these factors as `t`, the entries in `G` and `b` are sums over the frequencies:
 //!
 //! ```text
 //! for each frequency:
@@ -25,9 +25,9 @@
 //! 5     G[(a, j), (b, l)] += Re conj(t_a) t_b P_jl,   P = F^H q^2 F, m x m;   b[(a, j)] += Re conj(t_a) z_j
 //! ```
 //!
-//! The index pair `(a, j)` stands for the unknown with the column `t_a F[:,j]`: `M_ji` for a = 0,
-//! and `K_jo` for a > 0, where o is the a-th fed-back output. The airspeed, on which `M_ii` depends,
-//! is the same at all frequencies of a condition; its powers are applied in `normal_equations`.
+//! The index pair `(a, j)` means the unknown with the column `t_a F[:,j]`: `M_ji` for a = 0, and
+//! `K_jo` for a > 0, where o is the a-th fed-back output. The airspeed, on which `M_ii` depends, is
+//! the same at all frequencies in a condition; its powers are applied in `normal_equations`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -41,25 +41,25 @@ use super::weighted_condition::WeightedCondition;
 
 /// A condition's contribution to the normal equations.
 pub(super) struct ConditionBlocks {
-    /// Blocks that involve unknowns of M, for each input column.
+    /// Blocks that involve unknowns in M, per input column.
     pub(super) columns: Vec<ColumnBlocks>,
-    /// Entries of `G` for two unknowns of K, summed over the input columns.
+    /// Entries in `G` for two unknowns in K, summed over the input columns.
     pub(super) feedback: PairProducts,
-    /// Entries of `b` for the unknowns of K: one row per fed-back output, one column per input.
+    /// Entries in `b` for the unknowns in K: one row per fed-back output, one column per input.
     pub(super) right: DMatrix<f64>,
 }
 
-/// Entries of `G` and `b` for the unknowns of M in one input column.
+/// Entries in `G` and `b` for M's unknowns in one input column.
 #[derive(Clone)]
 pub(super) struct ColumnBlocks {
     /// One row for each product `t_0 t_b`, where `t_0 = 1`.
     products: PairProducts,
-    /// Entries of `b`, one for each input j.
+    /// Entries in `b`, one for each input j.
     pub(super) right: DVector<f64>,
 }
 
 impl ConditionBlocks {
-    /// Computes the blocks of a condition for the couplings `last` of the previous pass; `fed_back`
+    /// Computes a condition's blocks, given the couplings `last` from the previous pass; `fed_back`
     /// lists the outputs with a column in `K`.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl ConditionBlocks {
         let mut terms = ColumnTerms::zeros(inputs, outputs, factors);
         let mut chunk = ProductChunk::new(inputs, factors);
         let mut closed_loop = ClosedLoop::new(last.feedback);
-        // Indices of the frequencies at which a response has a weight.
+        // Indices of the frequencies at which any response has a weight.
         let counting: Vec<usize> = (0..condition.omega.len())
             .filter(|&k| condition.has_weight_at(k))
             .collect();
@@ -104,7 +104,7 @@ impl ConditionBlocks {
                         blocks.add_right(&terms, input);
                     }
                 }
-                // Step 5, for all frequencies of the chunk at once.
+                // Step 5, for all frequencies in the chunk at once.
                 blocks.columns[input].products.add_pairs_with_first(&chunk);
                 blocks.feedback.add_pairs_without_first(&chunk);
             }
@@ -124,7 +124,7 @@ impl ConditionBlocks {
         }
     }
 
-    /// Adds `Re conj(t_a) z_j` of an input column at one frequency (step 5); `t_0` is 1.
+    /// Adds `Re conj(t_a) z_j` for an input column at one frequency (step 5); `t_0` is 1.
     fn add_right(&mut self, terms: &ColumnTerms, input: usize) {
         for (j, z) in terms.projection.iter().enumerate() {
             self.columns[input].right[j] += z.re;
@@ -134,7 +134,7 @@ impl ConditionBlocks {
         }
     }
 
-    /// Returns the memory needed for the blocks of a condition \[bytes\].
+    /// Returns the memory needed for a condition's blocks \[bytes\].
     pub(super) fn bytes(inputs: usize, fed_back: usize) -> usize {
         let rows = inputs * (fed_back + 1) + pair_count(fed_back);
         2 * std::mem::size_of::<f64>() * rows * pair_count(inputs)
@@ -142,19 +142,19 @@ impl ConditionBlocks {
 }
 
 impl ColumnBlocks {
-    /// Returns the entry of `G` for `M_ji` and `M_li`, without powers of the airspeed.
+    /// Returns the entry in `G` for `M_ji` and `M_li`, without airspeed powers.
     pub(super) fn mixing_entry(&self, j: usize, l: usize) -> f64 {
         self.products.entry(0, j, l)
     }
 
-    /// Returns the entry of `G` for `M_ji` and `K_lo`, without powers of the airspeed; `fed_back` is
-    /// the index of o among the fed-back outputs.
+    /// Returns the entry in `G` for `M_ji` and `K_lo`, without airspeed powers; `fed_back` is o's
+    /// index among the fed-back outputs.
     pub(super) fn mixing_feedback_entry(&self, j: usize, l: usize, fed_back: usize) -> f64 {
         self.products.entry(fed_back + 1, j, l)
     }
 }
 
-/// The couplings of the previous pass, evaluated at a condition.
+/// The couplings from the previous pass, evaluated at a condition.
 struct LastPass<'a> {
     /// Mixing `M_0` at the condition's airspeed, m x m.
     mixing: DMatrix<f64>,
@@ -166,7 +166,7 @@ struct LastPass<'a> {
 
 /// Closed-loop response `F = S H` at one frequency, in both storage orders.
 struct ClosedResponse {
-    /// Index of the frequency in the condition.
+    /// The frequency's index in the condition.
     k: usize,
     /// `F`, column by column.
     columns: Vec<Complex<f64>>,
@@ -193,15 +193,15 @@ impl ClosedResponse {
     }
 }
 
-/// Terms of an input column at one frequency; the memory is reused.
+/// Terms for an input column at one frequency; the memory is reused.
 struct ColumnTerms {
-    /// Input column of `F M_0`, p values.
+    /// Input column in `F M_0`, p values.
     coupled: Vec<Complex<f64>>,
     /// `q^2` for each output.
     squared_weights: Vec<f64>,
-    /// `t`: 1, then the flight response of each fed-back output.
+    /// `t`: 1, then each fed-back output's flight response.
     factors: Vec<Complex<f64>>,
-    /// Input column of `S R'`, p values.
+    /// Input column in `S R'`, p values.
     target: Vec<Complex<f64>>,
     /// `z = F^H q^2 (S R')[:,i]`, m values.
     projection: Vec<Complex<f64>>,
@@ -219,8 +219,8 @@ impl ColumnTerms {
         }
     }
 
-    /// Computes the terms of column `input` (steps 2 to 4). Returns `false`, without valid terms, if
-    /// every weight is zero.
+    /// Computes the terms for column `input` (steps 2 to 4). Returns `false`, without valid terms,
+    /// if every weight is zero.
     fn set(
         &mut self,
         condition: &WeightedCondition<'_>,
@@ -264,7 +264,7 @@ fn set_coupled(
     }
 }
 
-/// Sets `t` to 1 and the flight responses of the fed-back outputs (step 3).
+/// Sets `t` to 1 and the fed-back outputs' flight responses (step 3).
 fn set_factors(t: &mut [Complex<f64>], flight: &[Complex<f64>], fed_back: &[usize]) {
     t[0] = Complex::new(1.0, 0.0);
     for (t, &output) in t[1..].iter_mut().zip(fed_back) {

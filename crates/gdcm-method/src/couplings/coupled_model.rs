@@ -14,7 +14,7 @@ use crate::correction::{ChannelCorrection, Pade};
 /// rejected.
 const WORST_CONDITION: f64 = 1e6;
 
-/// Reasons why mixing and feedback cannot be applied to the matrices of a model.
+/// Reasons why mixing and feedback cannot be applied to a model's matrices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CoupledModelError {
     /// The algebraic loop through the feed-through is singular or nearly so.
@@ -27,20 +27,20 @@ pub enum CoupledModelError {
         /// Condition number of `I - D K`; infinite if singular.
         condition_number: f64,
     },
-    /// The model and the couplings have different numbers of channels.
+    /// The model and the couplings have different channel counts.
     #[error(
         "the model has {} outputs and {} inputs, but the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
     )]
     Channels {
-        /// Number of outputs and inputs of the model.
+        /// The model's outputs and inputs.
         found: [usize; 2],
-        /// Number of outputs and inputs of the couplings.
+        /// The couplings' outputs and inputs.
         expected: [usize; 2],
     },
     /// The channel delays, which lie inside the loop, cannot be converted to states.
     #[error(transparent)]
     Delays(#[from] CorrectedModelError),
-    /// A matrix of the coupled model is not finite.
+    /// A matrix in the coupled model is not finite.
     #[error(transparent)]
     Matrices(#[from] StateSpaceError),
 }
@@ -69,8 +69,8 @@ impl CouplingMatrices {
     /// ```
     ///
     /// # Errors
-    /// [`CoupledModelError`] if the condition number of `I - D K` exceeds 1e6, the numbers of
-    /// channels differ, the delays cannot be converted to states, or a matrix is not finite.
+    /// [`CoupledModelError`] if the condition number of `I - D K` exceeds 1e6, the channel counts
+    /// differ, the delays cannot be converted to states, or a matrix is not finite.
     pub fn model(
         &self,
         physics: &StateSpace,

@@ -15,7 +15,7 @@ use crate::schedule::{Airspeeds, Regression};
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingMatrices {
     airspeeds: Airspeeds,
-    /// Entries of `M`, row by row: polynomials in the scaled airspeed.
+    /// `M`, row by row: polynomials in the scaled airspeed.
     mixing: Vec<Regression>,
     feedback: DMatrix<f64>,
 }
@@ -38,9 +38,9 @@ impl CouplingMatrices {
         }
     }
 
-    /// Returns a copy with new values of the unknowns. For each entry of `M`, the unknowns list the
-    /// powers of the airspeed in ascending order from 0. Entries that are not among the unknowns
-    /// are 0.
+    /// Returns a copy with new values for the unknowns. For each entry in `M`, the unknowns list
+    /// the airspeed powers in ascending order from 0. Entries that are not among the unknowns are
+    /// 0.
     #[must_use]
     pub fn with(&self, unknowns: &[Unknown], values: &[f64]) -> Self {
         let (inputs, outputs) = self.feedback.shape();
@@ -62,7 +62,7 @@ impl CouplingMatrices {
         }
     }
 
-    /// Checks that the mixing preserves the sign of every input at the airspeeds of the conditions.
+    /// Checks that the mixing preserves every input's sign at the conditions' airspeeds.
     ///
     /// # Errors
     /// [`CouplingError::ReversedInput`] for the first input whose sign is reversed.
@@ -82,7 +82,7 @@ impl CouplingMatrices {
         Ok(())
     }
 
-    /// Returns the airspeeds of the conditions used in the fit.
+    /// Returns the airspeeds of the fitted conditions.
     pub fn airspeeds(&self) -> &Airspeeds {
         &self.airspeeds
     }
@@ -93,7 +93,7 @@ impl CouplingMatrices {
         &self.mixing[to * self.feedback.nrows() + from]
     }
 
-    /// Returns `M(V)`, m x m, `[to, from]`; constant outside the airspeed range of the conditions.
+    /// Returns `M(V)`, m x m, `[to, from]`; constant outside the conditions' airspeed range.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let inputs = self.feedback.nrows();
         DMatrix::from_fn(inputs, inputs, |to, from| {
@@ -101,8 +101,8 @@ impl CouplingMatrices {
         })
     }
 
-    /// Returns `M~(V) = M(V) diag(M(V))^-1`, m x m. Its diagonal entries are 1, because the gain of
-    /// each input is part of the channel correction.
+    /// Returns `M~(V) = M(V) diag(M(V))^-1`, m x m. Its diagonal entries are 1, because each
+    /// input's gain belongs to the channel correction.
     pub fn normalised_mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let mixing = self.mixing(airspeed_kt);
         DMatrix::from_fn(mixing.nrows(), mixing.ncols(), |to, from| {
@@ -122,8 +122,7 @@ impl CouplingMatrices {
     /// Computes `H~ = (I - H K)^-1 H M~(V)` at every frequency, p x m.
     ///
     /// Not finite if `I - H K` is singular, or if `H` lacks a fed-back response. If `H` lacks a
-    /// response of an output that is not fed back, only the responses of this output are not
-    /// finite.
+    /// response in an output that is not fed back, only this output's responses are not finite.
     #[must_use]
     pub fn response(&self, physics: &FrequencyResponse, airspeed_kt: f64) -> FrequencyResponse {
         let inputs = physics.inputs();

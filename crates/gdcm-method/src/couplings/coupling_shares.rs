@@ -1,4 +1,4 @@
-//! Entries of mixing and feedback in pilot units: percent of stick, degrees of swashplate phase
+//! Mixing and feedback entries in a pilot's units: percent of stick, degrees of swashplate phase
 //! (M16.4).
 //!
 //! ```text
@@ -15,16 +15,16 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 use super::coupling_matrices::CouplingMatrices;
 use super::problem::CouplingProblem;
 
-/// Peak share of the stick that is used by an entry of `K`.
+/// Peak share of the stick used by an entry in `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeedbackShare {
-    /// Index of the input that receives the feedback.
+    /// Input that receives the feedback.
     pub input: usize,
-    /// Index of the output that is fed back.
+    /// Output that is fed back.
     pub output: usize,
     /// `K_input,output`, in input units per output unit.
     pub entry: f64,
-    /// `|K_ij| |R'_jl|` \[-\]: movement of input i per unit of movement of the input `moved`.
+    /// `|K_ij| |R'_jl|` \[-\]: movement in input i per unit of movement in the input `moved`.
     pub share: f64,
     /// Index `l` of the moved input at the peak.
     pub moved: usize,
@@ -34,8 +34,8 @@ pub struct FeedbackShare {
     pub omega_rad_s: f64,
 }
 
-/// Returns the shares of all entries of `K` in descending order; entries for an output without
-/// flight data are omitted.
+/// Returns the shares for all entries in `K`, largest first; entries for an output without flight
+/// data are omitted.
 pub fn feedback_shares(
     problem: &CouplingProblem,
     couplings: &CouplingMatrices,
@@ -64,18 +64,18 @@ pub fn feedback_shares(
     shares
 }
 
-/// Maximum of `|R'_jl|` for an output j, over all inputs, conditions and frequencies.
+/// Maximum `|R'_jl|` for an output j over all inputs l, conditions and frequencies.
 struct PeakResponse {
     magnitude: f64,
-    /// Index `l` of the input.
+    /// Input `l`.
     moved: usize,
     condition: ConditionId,
     omega_rad_s: f64,
 }
 
 impl PeakResponse {
-    /// Searches all inputs, conditions and frequencies. Returns the first of equal peaks; `None` if
-    /// there is no usable response.
+    /// Searches all inputs, conditions and frequencies. Returns the first peak if several are
+    /// equal; `None` if there is no usable response.
     fn find(problem: &CouplingProblem, output: usize) -> Option<Self> {
         let mut peak: Option<Self> = None;
         for condition in &problem.conditions {
@@ -103,12 +103,12 @@ impl PeakResponse {
     }
 }
 
-/// An off-diagonal entry of the normalised mixing `M~`.
+/// An off-diagonal entry in the normalised mixing `M~`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixingShare {
-    /// Index of the input to which the share is added.
+    /// Input to which the share is added.
     pub to: usize,
-    /// Index of the input from which the share is taken.
+    /// Input from which the share is taken.
     pub from: usize,
     /// `M~_to,from` \[-\].
     pub share: f64,
@@ -116,8 +116,8 @@ pub struct MixingShare {
     pub swashplate_phase_deg: Option<f64>,
 }
 
-/// Returns the off-diagonal entries of a normalised mixing, largest magnitude first; `cyclic` holds
-/// the indices of the two cyclic inputs.
+/// Returns a normalised mixing's off-diagonal entries, largest magnitude first; `cyclic` holds the
+/// two cyclic inputs' indices.
 pub fn mixing_shares(
     normalised_mixing: &DMatrix<f64>,
     cyclic: Option<[usize; 2]>,
@@ -145,9 +145,9 @@ pub fn mixing_shares(
     shares
 }
 
-/// Returns the indices of the two cyclic inputs: those whose only on-axis response is a rate.
-/// `None` unless exactly two inputs qualify; a pedal, for example, does not qualify if it also has
-/// an on-axis lateral acceleration.
+/// Returns the two cyclic inputs' indices: the inputs whose only on-axis response is a rate. `None`
+/// unless exactly two inputs qualify; a pedal, for example, does not qualify if it also has an
+/// on-axis lateral acceleration.
 pub fn cyclic_inputs(
     on_axis: &PairTable<bool>,
     is_rate: impl Fn(usize) -> bool,

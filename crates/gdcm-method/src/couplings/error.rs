@@ -7,7 +7,7 @@ use gdcm_model::units::{number, telling};
 /// Reasons why no couplings can be fitted (M16.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
-    /// No condition has a response that both of its representatives contain.
+    /// No condition has a response that both representatives contain.
     #[error(
         "no coupling fit: none of the conditions ({conditions}) has a response that is available in \
         both its physics and its identified representative"
@@ -16,7 +16,7 @@ pub enum CouplingError {
     /// Fewer conditions than error bars need.
     #[error("error bars need at least {needed} conditions, found {found}")]
     TooFewConditions { needed: usize, found: usize },
-    /// The table of a condition does not have the expected shape.
+    /// A condition's table does not have the expected shape.
     #[error(
         "condition {condition}: expected {} x {} responses at {} frequencies in every table, found {} x {} at {}",
         expected[0],
@@ -52,7 +52,7 @@ pub enum CouplingError {
         number(*airspeed_kt)
     )]
     ReversedInput {
-        /// Index of the input, counted from 1.
+        /// Input number, counted from 1.
         input: usize,
         airspeed_kt: f64,
         /// `M_ii` at `airspeed_kt`.

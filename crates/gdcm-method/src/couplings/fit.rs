@@ -13,15 +13,15 @@ use super::unknown::Unknown;
 use super::unknown_layout::UnknownLayout;
 use super::weighted_condition::WeightedCondition;
 
-/// The fitted couplings, and the course and quality of the fit.
+/// The fitted couplings, with the fit's course and quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingFit {
     pub matrices: CouplingMatrices,
     pub unknowns: Vec<Unknown>,
-    /// Values of the unknowns after each solve, in the order of `unknowns`.
+    /// The unknowns' values after each solve, ordered as `unknowns`.
     pub coefficients: Vec<Vec<f64>>,
     /// Optimality check for the last solve, a convex problem with a single optimum: the largest
-    /// residual of the normal equations relative to their largest right-hand side.
+    /// residual in the normal equations relative to their largest right-hand side.
     pub residual: f64,
     /// Outputs that cannot be fed back, because their response to some input is missing in every
     /// condition.
@@ -35,8 +35,8 @@ const BLOCK_MEMORY: usize = 256 << 20;
 /// Step name in progress reports.
 const FITTING: &str = "mixing and feedback";
 
-/// Fits the couplings by successive weighted linear least-squares problems, one for each pass: the
-/// weights and the closed loop are those of the couplings from the previous pass (M16.2).
+/// Fits the couplings by successive weighted linear least-squares problems, one per pass: weights
+/// and closed loop follow from the previous pass's couplings (M16.2).
 ///
 /// The result is identical to the last bit in any order of execution. `progress` is notified after
 /// every condition in every pass, and polled every few frequencies for cancellation.
@@ -109,18 +109,18 @@ fn not_fed_back(problem: &CouplingProblem, fed_back: &[usize]) -> Vec<usize> {
         .collect()
 }
 
-/// Data common to all passes of a fit.
+/// Data common to all passes in a fit.
 struct Fitting<'a> {
     conditions: &'a [WeightedCondition<'a>],
     fed_back: &'a [usize],
     layout: UnknownLayout,
     shares: Shares<'a>,
-    /// Share of the fit's progress that a condition, or the solution, has in a pass.
+    /// Progress share, 0 to 1, for one condition, or for the solution, in a pass.
     share: f64,
 }
 
 impl Fitting<'_> {
-    /// Returns the normal equations of the pass that starts from these couplings.
+    /// Returns the normal equations for the pass that starts from these couplings.
     ///
     /// As many conditions run in parallel as memory permits for their blocks; they are added in
     /// order.
@@ -148,7 +148,7 @@ impl Fitting<'_> {
         Ok(equations)
     }
 
-    /// Reports the progress of one condition, or of the solution, in a pass.
+    /// Reports one condition, or the solution, in a pass as done.
     fn advance(&self) -> Result<(), Cancelled> {
         self.shares.advance(self.share, FITTING)
     }

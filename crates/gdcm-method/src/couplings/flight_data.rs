@@ -14,7 +14,7 @@ use crate::correction::Channels;
 use crate::correction::lead_design::LeadDesign;
 use crate::uncertainty::coherence_error::Measurement;
 
-/// Returns the mean signed delay of each channel \[s\] over the conditions, which have the same
+/// Returns each channel's mean signed delay \[s\] over the conditions, which have the same
 /// channels; `None` without conditions.
 pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     let count = conditions.len() as f64;
@@ -65,7 +65,7 @@ fn channel_response(tau_s: f64, omega: &[f64], design: Option<&LeadDesign>) -> V
 
 /// Returns the standard deviation of `ln H` from a model's bands, p x m curves on `omega`
 /// \[rad/s\]: `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, the mean of the variances
-/// of real part and imaginary part of `ln H`; linear in `ln omega`, constant beyond the bands' ends
+/// in the real and imaginary parts of `ln H`; linear in `ln omega`, constant beyond the bands' ends
 /// (M16.2).
 pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f64>> {
     bands.sd_db().map(|pair, sd_db| {
@@ -82,8 +82,8 @@ pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f6
 }
 
 /// Returns the standard deviation of `ln H` from the coherence `gamma^2`, p x m curves (M13.2): `C
-/// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`, with the constant `C` and the number of averages
-/// `n_d` of `measurement`.
+/// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`, with the constant `C` and the average count `n_d`
+/// from `measurement`.
 pub fn coherence_deviation(
     coherence: &PairTable<Vec<f64>>,
     measurement: &Measurement,

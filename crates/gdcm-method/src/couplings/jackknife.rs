@@ -1,12 +1,12 @@
-//! Leave-one-out fits of mixing and feedback, and the error bars derived from them by the jackknife
-//! (step 9 of `couplings`, M16.4).
+//! Leave-one-out fits of mixing and feedback, and jackknife error bars derived from them (step 9 in
+//! `couplings`, M16.4).
 //!
 //! ```text
 //! sd^2 = (n - 1) / n sum_c (theta_(-c) - mean theta_(-c))^2,   half-width = t(n - 1) sd
 //! ```
 //!
-//! `theta_(-c)` is an entry of `M~` or `K` fitted without condition c, n the number of conditions,
-//! and `t(n - 1)` Student's quantile.
+//! `theta_(-c)` is an entry in `M~` or `K` fitted without condition c, n the condition count, and
+//! `t(n - 1)` Student's quantile.
 //!
 //! B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
 
@@ -21,7 +21,7 @@ use super::fit::{CouplingFit, fit_couplings};
 use super::problem::CouplingProblem;
 use crate::uncertainty::student_quantile;
 
-/// Minimum number of conditions for error bars.
+/// Minimum condition count for error bars.
 pub const LEAST_CONDITIONS: usize = 3;
 
 /// A fit to all conditions but one.
@@ -32,8 +32,8 @@ pub struct LeftOutFit {
     pub fit: CouplingFit,
 }
 
-/// Fits the couplings once for each condition, without it, in the order of the conditions. The fits
-/// run as independent tasks.
+/// Fits the couplings once for each condition, without it, in condition order. The fits run as
+/// independent tasks.
 ///
 /// # Errors
 /// [`CouplingError::TooFewConditions`] for fewer than three conditions, and all errors from
@@ -70,12 +70,12 @@ fn check_count(found: usize) -> Result<(), CouplingError> {
     Ok(())
 }
 
-/// Half-widths of the error bars for mixing and feedback.
+/// Error bar half-widths for mixing and feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingBars {
-    /// Half-widths of `M~` at an airspeed, m x m; 0 on its diagonal, which is 1.
+    /// Half-widths for `M~` at an airspeed, m x m; 0 on the diagonal, where `M~` is 1.
     pub mixing: DMatrix<f64>,
-    /// Half-widths of `K`, m x p.
+    /// Half-widths for `K`, m x p.
     pub feedback: DMatrix<f64>,
     /// Student's quantile: half-width divided by standard deviation.
     pub quantile: f64,
@@ -108,8 +108,8 @@ impl CouplingBars {
     }
 }
 
-/// Computes the jackknife standard deviation of each matrix entry from the leave-one-out matrices;
-/// needs at least one matrix.
+/// Computes each matrix entry's jackknife standard deviation from the leave-one-out matrices; needs
+/// at least one matrix.
 fn jackknife_deviation(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let count = without.len() as f64;
     let (rows, columns) = without[0].shape();

@@ -1,4 +1,4 @@
-//! Stability margin of the loop that a feedback closes: the smallest singular value of `I - K H`
+//! Stability margin for the loop that a feedback closes: the smallest singular value of `I - K H`
 //! (M16.4).
 
 use nalgebra::{Complex, DMatrix};
@@ -8,8 +8,7 @@ use gdcm_model::response::FrequencyResponse;
 
 use super::coupling_matrices::CouplingMatrices;
 
-/// Stability margin of the loop: the minimum over several frequencies of the smallest singular
-/// value of `I - K H`.
+/// The loop's stability margin: the smallest singular value of `I - K H`, minimised over frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargin {
     /// Minimum singular value: 1 without feedback, 0 if a closed-loop pole is at `j omega`.
@@ -21,7 +20,7 @@ impl LoopMargin {
     /// Margin below which the loop is reported as close to ringing.
     pub const CAUTION: f64 = 0.5;
 
-    /// Returns the minimum of singular values, given at `omega` \[rad/s\]; `None` if none is
+    /// Returns the minimum over singular values given at `omega` \[rad/s\]; `None` if no value is
     /// finite.
     pub fn find(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
         let mut margin: Option<Self> = None;

@@ -16,13 +16,13 @@
 //! 10  H~, its state space, its poles, the smallest singular value of I - K H
 //! ```
 //!
-//! `u` and `y` are inputs and outputs, `H` is the physics response (p x m) and `R` the flight response,
-//! `L_i` and `L_o` contain the delays and leads of the input and output channels. Couplings that
-//! explain flight exactly have `R' = (I - H K)^-1 H M`, which is the same as `R' = H (M + K R')`, linear
-//! in `M` and `K`. Multiplied by `S`, with the couplings of the previous pass, its residual is the error
-//! of the closed-loop response (step 6). The factors of the weight `q` are defined in
-//! `weighted_condition`; `rho` is `CouplingOptions::ridge`; `theta_(-c)` is `theta` without condition c,
-//! and n the number of conditions.
+//! `u` and `y` are inputs and outputs, `H` is the physics response (p x m) and `R` the flight
+//! response, `L_i` and `L_o` contain the input and output channels' delays and leads. Couplings
+//! that explain flight exactly have `R' = (I - H K)^-1 H M`, which is the same as `R' = H (M + K
+//! R')`, linear in `M` and `K`. Multiplied by `S`, with the couplings from the previous pass, its
+//! residual is the error in the closed-loop response (step 6). The factors in the weight `q` are
+//! defined in `weighted_condition`; `rho` is `CouplingOptions::ridge`; `theta_(-c)` is `theta`
+//! fitted without condition c, and n the condition count.
 //!
 //! | step | file |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! The normal equations of a pass: sum over the conditions, scaling, regularisation (M16.2).
+//! Normal equations for a pass: sum over the conditions, scaling, regularisation (M16.2).
 //!
 //! ```text
 //! 1  G, b <- the conditions' blocks summed, with powers of the airspeed v for the unknowns M_ji
@@ -6,9 +6,9 @@
 //! 3  (G + rho diag G) theta = b + rho diag G theta_0,   theta_0: M = I, K = 0;  solved as an arrow
 //! ```
 //!
-//! `G theta = b` are the equations for the entries `theta` of the mixing M and the feedback K
-//! (`condition_blocks`), `rho` is the relative regularisation. The blocks of G are arranged in
-//! `arrow_system`, the order of the unknowns in `unknown_layout`.
+//! `G theta = b` are the equations for the entries `theta` in the mixing M and the feedback K
+//! (`condition_blocks`), `rho` is the relative regularisation. `arrow_system` defines how G's
+//! blocks are arranged, `unknown_layout` how the unknowns are ordered.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -24,17 +24,17 @@ pub(super) struct NormalEquations<'a> {
     layout: &'a UnknownLayout,
     /// Equations for the unknowns in M, for each input column.
     columns: Vec<ArrowColumn>,
-    /// Normal matrix entries of pairs of unknowns in K.
+    /// Normal matrix entries for two unknowns in K.
     feedback: PairProducts,
     /// Right-hand side for the unknowns in K: rows by fed-back output, columns by input.
     right: DMatrix<f64>,
 }
 
-/// Solution of the normal equations of a pass.
+/// Solution of a pass.
 pub(super) struct PassOptimum {
     /// `theta`, by unknown.
     pub(super) coefficients: DVector<f64>,
-    /// Largest residual of the scaled normal equations relative to their largest right-hand side.
+    /// Largest residual in the scaled normal equations relative to their largest right-hand side.
     pub(super) residual: f64,
     /// Indices of the unknowns that no response determines; they keep their uncoupled values.
     pub(super) undetermined: Vec<usize>,
@@ -76,7 +76,7 @@ impl<'a> NormalEquations<'a> {
 
     /// Returns the normal matrix entry for two unknowns in K.
     fn feedback_entry(&self, row: &FeedbackUnknown, column: &FeedbackUnknown) -> f64 {
-        // Stored for pairs of outputs in ascending order; G is symmetric.
+        // Stored for output pairs in ascending order; G is symmetric.
         let count = self.right.nrows();
         if row.fed_back <= column.fed_back {
             let pair = pair_index(row.fed_back, column.fed_back, count);
@@ -124,7 +124,7 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// Computes the scales of the unknowns from the diagonal (step 2).
+    /// Computes the unknowns' scales from the diagonal (step 2).
     fn scaling<'u>(&self, unknowns: &'u [Unknown], ridge: f64) -> Scaling<'u> {
         let mut scaling = Scaling::new(unknowns, ridge);
         for (equations, mixing) in self.columns.iter().zip(&self.layout.mixing) {
@@ -224,9 +224,9 @@ fn scaled_column(
 struct Scaling<'a> {
     unknowns: &'a [Unknown],
     ridge: f64,
-    /// Scale of each unknown; 1 for an undetermined unknown.
+    /// Scale for each unknown; 1 for an undetermined unknown.
     scale: Vec<f64>,
-    /// Whether the diagonal entry of each unknown is positive.
+    /// For each unknown, whether its diagonal entry is positive.
     is_determined: Vec<bool>,
 }
 
@@ -241,7 +241,7 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// Sets the scale of an unknown from its diagonal entry of `G`.
+    /// Sets an unknown's scale from its diagonal entry in `G`.
     fn set(&mut self, index: usize, diagonal: f64) {
         if diagonal > 0.0 {
             self.scale[index] = diagonal.sqrt().recip();
@@ -259,7 +259,7 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// Returns an entry of the right-hand side `b`, scaled and regularised.
+    /// Scales and regularises an entry in the right-hand side `b`.
     fn right(&self, index: usize, right: f64) -> f64 {
         let scale = self.scale[index];
         scale * right + self.regularisation(index) * self.unknowns[index].uncoupled() / scale

@@ -1,10 +1,10 @@
-//! Sums of products over frequencies, by pair of factors and pair of inputs in the normal equations
-//! (M16.2).
+//! Products summed over frequencies, for each factor pair and each input pair in the normal
+//! equations (M16.2).
 //!
-//! At each frequency there are factors `t_0, t_1, ...`, of which `t_0` is 1, and an m x m matrix
-//! `P = F^H q^2 F`; both are defined in `condition_blocks`. The sum of `Re conj(t_a) t_b P_jl` over
-//! the frequencies is a difference of two matrix products, with a row for each pair `a <= b` and a
-//! column for each pair `j <= l`:
+//! At each frequency there are factors `t_0 = 1, t_1, ...` and an m x m matrix `P = F^H q^2 F`;
+//! both are defined in `condition_blocks`. `Re conj(t_a) t_b P_jl`, summed over the frequencies, is
+//! a difference between two matrix products, with a row for each pair `a <= b` and a column for
+//! each pair `j <= l`:
 //!
 //! ```text
 //! Re(conj(t_a) t_b P_jl) = Re(conj(t_a) t_b) Re P_jl - Im(conj(t_a) t_b) Im P_jl,   P_lj = conj P_jl
@@ -19,25 +19,26 @@ use nalgebra::{Complex, DMatrix, DMatrixView};
 /// cache.
 pub(super) const CHUNK: usize = 64;
 
-/// Returns the number of pairs `a <= b` among `count` items.
+/// Counts the pairs `a <= b` among `count` items.
 pub(super) fn pair_count(count: usize) -> usize {
     count * (count + 1) / 2
 }
 
-/// Returns the index of the pair `a <= b` among `count` items. Before it are the pairs with a smaller
-/// first index, `count + (count - 1) + ...` with `a` terms, and `b - a` pairs with the same one.
+/// Returns the index that the pair `a <= b` has among `count` items. Before it are the pairs with a
+/// smaller first index, `count + (count - 1) + ...` with `a` terms, and `b - a` pairs with the same
+/// first index.
 pub(super) fn pair_index(a: usize, b: usize, count: usize) -> usize {
     a * count - a * a.saturating_sub(1) / 2 + b - a
 }
 
-/// Sums over frequencies of `Re conj(t_a) t_b P_jl`: a row for each pair of factors `t`, a column
-/// for each pair `j <= l` of inputs.
+/// `Re conj(t_a) t_b P_jl` summed over frequencies: a row for each factor pair, a column for each
+/// input pair `j <= l`.
 #[derive(Clone)]
 pub(super) struct PairProducts {
     inputs: usize,
-    /// Sums of the products of real parts.
+    /// Summed products of real parts.
     real: DMatrix<f64>,
-    /// Sums of the products of imaginary parts.
+    /// Summed products of imaginary parts.
     imaginary: DMatrix<f64>,
 }
 
@@ -84,7 +85,7 @@ impl PairProducts {
             (&mut self.imaginary, &chunk.t_im, &chunk.p_im),
         ] {
             let factors = factors.view((first, 0), (rows, chunk.filled));
-            // The transpose, read without copying: rows by frequency, columns by pair of inputs.
+            // The transpose, read without copying: rows by frequency, columns by input pair.
             let weighted = DMatrixView::from_slice_with_strides(
                 weighted.as_slice(),
                 chunk.filled,
@@ -103,17 +104,17 @@ impl PairProducts {
     }
 }
 
-/// Factors of the products at up to [`CHUNK`] frequencies, a column for each.
+/// Factors in the products at up to [`CHUNK`] frequencies, a column for each.
 pub(super) struct ProductChunk {
-    /// Number of filled columns.
+    /// Count of filled columns.
     filled: usize,
     /// `Re conj(t_a) t_b`, a row for each pair `a <= b`.
     t_re: DMatrix<f64>,
-    /// `Im conj(t_a) t_b`, in the layout of `t_re`.
+    /// `Im conj(t_a) t_b`, laid out like `t_re`.
     t_im: DMatrix<f64>,
     /// `Re P_jl`, a row for each pair `j <= l`.
     p_re: DMatrix<f64>,
-    /// `Im P_jl`, in the layout of `p_re`.
+    /// `Im P_jl`, laid out like `p_re`.
     p_im: DMatrix<f64>,
 }
 
@@ -157,7 +158,7 @@ impl ProductChunk {
         self.filled = 0;
     }
 
-    /// Appends a frequency: the factors `t`, the matrix `F`, and the weights `q^2` of its rows.
+    /// Appends a frequency: the factors `t`, the matrix `F`, and its row weights `q^2`.
     pub(super) fn push(&mut self, t: &[Complex<f64>], f: &RowParts, squared_weights: &[f64]) {
         self.push_factors(t);
         self.push_weighted(f, squared_weights);
@@ -200,7 +201,7 @@ impl ProductChunk {
 
 /// Adds `q^2 conj(f_j) f_l` for each pair `j <= l` in a row `f` of `F`.
 fn add_outer_product(re: &[f64], im: &[f64], squared: f64, p_re: &mut [f64], p_im: &mut [f64]) {
-    // Index of the pair (j, j); the pairs (j, l) with l > j follow it.
+    // Index for the pair (j, j); the pairs (j, l) with l > j follow it.
     let mut start = 0;
     for j in 0..re.len() {
         let left_re = squared * re[j];

@@ -1,4 +1,4 @@
-//! Shifts of the poles by mixing and feedback (M16.4).
+//! How mixing and feedback shift the poles (M16.4).
 
 use nalgebra::Complex;
 
@@ -12,9 +12,9 @@ use crate::correction::Pade;
 use crate::fidelity::mode_tracks;
 
 impl CouplingMatrices {
-    /// Returns the poles of a physics model with mixing and feedback, in ascending `|lambda|`. They
-    /// are matched to the poles without coupling so that the sum of distances is minimal.
-    /// Discrete-time poles are converted by `s = ln z / T`.
+    /// Returns a physics model's poles with mixing and feedback, in ascending `|lambda|`. They are
+    /// matched to the poles without coupling so that the sum of distances is minimal. Discrete-time
+    /// poles are converted by `s = ln z / T`.
     ///
     /// # Errors
     /// [`PoleShiftError`] if the coupled model or its eigenvalues are unavailable.
@@ -28,7 +28,7 @@ impl CouplingMatrices {
     }
 }
 
-/// A pole of a coupled model and its counterpart in the physics model; conjugate pairs are counted
+/// A coupled model's pole and its counterpart in the physics model; conjugate pairs are counted
 /// once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleShift {
@@ -38,7 +38,7 @@ pub struct PoleShift {
     pub after: Complex<f64>,
 }
 
-/// Reasons why the poles of a coupled model are unavailable.
+/// Reasons why a coupled model's poles are unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PoleShiftError {
     #[error(transparent)]
@@ -48,8 +48,8 @@ pub enum PoleShiftError {
 }
 
 impl PoleShift {
-    /// Returns the poles of `after` in ascending `|lambda|`, matched to those of `before` so that the
-    /// sum of distances is minimal.
+    /// Returns the poles of `after` in ascending `|lambda|`, matched to the poles of `before` so
+    /// that the sum of distances is minimal.
     ///
     /// # Errors
     /// [`PoleShiftError::Modes`] if the eigenvalues are unavailable.

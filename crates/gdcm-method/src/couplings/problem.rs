@@ -16,7 +16,7 @@ use crate::schedule::Airspeeds;
 /// Couplings applied at a physics model's inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CouplingKind {
-    /// A mixing `M` of the inputs.
+    /// An input mixing `M`.
     Mixing,
     /// A mixing, and a feedback `K` from outputs to inputs.
     #[default]
@@ -67,10 +67,10 @@ pub struct CouplingProblem {
 /// Settings for the coupling fit (M16.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingOptions {
-    /// `rho`: regularisation towards M = I, K = 0, relative to the diagonal entry of each unknown
-    /// in the normal matrix.
+    /// `rho`: regularisation towards M = I, K = 0, relative to each unknown's diagonal entry in the
+    /// normal matrix.
     pub ridge: f64,
-    /// Number of successive linear least-squares problems.
+    /// Count of successive linear least-squares problems.
     pub solves: usize,
     /// Highest power of the scaled airspeed on the diagonal of `M`.
     pub degree: usize,
@@ -148,8 +148,8 @@ impl CouplingProblem {
         (0..self.outputs()).any(|output| self.is_known(Pair::new(output, input)))
     }
 
-    /// Returns whether a flight response is available at a frequency at which the physics model has
-    /// all responses of the same output.
+    /// Returns whether, at any frequency, the flight response exists and the physics model has all
+    /// responses in the same output.
     fn is_known(&self, pair: Pair) -> bool {
         self.conditions.iter().any(|condition| {
             let flight = condition.flight.curve(pair);
@@ -161,7 +161,7 @@ impl CouplingProblem {
     /// Checks that every table has a value for each response and frequency.
     ///
     /// # Errors
-    /// [`CouplingError::Shape`] for the first table of another shape.
+    /// [`CouplingError::Shape`] for the first table with another shape.
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         let expected = [self.outputs(), self.inputs(), self.omega.len()];
         for condition in &self.conditions {
@@ -186,8 +186,8 @@ impl CouplingCondition {
             .all(|input| self.physics.curve(Pair::new(output, input))[k].is_finite())
     }
 
-    /// Returns the numbers of outputs, inputs and frequencies of each table; tables without
-    /// frequencies count as having `points`.
+    /// Returns each table's shape: outputs, inputs and frequencies; tables without frequencies
+    /// count as having `points`.
     fn table_shapes(&self, points: usize) -> Vec<[usize; 3]> {
         let mut shapes = vec![
             self.physics.curves().curve_shape(points),

@@ -6,7 +6,8 @@ use crate::schedule::Airspeeds;
 /// A fitted coefficient in mixing or feedback.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unknown {
-    /// Factor of `v^power` in `M_to,from`: the share that input `to` receives from input `from`.
+    /// Coefficient of `v^power` in `M_to,from`: the share that input `to` receives from input
+    /// `from`.
     Mixing {
         /// The receiving input.
         to: usize,
@@ -33,9 +34,8 @@ impl Unknown {
         }
     }
 
-    /// Lists the unknowns of a problem: `M` row by row, then `K`. The diagonal of `M` is a
-    /// polynomial of degree `min(degree, distinct airspeeds - 1)`, everything else is constant
-    /// (M16.1).
+    /// Lists a problem's unknowns: `M` row by row, then `K`. The diagonal of `M` is a polynomial of
+    /// degree `min(degree, distinct airspeeds - 1)`, everything else is constant (M16.1).
     pub(super) fn list(
         problem: &CouplingProblem,
         airspeeds: &Airspeeds,

@@ -1,9 +1,9 @@
-//! Order of the unknowns in the normal equations (M16.2).
+//! How the normal equations order the unknowns (M16.2).
 
 use super::unknown::Unknown;
 
-/// The unknowns in the order of the equations: first the unknowns in `M`, by input column, then the
-/// unknowns in `K`.
+/// The unknowns in equation order: first the unknowns in `M`, by input column, then the unknowns in
+/// `K`.
 pub(super) struct UnknownLayout {
     /// The unknowns `M_ji` by input column i.
     pub(super) mixing: Vec<Vec<MixingUnknown>>,
@@ -26,7 +26,7 @@ pub(super) struct FeedbackUnknown {
     pub(super) index: usize,
     /// The input j.
     pub(super) input: usize,
-    /// Index of the output o among the fed-back outputs.
+    /// The output o's index among the fed-back outputs.
     pub(super) fed_back: usize,
 }
 

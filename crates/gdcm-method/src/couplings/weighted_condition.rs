@@ -1,4 +1,4 @@
-//! A condition arranged by frequency, with the weight `q` of each response (step 5 of `couplings`,
+//! A condition arranged by frequency, with a weight `q` for each response (step 5 in `couplings`,
 //! M16.2).
 //!
 //! ```text
@@ -22,12 +22,11 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 use super::problem::{CouplingCondition, CouplingProblem};
 use crate::fidelity::summand;
 
-/// Weight of an on-axis response relative to the others, `w_p`.
+/// `w_p`: an on-axis response's weight relative to the others.
 const ON_AXIS: f64 = 2.0;
-/// Standard deviation of `ln H` at which the weight `s` of a response is reduced by the factor `1 /
-/// sqrt(2)`.
+/// Standard deviation of `ln H` that reduces a response's weight `s` by the factor `1 / sqrt(2)`.
 const DEVIATION: f64 = 0.06;
-/// `e s` at which the weight of a frequency is reduced by the factor `2^(-1/4)`, as an outlier.
+/// `e s` that reduces a frequency's weight by the factor `2^(-1/4)`, as an outlier.
 const OUTLIER: f64 = 10.0;
 
 /// Weight factors that do not change between passes.
@@ -39,7 +38,7 @@ struct FixedWeight {
     coherence: f64,
 }
 
-/// Data of a condition, frequency by frequency; within a frequency, input column by input column.
+/// A condition's data, frequency by frequency; within a frequency, input column by input column.
 pub(super) struct WeightedCondition<'a> {
     pub(super) id: ConditionId,
     /// True airspeed \[kt\].
@@ -52,7 +51,7 @@ pub(super) struct WeightedCondition<'a> {
     physics: Vec<Complex<f64>>,
     /// `R'`, in the same order.
     flight: Vec<Complex<f64>>,
-    /// Weight of each response, in the same order.
+    /// Weight for each response, in the same order.
     weights: Vec<FixedWeight>,
 }
 
@@ -107,12 +106,12 @@ impl<'a> WeightedCondition<'a> {
         &self.physics[k * size..][..size]
     }
 
-    /// Returns an input column of `R'` at frequency `k`, p values.
+    /// Returns an input column in `R'` at frequency `k`, p values.
     pub(super) fn flight(&self, k: usize, input: usize) -> &[Complex<f64>] {
         &self.flight[(k * self.inputs + input) * self.outputs..][..self.outputs]
     }
 
-    /// Computes `q^2` for each output of an input column at frequency `k`, given `H_c = coupled`
+    /// Computes `q^2` for each output in an input column at frequency `k`, given `H_c = coupled`
     /// from the last pass; returns false if every weight is zero.
     pub(super) fn squared_weights(
         &self,

@@ -1,4 +1,4 @@
-//! Assignment of a different column to each row with the smallest total cost.
+//! Assigns a different column to each row at the smallest total cost.
 //!
 //! ```text
 //! min sum_i c_ij(i)    c_ij: cost of column j for row i, j(i): the column of row i
@@ -36,7 +36,7 @@ pub(crate) fn cheapest_assignment(
     column_of
 }
 
-/// A partial assignment of minimum cost.
+/// A partial assignment with minimum cost.
 struct Assignment {
     /// `u`, by row.
     row_potentials: Vec<f64>,
@@ -86,7 +86,7 @@ impl Assignment {
         self.shift_assignments(new, &before, last);
     }
 
-    /// Moves the potentials of the tree (the row `new`, the columns in the tree and their rows) so
+    /// Moves the potentials in the tree (the row `new`, the columns in the tree and their rows) so
     /// that the reduced cost to `next` becomes zero.
     fn shift_potentials(
         &mut self,

@@ -4,7 +4,7 @@
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
 use gdcm_model::response::interpolation::coherence_at;
 
-/// The frequencies of a response with sufficient coherence, each with its weight.
+/// The frequencies at which a response has sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceWeights {
     /// Indices of these frequencies on the grid, ascending.
@@ -23,8 +23,8 @@ pub fn coherence_weight(coherence: f64) -> f64 {
 }
 
 impl CoherenceWeights {
-    /// Selects the frequencies of `omega` \[rad/s\] with a coherence of at least `threshold` in the
-    /// response's valid band.
+    /// Selects the frequencies in `omega` \[rad/s\] whose coherence is at least `threshold` and
+    /// which lie in the response's valid band.
     pub fn select(
         omega: &[f64],
         coherence: &[f64],
@@ -52,7 +52,7 @@ impl CoherenceWeights {
         selected
     }
 
-    /// Returns the weights of every response of a model; `None` without coherence: all frequencies
+    /// Returns the weights for every response in a model; `None` without coherence: all frequencies
     /// then have equal weight.
     pub fn of_model(
         dynamics: &Dynamics,

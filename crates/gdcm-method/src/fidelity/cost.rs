@@ -1,4 +1,4 @@
-//! The cost J of a mismatch between two responses, eq. (14)-(19).
+//! Cost J for a mismatch between two responses, eq. (14)-(19).
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 use gdcm_model::response::polar_response::PolarCurve;
 use gdcm_model::statistics::{mean, median, weighted_median};
 
-/// Weight of the squared magnitude error \[dB^2\], `W_g` (Tischler & Remple 2012, chapter 11).
+/// `W_g`: weight for the squared magnitude error \[dB^2\] (Tischler & Remple 2012, chapter 11).
 const MAGNITUDE_WEIGHT: f64 = 1.0;
-/// Weight of the squared phase error \[deg^2\], `W_p`.
+/// `W_p`: weight for the squared phase error \[deg^2\].
 const PHASE_WEIGHT: f64 = 0.0175;
 /// J up to which a model is acceptable (Tischler & Remple, "Aircraft and Rotorcraft System
 /// Identification", 2nd ed. 2012, chapter 11; given for the mean over frequency).
@@ -25,7 +25,7 @@ pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// Kind of average of the squared errors over frequency.
+/// How the squared errors are averaged over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
@@ -80,7 +80,7 @@ impl Cost {
         Self { magnitude, phase }
     }
 
-    /// Returns the factors of the averaged squared errors, `20 W_g` and `20 W_p`, as text.
+    /// Returns the factors `20 W_g` and `20 W_p` in front of the averaged squared errors, as text.
     pub fn factors() -> [String; 2] {
         [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
     }

@@ -1,5 +1,5 @@
-//! Models beyond a discontinuity of the physics bundle: models that are further from the others
-//! than their perturbation of the trim explains (M5).
+//! Models beyond a discontinuity in the physics bundle: models that are further from the others
+//! than their perturbed trim explains (M5).
 
 use std::collections::BTreeMap;
 
@@ -10,15 +10,14 @@ use super::distance::BundleDistance;
 
 /// Discontinuity ratio above which a model is suggested as an outlier.
 pub const SUGGESTION_RATIO: f64 = 2.5;
-/// Minimum number of models in a bundle for the outlier search.
+/// Minimum bundle size for the outlier search.
 const LEAST_MODELS: usize = 5;
 
-/// The name and the trim of a physics model.
+/// A physics model's name and trim.
 #[derive(Clone, Copy, Debug)]
 pub struct PerturbedModel<'a> {
     pub name: &'a str,
-    /// Offset of each perturbed coordinate of the trim from the nominal trim, by name; `None` if
-    /// unknown.
+    /// How far each trim coordinate is from its nominal value, by name; `None` if unknown.
     pub perturbation: Option<&'a BTreeMap<String, f64>>,
 }
 
@@ -29,7 +28,7 @@ pub struct Discontinuity {
     /// `r_a` for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no
     /// two models have a fitted distance.
     pub ratios: Vec<Option<f64>>,
-    /// Fitted weight of each perturbed coordinate.
+    /// Fitted weight for each perturbed coordinate.
     pub weights: Vec<CoordinateWeight>,
 }
 
@@ -100,7 +99,7 @@ impl Discontinuity {
     }
 }
 
-/// Step 2: fits the weights `w_k` to the squared distances of all pairs of compared models.
+/// Step 2: fits the weights `w_k` to the squared distances between all compared models.
 fn fit_weights(
     distance: &BundleDistance,
     compared: &[usize],
@@ -121,7 +120,7 @@ fn fit_weights(
     least_absolute_deviations(&rows, &squares, cancelled)
 }
 
-/// Step 3: computes `r_a` of the compared model at place `a`; `None` if it has no fitted distance
+/// Step 3: computes `r_a` for the compared model at place `a`; `None` if it has no fitted distance
 /// from any other model.
 fn ratio(
     distance: &BundleDistance,
@@ -152,7 +151,7 @@ fn ratio(
 pub struct CoordinateWeight {
     /// Coordinate name ("airspeed_kt").
     pub name: String,
-    /// Maximum magnitude of the coordinate in the bundle; the coordinate is divided by this value.
+    /// The coordinate's maximum magnitude in the bundle, by which it is divided.
     pub largest: f64,
     /// Fitted weight `w_k`.
     pub weight: f64,
@@ -174,7 +173,7 @@ pub enum DiscontinuityError {
         bundle has {found}"
     )]
     TooFewModels {
-        /// Number of models in the bundle.
+        /// Models in the bundle.
         found: usize,
     },
     /// A model has no perturbation data.
@@ -190,12 +189,12 @@ pub enum DiscontinuityError {
     Fit(#[from] FitError),
 }
 
-/// The perturbation coordinates of the compared models, scaled to at most 1 (step 1).
+/// The compared models' perturbation coordinates, scaled to at most 1 (step 1).
 #[derive(Debug)]
 struct ScaledTrims<'a> {
-    /// Maximum magnitude of each coordinate, by name; none is zero.
+    /// Each coordinate's maximum magnitude, by name; none is zero.
     largest: BTreeMap<&'a str, f64>,
-    /// `p_ak`: the coordinates `k` of each model `a`, in the order of `largest`.
+    /// `p_ak`: coordinates `k` for each model `a`, ordered as in `largest`.
     scaled: Vec<Vec<f64>>,
 }
 
@@ -253,7 +252,7 @@ impl<'a> ScaledTrims<'a> {
             .sum()
     }
 
-    /// Joins the fitted weights with the names and magnitudes of their coordinates.
+    /// Joins the fitted weights with their coordinates' names and magnitudes.
     fn coordinate_weights(self, weights: Vec<f64>) -> Vec<CoordinateWeight> {
         let mut joined = Vec::with_capacity(weights.len());
         for ((name, largest), weight) in self.largest.into_iter().zip(weights) {

@@ -1,4 +1,4 @@
-//! Distances between the models of a bundle (M5).
+//! Distances between the models in a bundle (M5).
 //!
 //! ```text
 //! d(a, b) = sqrt(mean over the compared responses of J(a against b)),   J with the mean over frequency
@@ -16,13 +16,13 @@ use super::mismatch::Mismatch;
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedModel<'a> {
     pub responses: &'a PolarResponse,
-    /// Frequency weights of each response, if measured with coherence (M4a).
+    /// Frequency weights for each response, if measured with coherence (M4a).
     pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
 }
 
 impl ComparedModel<'_> {
-    /// Computes J of `a` against `b`, as the mean over frequency, with the coherence weights of
-    /// this model; over all frequencies, equally weighted, if none has a weight.
+    /// Computes J for `a` against `b`, as the mean over frequency, with this model's coherence
+    /// weights; over all frequencies, equally weighted, if none has a weight.
     fn weighted_cost(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
         let Some(weights) = self.coherence_weights else {
             return mean_cost(a, b);
@@ -63,7 +63,7 @@ fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> 
     (sum / compared.len().max(1) as f64).sqrt()
 }
 
-/// Computes J for a response of `a` against `b`; `None` where either lacks it.
+/// Computes J for one response in `a` against `b`; `None` if either lacks it.
 fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Option<f64> {
     let curve_a = a.responses.curves()[pair].as_ref()?;
     let curve_b = b.responses.curves()[pair].as_ref()?;
@@ -108,7 +108,7 @@ impl MeasuredPairs {
         Self { compared, lacks }
     }
 
-    /// Returns the indices, in bundle order, of the models that are not set aside.
+    /// Returns the indices of the models that are not set aside, in bundle order.
     pub fn compared_models(&self) -> Vec<usize> {
         (0..self.lacks.len())
             .filter(|&model| !self.is_set_aside(model))
@@ -121,13 +121,13 @@ impl MeasuredPairs {
     }
 }
 
-/// The distances `d(a, b)` between all pairs of models in a bundle.
+/// The distances `d(a, b)` between every two models in a bundle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleDistance {
     measured: MeasuredPairs,
-    /// Number of models that are not set aside.
+    /// Count of models that are not set aside.
     count: usize,
-    /// Position of each model among those not set aside; `None` if set aside.
+    /// Each model's position among those not set aside; `None` if set aside.
     places: Vec<Option<usize>>,
     /// Upper triangle by rows, without the models set aside: d(0,1), d(0,2), ..., d(1,2), ...
     distances: Vec<f64>,

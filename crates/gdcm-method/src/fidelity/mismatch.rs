@@ -4,8 +4,8 @@
 //! e_dB = |H_sim|_dB - |H_ref|_dB,   Delta phi = arg(H_sim conj(H_ref)), unwrapped over frequency (M3, M6b)
 //! ```
 //!
-//! The errors cover the *grid*, all frequencies of the comparison, or only its frequencies with a
-//! coherence weight (M4a). Functions that take `omega` or `grid` expect the whole grid.
+//! The errors cover the *grid*, all compared frequencies, or only the frequencies with a coherence
+//! weight (M4a). Functions that take `omega` or `grid` expect the whole grid.
 
 use std::f64::consts::{PI, TAU};
 
@@ -88,7 +88,7 @@ impl Mismatch {
         }
     }
 
-    /// Returns the weight of each frequency; `None` if all weights are equal (M4a).
+    /// Returns a weight for each frequency; `None` if all weights are equal (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
         self.coherence_weights
             .as_ref()
@@ -96,8 +96,8 @@ impl Mismatch {
     }
 
     /// Computes J after a correction to the simulated response (M4, M10). The correction removes
-    /// `omega tau` from the phase, and the principal value is used: a zero on the other side of the
-    /// imaginary axis must not add a whole turn to the error.
+    /// `omega tau` from the phase, and the principal value is used: a zero that lies on the other
+    /// side of the imaginary axis must not add a whole turn to the error.
     pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
         let omega = self.omega(omega);
         let phase = correction.phases(&self.phase, omega).map(wrap);
@@ -106,7 +106,7 @@ impl Mismatch {
     }
 
     /// Returns the remaining difference after multiplying the simulated response by a factor with
-    /// these magnitudes \[dB\] and phases \[rad\] at each frequency of the grid (M15.5).
+    /// these magnitudes \[dB\] and phases \[rad\] at each grid frequency (M15.5).
     pub fn multiplied(&self, magnitude_db: &[f64], phase: &[f64]) -> Self {
         let mut multiplied = self.clone();
         for (error, factor) in multiplied
@@ -122,7 +122,7 @@ impl Mismatch {
         multiplied
     }
 
-    /// Picks the values at the errors' frequencies from a value at each grid point; the inverse of
+    /// Picks the values at the errors' frequencies from a value at each grid point; inverts
     /// [`Mismatch::on_grid`].
     fn at_errors(&self, values: &[f64]) -> Vec<f64> {
         match &self.coherence_weights {
@@ -165,7 +165,7 @@ impl Mismatch {
         phase
     }
 
-    /// Returns the median of `Delta phi` \[rad\] over frequency.
+    /// Returns the median `Delta phi` \[rad\] over frequency.
     pub fn median_phase(&self, omega: &[f64]) -> f64 {
         median(&mut self.phase_difference(omega))
     }

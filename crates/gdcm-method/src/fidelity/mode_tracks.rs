@@ -1,7 +1,7 @@
-//! A mode followed across the models of a bundle, and the models at which it jumps.
+//! Follows each mode across the models in a bundle, and finds the models at which it jumps.
 //!
-//! The modes of each model are matched to the modes of a reference model by the assignment with the
-//! minimum sum of s-plane distances, so that one close match does not force a distant one.
+//! Each model's modes are matched to a reference model's modes by the assignment with the minimum
+//! sum of s-plane distances, so that one close match does not force a distant one.
 
 use nalgebra::Complex;
 
@@ -10,8 +10,8 @@ use gdcm_model::statistics::median;
 
 use super::assignment::cheapest_assignment;
 
-/// Minimum distance of a jump from the centre, in track spreads: a smooth track over perturbations
-/// in both directions ends at two to three spreads.
+/// Minimum distance from the centre that counts as a jump, in track spreads: a smooth track over
+/// perturbations in both directions ends at two to three spreads.
 const JUMP_SPREADS: f64 = 5.0;
 /// Minimum distance \[rad/s\] that counts as a jump: a smaller shift of a helicopter's slowest mode
 /// does not change the response within any band.
@@ -20,23 +20,23 @@ const LEAST_JUMP_RAD_S: f64 = 0.05;
 /// A mode in the reference model and its matches in the other models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTrack {
-    /// Index of the mode in the reference model.
+    /// The mode's index in the reference model.
     pub reference: usize,
     /// The matched mode's index in each model; `None` if the model has fewer poles.
     pub modes: Vec<Option<usize>>,
     /// The poles' centre \[rad/s\]: median real part and median imaginary part.
     pub centre: Complex<f64>,
-    /// Median distance of the poles from the centre \[rad/s\].
+    /// Median distance between the poles and the centre \[rad/s\].
     pub spread_rad_s: f64,
     /// Models whose pole is more than 5 spreads and more than 0.05 rad/s from the centre.
     pub jumps: Vec<usize>,
 }
 
-/// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
+/// Returns a track for each mode in `models[reference]`, in its order; a conjugate pair has one
 /// track, unless a model matches it with two poles that are not a pair.
 ///
-/// The poles of each model are matched to the poles of the reference with the minimum sum of
-/// s-plane distances (an assignment problem). No tracks if the reference has no modes.
+/// Each model's poles are matched to the reference's poles with the minimum sum of s-plane
+/// distances (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();
@@ -53,7 +53,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
             .zip(&modes)
             .map(|(model, mode)| mode.map(|mode| model[mode].pole))
             .collect();
-        // The track of the conjugate mode covers both.
+        // The conjugate mode's track covers both.
         let is_mirror =
             reference_mode.pole.im < 0.0 && poles.iter().flatten().all(|pole| pole.im < 0.0);
         if !is_mirror {
@@ -63,7 +63,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     tracks
 }
 
-/// Computes the track of a reference mode from its match in each model.
+/// Computes a reference mode's track from its match in each model.
 fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f64>>]) -> ModeTrack {
     let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
     let mut real_parts: Vec<f64> = known.iter().map(|pole| pole.re).collect();
@@ -90,7 +90,7 @@ fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f6
 }
 
 /// Returns the match in `model` for each mode in `reference`; `None` for a mode without a match in
-/// a smaller model. The rows of the assignment are the modes of the smaller model.
+/// a smaller model. The assignment's rows are the smaller model's modes.
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let mut matches = vec![None; reference.len()];
     if reference.len() <= model.len() {

@@ -1,4 +1,4 @@
-//! Envelopes of maximum unnoticeable added dynamics (MUAD; MIL-STD-1797A, appendix A, 4.2.1.2).
+//! Envelopes for maximum unnoticeable added dynamics (MUAD; MIL-STD-1797A, appendix A, 4.2.1.2).
 //!
 //! Pilots do not notice dynamics added to an aircraft's response while the added factor's magnitude
 //! and phase stay inside
@@ -19,7 +19,7 @@ use nalgebra::Complex;
 
 use gdcm_model::units::ratio_to_db;
 
-/// A ratio of two quadratic polynomials, highest power first, and a delay \[s\].
+/// Two quadratic polynomials, numerator and denominator, highest power first, and a delay \[s\].
 /// Evaluated at `s = j omega`.
 struct Factor {
     numerator: [f64; 3],
@@ -74,9 +74,9 @@ fn polynomial(coefficients: [f64; 3], omega: f64) -> Complex<f64> {
 /// The envelopes at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muad {
-    /// Lower and upper limit of the magnitude of the added dynamics \[dB\].
+    /// Lower and upper limit for the added dynamics' magnitude \[dB\].
     pub magnitude_db: [f64; 2],
-    /// Lower and upper limit of the phase of the added dynamics \[deg\].
+    /// Lower and upper limit for the added dynamics' phase \[deg\].
     pub phase_deg: [f64; 2],
 }
 
@@ -93,8 +93,8 @@ impl Muad {
         }
     }
 
-    /// Returns the distances from an error to the nearer limit of magnitude \[dB\] and phase
-    /// \[deg\], positive outside, negative inside.
+    /// Returns the distances from an error to the nearer magnitude limit \[dB\] and the nearer
+    /// phase limit \[deg\], positive outside, negative inside.
     fn distances_outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
         [
             distance_outside(self.magnitude_db, error_db),
@@ -103,14 +103,14 @@ impl Muad {
     }
 }
 
-/// Returns the distance from an error to the nearer limit of an envelope, positive outside.
+/// Returns the distance from an error to the envelope's nearer limit, positive outside.
 fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
     let [least, most] = envelope;
     (least - error).max(error - most)
 }
 
-/// Returns the ranges of `omega` \[rad/s\], start and end, in which a mismatch, model over
-/// reference, is outside an envelope: ascending and disjoint.
+/// Returns the `omega` ranges \[rad/s\], start and end, in which a mismatch, model over reference,
+/// is outside an envelope: ascending and disjoint.
 ///
 /// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
 /// its value near zero. Between two frequencies the distance from the envelope is linear in `ln

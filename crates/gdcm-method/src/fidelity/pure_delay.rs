@@ -6,7 +6,7 @@ use nalgebra::Complex;
 const STEPS: i32 = 600;
 /// Step between two compared delays \[s\].
 const STEP_S: f64 = 1e-3;
-/// Number of steps between neighbouring delays of the coarse grid.
+/// Steps between neighbouring delays in the coarse grid.
 const COARSE: i32 = 16;
 
 /// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest likeness `L = sum
@@ -28,8 +28,8 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     };
     let coarse = likenesses(phase, omega, &coarse_grid);
     let greatest = coarse.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Maximum rise of L within half a coarse step; the added 1e-9 for each term exceeds the
-    // rounding error of the sums.
+    // Maximum rise in L within half a coarse step; the added 1e-9 per term exceeds the sums'
+    // rounding error.
     let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
         + 1e-9 * phase.len() as f64;
     let mut best_likeness = f64::NEG_INFINITY;

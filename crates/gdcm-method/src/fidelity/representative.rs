@@ -1,4 +1,4 @@
-//! Choice of a bundle's representative (M5).
+//! Chooses a bundle's representative (M5).
 //!
 //! ```text
 //! s_a = mean over b != a of d(a, b)    the representative is the model with the smallest score s_a (medoid)
@@ -11,8 +11,8 @@ use std::collections::BTreeSet;
 
 use super::distance::BundleDistance;
 
-/// The medoid of the accepted models, or the model pinned by the analyst, with the score of every
-/// accepted model (M5).
+/// The accepted models' medoid, or the model pinned by the analyst, with every accepted model's
+/// score (M5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Representative {
     /// The representative's index in the bundle.

@@ -1,4 +1,4 @@
-//! The normal equations of a condition, and the elimination of its own gains (step 6 of `physics`,
+//! A condition's normal equations, and how its own gains are eliminated (step 6 in `physics`,
 //! M18.2).
 //!
 //! ```text
@@ -11,8 +11,8 @@
 //! 4  c(x) = w U^-1 (h - B' x)
 //! ```
 //!
-//! Shared unknowns: the fitted parameters, the delays of the outputs, those of the inputs. Own
-//! unknowns: the ln gains of the outputs, then those of the inputs.
+//! Shared unknowns: the fitted parameters, the output delays, the input delays. Own unknowns: the
+//! output ln gains, then the input ln gains.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -20,21 +20,21 @@ use gdcm_model::dataset::Pair;
 
 use super::pair_blocks::{Block, ConditionBlocks};
 
-/// Factors of the normal equations that are the same in all conditions.
+/// Factors in the normal equations that are the same in all conditions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EquationScale {
     /// `w = nu / (N s^2)`.
     pub(super) weight: f64,
-    /// Prior standard deviation of the ln gains; 0 for none.
+    /// Prior standard deviation of the ln gains; 0: no gains.
     pub(super) gain_sd: f64,
 }
 
-/// A part of the data.
+/// A part of the data that can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Output(usize),
     Input(usize),
-    /// A third of the grid, counted from 0.
+    /// A third of the frequency grid, counted from 0.
     Third(usize),
 }
 
@@ -49,7 +49,7 @@ impl Part {
     }
 }
 
-/// Sums of blocks: the normal equations of a condition, without scale and prior.
+/// Sums of blocks: a condition's normal equations, without scale and prior.
 #[derive(Clone, Debug)]
 pub(super) struct ConditionEquations {
     /// `S`.
@@ -66,7 +66,7 @@ pub(super) struct ConditionEquations {
     target_square: f64,
 }
 
-/// Numbers of unknowns.
+/// How many unknowns there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct UnknownCounts {
     /// Fitted parameters.
@@ -76,19 +76,19 @@ pub(super) struct UnknownCounts {
 }
 
 impl UnknownCounts {
-    /// Returns the number of channels.
+    /// Returns the channel count, outputs plus inputs.
     pub(super) fn channels(self) -> usize {
         self.outputs + self.inputs
     }
 
-    /// Returns the number of shared unknowns.
+    /// Returns the count of shared unknowns: parameters plus a delay per channel.
     pub(super) fn shared(self) -> usize {
         self.parameters + self.channels()
     }
 }
 
 impl ConditionEquations {
-    /// Sums the blocks of a condition, without those in the part left out (step 1).
+    /// Sums a condition's blocks, without those in the part left out (step 1).
     pub(super) fn new(
         blocks: &ConditionBlocks,
         counts: UnknownCounts,
@@ -115,8 +115,8 @@ impl ConditionEquations {
         equations
     }
 
-    /// Adds a block. Its row of the design matrix has the parameters, -j omega for the delays of
-    /// both channels, and 1 for their gains.
+    /// Adds a block. Its design matrix row has the parameters' derivatives, -j omega for both
+    /// channels' delays, and 1 for their gains.
     fn add(&mut self, block: &Block, counts: UnknownCounts, pair: Pair) {
         let channels = [pair.output, counts.outputs + pair.input];
         let mut columns: Vec<SharedColumn> = Vec::with_capacity(counts.parameters + 2);
@@ -151,7 +151,7 @@ impl ConditionEquations {
         self.target_square += block.product(block.target(), block.target());
     }
 
-    /// Eliminates the gains of the condition (steps 2 and 3); `None` if they are not determined.
+    /// Eliminates the condition's gains (steps 2 and 3); `None` if they are not determined.
     pub(super) fn reduced(&self, scale: EquationScale) -> Option<ReducedEquations> {
         let w = scale.weight;
         if scale.gain_sd == 0.0 {
@@ -200,7 +200,7 @@ impl ConditionEquations {
         (self.target_square - 2.0 * linear + quadratic).max(0.0)
     }
 
-    /// Returns the normal matrix of the fitted parameters with all channels known, times `w`.
+    /// Returns the fitted parameters' normal matrix with all channels known, times `w`.
     pub(super) fn parameter_information(
         &self,
         counts: UnknownCounts,
@@ -211,26 +211,26 @@ impl ConditionEquations {
     }
 }
 
-/// A column of the design matrix of a block.
+/// A column in a block's design matrix.
 struct SharedColumn {
     /// Index among the shared unknowns.
     unknown: usize,
-    /// Index of the block's entry.
+    /// Index of the entry in the block's `v`.
     entry: usize,
 }
 
-/// The normal equations of a condition for the shared unknowns, scaled.
+/// A condition's scaled normal equations for the shared unknowns.
 #[derive(Clone, Debug)]
 pub(super) struct ReducedEquations {
     /// `S'`.
     pub(super) matrix: DMatrix<f64>,
     /// `g'`.
     pub(super) right: DVector<f64>,
-    /// Factors of `U`; `None` without gains.
+    /// Cholesky factors of `U`; `None` without gains.
     own: Option<Cholesky<f64, Dyn>>,
 }
 
-/// Makes a matrix symmetric that is so but for rounding.
+/// Removes rounding errors that make a symmetric matrix slightly unsymmetric.
 pub(super) fn symmetrise(matrix: &mut DMatrix<f64>) {
     let transposed = matrix.transpose();
     *matrix += transposed;

@@ -15,40 +15,41 @@ use super::problem::{PhysicsError, PhysicsProblem};
 use super::score::Scores;
 use super::verdict::{NamingFacts, Verdict, WhyNotNamed};
 
-/// Ratio of a condition's misfit to the median of the conditions above which a caution is raised.
+/// A condition's misfit, relative to the median over the conditions, above which a caution is
+/// raised.
 pub const NOTABLE_MISFIT: f64 = 1.5;
-/// Least information of a condition about a parameter, in units of its prior: a standard deviation
-/// of three plausible ones.
+/// Least information that a condition must have about a parameter, relative to the prior: its
+/// standard deviation is then three plausible ones.
 const LEAST_INFORMATION: f64 = 1.0 / 9.0;
-/// Share of the progress that the passes have; scores and intervals follow.
+/// Share of the progress for the passes; scores and intervals follow.
 const PASSES_SHARE: f64 = 0.95;
 /// Step name in progress reports.
 const SCORING: &str = "intervals of physics parameters";
 
-/// A parameter of the diagnosis.
+/// What the diagnosis finds about a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterDiagnosis {
     /// Value, in plausible standard deviations.
     pub z: f64,
-    /// Half-width of the interval, in plausible standard deviations; `None` for a held value, and
+    /// Interval half-width, in plausible standard deviations; `None` for a value set by hand, and
     /// with fewer than four conditions.
     pub half_width: Option<f64>,
-    /// `None` for a held value.
+    /// `None` for a value set by hand.
     pub variance: Option<ValueVariance>,
-    /// Ratio of the score with this parameter alone; `None` for a held value, and with fewer than
-    /// two conditions.
+    /// Score ratio with this parameter alone ([`Scores::alone`]); `None` for a value set by hand,
+    /// and with fewer than two conditions.
     pub ratio_alone: Option<f64>,
-    /// Step of the stepwise list that adds it, counted from 1.
+    /// Step in the stepwise list that adds the parameter, counted from 1.
     pub step: Option<usize>,
-    /// Decrease of the ratio by that step.
+    /// How much that step lowers the ratio.
     pub gain: Option<f64>,
-    /// Share of the prior variance that the data remove; `None` for a held value.
+    /// Share of the prior variance that the data remove; `None` for a value set by hand.
     pub learned: Option<f64>,
-    /// Share of its effect that gains and delays of the channels can take.
+    /// Share of its effect that channel gains and delays can take over.
     pub channels_can_take: Option<f64>,
     /// Its strongest correlation with another parameter.
     pub strongest_pair: Option<ParameterPair>,
-    /// Why it is not named; `None` for a named one.
+    /// Why the parameter is not named; `None` for a named parameter.
     pub why_not_named: Option<WhyNotNamed>,
 }
 
@@ -58,30 +59,30 @@ impl ParameterDiagnosis {
         self.why_not_named.is_none()
     }
 
-    /// Returns whether the parameter acts like a gain or a delay of the channels, so that its value
-    /// rests on the prior of the delays.
+    /// Returns whether the parameter acts like a channel gain or delay, so that its value rests on
+    /// the delay prior.
     pub fn acts_like_channels(&self) -> bool {
         self.channels_can_take
             .is_some_and(|share| share > ACTS_LIKE_CHANNELS)
     }
 }
 
-/// A condition of the diagnosis.
+/// What the diagnosis finds about a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionDiagnosis {
     pub id: ConditionId,
     /// Root of `sum q^2 |ln(R / H^)|^2 / (2 sum q^2)`, ln units; `None` without any weight.
     pub misfit: Option<f64>,
-    /// Values of all parameters without this condition, in plausible standard deviations.
+    /// All parameter values fitted without this condition, in plausible standard deviations.
     pub z_without: Vec<f64>,
-    /// Value of each parameter in this condition; `None` for a held parameter, and where the
-    /// condition does not determine it.
+    /// Each parameter's value in this condition; `None` if it is set by hand, or if the condition
+    /// does not determine it.
     pub z_here: Vec<Option<ValueHere>>,
 }
 
-/// Value of a parameter from a single condition, with its prior left out, the other parameters and
-/// the delays at the solution, and the gains of the condition free:
-/// `z = x_k + (g'_k - (S' x)_k) / S'_kk`.
+/// A parameter's value from a single condition, without its prior, with the other parameters and
+/// the delays at the solution, and with the condition's gains free: `z = x_k + (g'_k - (S' x)_k) /
+/// S'_kk`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueHere {
     /// In plausible standard deviations.
@@ -94,29 +95,30 @@ pub struct ValueHere {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhysicsDiagnosis {
     pub fit: PhysicsFit,
-    /// In the order of the problem's parameters.
+    /// One entry per parameter, ordered as in the problem.
     pub parameters: Vec<ParameterDiagnosis>,
-    /// In the order of the problem's conditions.
+    /// One entry per condition, ordered as in the problem.
     pub conditions: Vec<ConditionDiagnosis>,
     /// `None` with fewer than two conditions.
     pub scores: Option<Scores>,
     /// `None` with fewer than four conditions.
     pub verdict: Option<Verdict>,
-    /// Root mean square deviation of the other identified models from their representatives, ln
+    /// Root mean square deviation between the other identified models and their representatives, ln
     /// units; `None` without other models.
     pub spread: Option<f64>,
-    /// Parameters that cannot be told apart.
+    /// Pairs of parameters that cannot be told apart, see
+    /// [`INSEPARABLE`](super::identifiability::INSEPARABLE).
     pub pairs: Vec<ParameterPair>,
     pub identifiability: Identifiability,
 }
 
 impl PhysicsDiagnosis {
-    /// Returns the share of the misfit of conditions left out that the parameters explain.
+    /// Returns the share of left-out conditions' misfit that the parameters explain.
     pub fn explained(&self) -> Option<f64> {
         Some(self.scores.as_ref()?.explained())
     }
 
-    /// Returns the indices of the named parameters.
+    /// Returns the named parameters' indices.
     pub fn named(&self) -> Vec<usize> {
         let mut named = Vec::new();
         for (index, parameter) in self.parameters.iter().enumerate() {
@@ -127,12 +129,12 @@ impl PhysicsDiagnosis {
         named
     }
 
-    /// Returns the combination of parameters about which the data say less than the prior.
+    /// Returns the parameter combination about which the data say less than the prior.
     pub fn weak_direction(&self) -> Option<&WeakDirection> {
         self.identifiability.weak_direction.as_ref()
     }
 
-    /// Returns the conditions whose misfit is more than 1.5 times the median of the conditions.
+    /// Returns the conditions whose misfit is more than 1.5 times the median over the conditions.
     pub fn poorly_fitted(&self) -> Vec<ConditionId> {
         let mut misfits: Vec<f64> = self
             .conditions
@@ -156,7 +158,7 @@ impl PhysicsDiagnosis {
 /// Fits the parameters, and derives intervals, scores, names and the verdict.
 ///
 /// # Errors
-/// The errors of [`fit_parameters`](super::fit_parameters).
+/// [`PhysicsError`], as from [`fit_parameters`](super::fit_parameters).
 pub fn diagnose(
     problem: &PhysicsProblem,
     executor: &dyn Executor,
@@ -199,7 +201,8 @@ pub fn diagnose(
     })
 }
 
-/// The parts from which the diagnosis of parameters and conditions is put together.
+/// Fit, intervals and scores, from which the diagnosis for parameters and conditions is put
+/// together.
 struct Assembly<'a> {
     problem: &'a PhysicsProblem,
     fit: &'a PhysicsFit,
@@ -237,7 +240,8 @@ impl Assembly<'_> {
         parameters
     }
 
-    /// Returns the diagnosis of a parameter; `index` is its index among the fitted ones.
+    /// Returns the diagnosis for a fitted parameter; `index` is its index among the fitted
+    /// parameters.
     fn fitted_parameter(&self, parameter: usize, index: usize) -> ParameterDiagnosis {
         let identifiability = self.identifiability;
         let learned = identifiability.learned[index];
@@ -263,8 +267,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Returns the value of a parameter from a single condition; `place` is its index among the
-    /// fitted ones.
+    /// Returns a parameter's value from a single condition; `place` is its index among the fitted
+    /// parameters.
     fn value_here(&self, condition: usize, place: usize) -> Option<ValueHere> {
         let reduced = &self.equations.reduced[condition];
         let information = reduced.matrix[(place, place)];
@@ -279,8 +283,7 @@ impl Assembly<'_> {
         })
     }
 
-    /// Returns the shared unknowns at the solution: fitted parameters, delays of the outputs, delays
-    /// of the inputs.
+    /// Returns the shared unknowns at the solution: fitted parameters, output delays, input delays.
     fn shared_values(&self) -> DVector<f64> {
         let fitted = self
             .fit

@@ -1,4 +1,4 @@
-//! Reasons for a missing fit of parameters.
+//! Reasons for a missing parameter fit.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::progress::Cancelled;
@@ -6,7 +6,7 @@ use gdcm_model::progress::Cancelled;
 /// Reasons why parameters cannot be fitted (M18.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PhysicsError {
-    /// No parameter is on.
+    /// No parameter is switched on.
     #[error("no fit of physics parameters: none is switched on")]
     NoParameters,
     /// No condition has a response that its representatives and its family contain.
@@ -15,7 +15,7 @@ pub enum PhysicsError {
         available in both its physics and its identified representative"
     )]
     NothingToFit { conditions: usize },
-    /// The table of a condition does not have the expected shape.
+    /// A condition's table does not have the expected shape.
     #[error(
         "condition {condition}: expected {} x {} responses at {} frequencies in every table, found {} x {} at {}",
         expected[0],
@@ -32,17 +32,17 @@ pub enum PhysicsError {
         /// Outputs, inputs and frequencies found.
         found: [usize; 3],
     },
-    /// A family has another number of parameters than the problem.
+    /// A family and the problem differ in their parameter count.
     #[error("condition {condition}: expected runs of {expected} parameters, found {found}")]
     ParameterCount {
         condition: ConditionId,
         expected: usize,
         found: usize,
     },
-    /// A value held by hand is not finite.
+    /// A value set by hand is not finite.
     #[error("parameter {parameter}: expected a finite value, found {value}")]
     HeldValue {
-        /// Index of the parameter, counted from 1.
+        /// Parameter number, counted from 1.
         parameter: usize,
         value: f64,
     },

@@ -1,5 +1,5 @@
-//! The responses of a condition's physics model for any values of the parameters, and their
-//! derivatives (steps 2 and 3 of `physics`, M18.2).
+//! A condition's physics responses for any parameter values, and their derivatives (steps 2 and 3
+//! in `physics`, M18.2).
 //!
 //! ```text
 //! H = C (j omega I - A)^-1 B + D   at  A(z), B(z), C(z), D(z)
@@ -8,9 +8,9 @@
 //! ```
 //!
 //! In discrete time, `j omega` is `e^(j omega T)`. Channel delays multiply H and its derivatives. A
-//! representative with other states than the runs' base has no increments of its matrices; the
-//! responses then change like those of the base, `H = H_rep + sum_k (z_k L_k + z_k^2 Q_k)` with `L_k`
-//! and `Q_k` of the responses.
+//! representative with other states than the runs' base has no increments for its matrices; its
+//! responses then change like the base's, `H = H_rep + sum_k (z_k L_k + z_k^2 Q_k)`, with `L_k` and
+//! `Q_k` from the responses.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -23,7 +23,7 @@ use super::increments::{ConditionIncrements, ParameterIncrement, RunStep};
 use super::matrices::Matrices;
 use super::resolvent::ResolventProducts;
 
-/// Response and derivatives on a grid of N frequencies, each `[(output m + input) N + frequency]`.
+/// Response and derivatives at N frequencies, each `[(output m + input) N + frequency]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FamilyResponse {
     /// `H(z)`.
@@ -32,7 +32,7 @@ pub struct FamilyResponse {
     pub derivatives: Vec<Vec<Complex<f64>>>,
 }
 
-/// The models of a condition for any values of the parameters.
+/// A condition's physics models for any parameter values.
 #[derive(Clone, Debug)]
 pub struct ModelFamily {
     kind: FamilyKind,
@@ -46,18 +46,18 @@ enum FamilyKind {
     Responses(ResponseFamily),
 }
 
-/// A family of matrices, in balanced coordinates.
+/// Family given by matrices, in balanced coordinates.
 #[derive(Clone, Debug)]
 struct MatrixFamily {
     /// The representative; `A - I` in place of A in discrete time.
     base: Matrices,
     increments: Vec<ParameterIncrement>,
     sample_time_s: Option<f64>,
-    /// Delays of each response \[s\], `[output m + input]`.
+    /// Delay in each response \[s\], `[output m + input]`.
     delays_s: Vec<f64>,
 }
 
-/// A family of responses on a fixed grid; each list as in [`FamilyResponse`].
+/// Family given by responses on a fixed grid; each list as in [`FamilyResponse`].
 #[derive(Clone, Debug)]
 struct ResponseFamily {
     base: Vec<Complex<f64>>,
@@ -68,8 +68,8 @@ struct ResponseFamily {
 }
 
 impl ModelFamily {
-    /// Creates the family of a representative with the states of the increments' base; `None` for a
-    /// representative with other states ([`ModelFamily::from_responses`]).
+    /// Creates the family for a representative that has the same states as the increments' base;
+    /// `None` for other states, see [`ModelFamily::from_responses`].
     pub fn from_matrices(representative: &Model, increments: &ConditionIncrements) -> Option<Self> {
         let model = representative.state_space()?;
         if !increments.has_states_of(representative) {
@@ -103,9 +103,9 @@ impl ModelFamily {
         })
     }
 
-    /// Creates the family of a representative whose responses on the grid `omega` \[rad/s\] change
-    /// like those of the runs' bases; `None` if a parameter has no run, two with the same step, or
-    /// one that does not fit.
+    /// Creates the family for a representative whose responses on the grid `omega` \[rad/s\] change
+    /// like the runs' bases; `None` if a parameter has no run, two runs with the same step, or a
+    /// run that does not fit its base.
     pub fn from_responses(
         representative: &Model,
         runs: &[Vec<RunStep<'_>>],
@@ -157,7 +157,7 @@ impl ModelFamily {
         self.inputs
     }
 
-    /// Returns the number of parameters.
+    /// Returns the parameter count.
     pub fn parameters(&self) -> usize {
         match &self.kind {
             FamilyKind::Matrices(family) => family.increments.len(),
@@ -165,8 +165,8 @@ impl ModelFamily {
         }
     }
 
-    /// Returns the number of frequencies of a family of responses; `None` for matrices, which have
-    /// a response at any frequency.
+    /// Returns the frequency count if the family is given by responses; `None` for matrices, which
+    /// have a response at any frequency.
     pub fn points(&self) -> Option<usize> {
         match &self.kind {
             FamilyKind::Matrices(_) => None,
@@ -176,8 +176,8 @@ impl ModelFamily {
         }
     }
 
-    /// Computes `H(z)` and its derivatives at `omega` \[rad/s\], the grid of the family if it is one
-    /// of responses; `z` has a value for each parameter. Missing values are not finite.
+    /// Computes `H(z)` and its derivatives at `omega` \[rad/s\], which must be the family's grid if
+    /// it is given by responses; `z` has a value for each parameter. Missing values are not finite.
     pub fn evaluate(&self, z: &[f64], omega: &[f64]) -> FamilyResponse {
         match &self.kind {
             FamilyKind::Matrices(family) => family.evaluate(z, omega),
@@ -227,8 +227,8 @@ impl MatrixFamily {
     }
 }
 
-/// Computes `Y A' X + Y B' + C' X + D'` for a change of the matrices, point by point:
-/// `[(point p + output) m + input]`.
+/// Computes `Y A' X + Y B' + C' X + D'` for a change in the matrices, point by point: `[(point p +
+/// output) m + input]`.
 fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) -> Vec<Complex<f64>> {
     let inputs = change.b.ncols();
     let outputs = change.c.nrows();
@@ -245,7 +245,7 @@ fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) ->
         let left = products
             .output_states
             .rows(2 * outputs * point, 2 * outputs);
-        // Real and imaginary parts of Y times those of A' X + B', 2 p x 2 m.
+        // Real and imaginary parts of Y, times those of A' X + B': 2 p x 2 m.
         let product = left * driven.columns(2 * inputs * point, 2 * inputs);
         for output in 0..outputs {
             for input in 0..inputs {
@@ -262,7 +262,7 @@ fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) ->
     values
 }
 
-/// Orders values given point by point response by response.
+/// Reorders values from point by point to response by response.
 fn ordered(values: &[Complex<f64>], responses: usize, points: usize) -> Vec<Complex<f64>> {
     let mut ordered = Vec::with_capacity(values.len());
     for response in 0..responses {
@@ -306,7 +306,7 @@ fn state_space_values(model: &StateSpace, omega: &[f64]) -> Vec<Complex<f64>> {
     values(&Dynamics::StateSpace(model.clone()), omega)
 }
 
-/// Returns the responses of a model in the order of [`FamilyResponse`].
+/// Returns a model's responses, ordered as in [`FamilyResponse`].
 fn values(dynamics: &Dynamics, omega: &[f64]) -> Vec<Complex<f64>> {
     let response = PreparedModel::new(dynamics).at(omega);
     response

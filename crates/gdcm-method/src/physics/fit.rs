@@ -1,4 +1,4 @@
-//! Fits the parameters to all conditions at once (steps 2 to 8 of `physics`, M18.2).
+//! Fits the parameters to all conditions at once (steps 2 to 8 in `physics`, M18.2).
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Progress, Shares};
@@ -9,19 +9,19 @@ use super::problem::{PhysicsError, PhysicsProblem};
 use super::weighted_condition::{PassPoint, WeightedCondition};
 use crate::correction::Channels;
 
-/// Greatest change of a value in one pass.
+/// Greatest change in a value per pass, in plausible standard deviations.
 const GREATEST_STEP: f64 = 1.0;
-/// Change of every value below which the passes end.
+/// The passes end when no value changes by more than this, in plausible standard deviations.
 const SETTLED: f64 = 1e-3;
-/// Fewest passes.
+/// Minimum number of passes.
 const FEWEST_PASSES: usize = 3;
 /// Step name in progress reports.
 const FITTING: &str = "physics parameters";
 
-/// A pass of the fit.
+/// A pass in the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPass {
-    /// Values of all parameters after the pass, in plausible standard deviations.
+    /// All parameter values after the pass, in plausible standard deviations.
     pub z: Vec<f64>,
     /// `s^2` before the pass.
     pub misfit_square: f64,
@@ -29,19 +29,19 @@ pub struct FitPass {
     pub weighted_square: f64,
 }
 
-/// The fitted values, and the course of the fit.
+/// The fitted values, and how the fit proceeded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhysicsFit {
-    /// Values of all parameters, held ones included, in plausible standard deviations.
+    /// All parameter values, including those set by hand, in plausible standard deviations.
     pub z: Vec<f64>,
-    /// Indices of the fitted parameters, ascending.
+    /// Fitted parameters' indices, ascending.
     pub fitted: Vec<usize>,
-    /// `tau`: delays of the channels, of either sign \[s\].
+    /// `tau`: channel delays, positive or negative \[s\].
     pub delays_s: Channels<f64>,
-    /// `a`, `b`: ln gains of the channels, for each condition.
+    /// `a`, `b`: channel ln gains, for each condition.
     pub ln_gains: Vec<Channels<f64>>,
     pub passes: Vec<FitPass>,
-    /// Index of the parameter that still moved most in the last pass; `None` if all had settled.
+    /// Parameter that still moved most in the last pass, by index; `None` if all had settled.
     pub still_moving: Option<usize>,
     /// Misfit `s` at the solution, ln units, at least 0.01.
     pub misfit: f64,
@@ -70,7 +70,7 @@ pub fn fit_parameters(
     Ok(solve(problem, executor, progress)?.fit)
 }
 
-/// Fits the parameters, and returns the normal equations at the solution with them.
+/// Fits the parameters, and keeps the normal equations at the solution.
 pub(super) fn solve(
     problem: &PhysicsProblem,
     executor: &dyn Executor,
@@ -117,9 +117,9 @@ pub(super) fn solve(
 }
 
 impl FitPoint {
-    /// Moves to the solution of a pass, its values cut to the greatest permitted; shortens the whole
-    /// step if a value would move by more than one plausible standard deviation. Returns the
-    /// parameter that moves most, `None` if all move by 1e-3 or less.
+    /// Moves to a pass's solution, whose values are already limited to the permitted range;
+    /// shortens the whole step if a value would move by more than one plausible standard deviation.
+    /// Returns the parameter that moves most, or `None` if all move by 1e-3 or less.
     fn step_to(&mut self, solution: &FitPoint) -> Option<usize> {
         let mut largest = 0.0;
         let mut moving = None;
@@ -144,14 +144,14 @@ impl FitPoint {
     }
 }
 
-/// Data common to all passes of a fit.
+/// Data common to all passes in a fit.
 struct Fitting<'a> {
     problem: &'a PhysicsProblem,
     conditions: Vec<WeightedCondition<'a>>,
     fitted: Vec<usize>,
     executor: &'a dyn Executor,
     shares: Shares<'a>,
-    /// Share of the progress that a condition has in a pass.
+    /// Progress share for one condition in one pass.
     share: f64,
 }
 

@@ -1,5 +1,5 @@
-//! What the data tell about each parameter, and which parameters they cannot tell apart (step 11 of
-//! `physics`, M18.3).
+//! Shows how much the data determine each parameter, and which parameters cannot be told apart
+//! (step 11 in `physics`, M18.3).
 //!
 //! ```text
 //! learned about k          1 - (P^-1)_kk,     P = F + I
@@ -12,13 +12,13 @@ use nalgebra::{Cholesky, DMatrix};
 use super::pass_equations::{PassEquations, singular};
 use super::problem::PhysicsError;
 
-/// Magnitude of the correlation above which two parameters cannot be told apart.
+/// Correlation magnitude above which two parameters cannot be told apart.
 pub const INSEPARABLE: f64 = 0.8;
-/// Share of a parameter's effect that channels can take above which its value rests on the prior of
-/// the delays.
+/// Share of a parameter's effect that channels can take over, above which its value rests on the
+/// delay prior.
 pub const ACTS_LIKE_CHANNELS: f64 = 0.95;
-/// Least singular value of `F` below which its direction is reported: the data then say less about
-/// it than the prior.
+/// If the least singular value of `F` is below this, its direction is reported: the data then say
+/// less about it than the prior.
 const WEAK_DIRECTION: f64 = 1.0;
 
 /// Two parameters and their correlation in `P^-1`.
@@ -29,16 +29,16 @@ pub struct ParameterPair {
     pub correlation: f64,
 }
 
-/// The combination of parameters about which the data say least.
+/// The parameter combination that the data determine least.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WeakDirection {
     /// Singular value of `F`, below 1.
     pub singular_value: f64,
-    /// Unit vector, in the order of the fitted parameters; its largest component is positive.
+    /// Unit vector over the fitted parameters; its largest component is positive.
     pub direction: Vec<f64>,
 }
 
-/// What the data tell about the fitted parameters, in their order.
+/// How well the data determine the fitted parameters, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
     /// `F`.
@@ -47,13 +47,13 @@ pub struct Identifiability {
     pub(super) inverse: DMatrix<f64>,
     /// Singular values of `F`, descending.
     pub singular_values: Vec<f64>,
-    /// Present where the least singular value is below 1.
+    /// Present if the least singular value is below 1.
     pub weak_direction: Option<WeakDirection>,
     /// `1 - (P^-1)_kk`.
     pub learned: Vec<f64>,
-    /// Share of the effect that gains and delays can take; `None` for a parameter without effect.
+    /// Share of each parameter's effect that gains and delays can take over; `None` without effect.
     pub channels_can_take: Vec<Option<f64>>,
-    /// Correlation of every two parameters.
+    /// Correlation between every two parameters.
     pub correlation: DMatrix<f64>,
 }
 
@@ -61,7 +61,7 @@ impl Identifiability {
     /// Computes all figures from the equations at the solution.
     ///
     /// # Errors
-    /// [`PhysicsError::SingularNormalMatrix`].
+    /// [`PhysicsError::SingularNormalMatrix`] if a matrix has no Cholesky factors.
     pub(super) fn new(equations: &PassEquations) -> Result<Self, PhysicsError> {
         let size = equations.counts.parameters;
         let information = equations
@@ -120,8 +120,8 @@ impl Identifiability {
         pairs
     }
 
-    /// Returns the parameter with the strongest correlation with another, by index among the fitted
-    /// ones; `None` for a single parameter.
+    /// Returns the strongest correlation that the parameter at `index` among the fitted parameters
+    /// has with another; `None` for a single parameter.
     pub(super) fn strongest_pair(&self, index: usize, fitted: &[usize]) -> Option<ParameterPair> {
         let mut strongest: Option<ParameterPair> = None;
         for other in 0..fitted.len() {
@@ -143,7 +143,7 @@ impl Identifiability {
     }
 }
 
-/// Singular values of a symmetric matrix, and the direction of the least.
+/// Singular values of a symmetric matrix, and the direction that belongs to the least one.
 struct Directions {
     singular_values: Vec<f64>,
     weak: Option<WeakDirection>,
@@ -154,7 +154,7 @@ impl Directions {
         let eigen = information.clone().symmetric_eigen();
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        // `F` has no negative eigenvalue but for rounding.
+        // Only rounding makes an eigenvalue of `F` negative.
         let singular_values: Vec<f64> = order
             .iter()
             .map(|&index| eigen.eigenvalues[index].max(0.0))

@@ -1,4 +1,4 @@
-//! How the matrices of a condition's physics model change with each parameter (step 1 of `physics`,
+//! How each parameter changes the matrices of a condition's physics model (step 1 in `physics`,
 //! M18.2), and the model for chosen values (M18.5).
 //!
 //! ```text
@@ -8,8 +8,8 @@
 //! A(z) = A + sum_k (z_k L_k + z_k^2 Q_k);   B, C and D likewise
 //! ```
 //!
-//! `z_k` is the change of parameter k over its plausible standard deviation, `A_0` the matrix of the
-//! runs' base.
+//! `z_k` is parameter k's change divided by its plausible standard deviation, `A_0` the matrix in
+//! the runs' base.
 
 use std::sync::Arc;
 
@@ -18,23 +18,23 @@ use gdcm_model::dataset::{Model, StateSpace};
 
 use super::matrices::Matrices;
 
-/// Share of the curvature in a change of A above which a step of the run was too large for the value
-/// found (M18.7).
+/// Ratio between the quadratic and the linear change in A above which the effect bends, so that the
+/// linear part misses the value found (M18.7).
 pub const NOTABLE_CURVATURE: f64 = 0.5;
 
-/// A run of a parameter at the change `z`, in plausible standard deviations.
+/// A run with one parameter moved by `z` plausible standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub struct RunStep<'a> {
-    /// Change of the parameter over its plausible standard deviation; not zero.
+    /// The parameter's change divided by its plausible standard deviation; not zero.
     pub z: f64,
     /// The model at which the parameter is nominal.
     pub base: &'a StateSpace,
-    /// The model with the parameter moved; of the shape of `base`.
+    /// The model with the parameter moved; same shape as `base`.
     pub run: &'a StateSpace,
 }
 
 impl RunStep<'_> {
-    /// Returns whether the step can be divided by, and the run has the shape of its base.
+    /// Returns whether the step is finite and not zero, and the run has its base's shape.
     pub(super) fn fits(&self) -> bool {
         self.z.is_finite() && self.z != 0.0 && model_shape(self.run) == model_shape(self.base)
     }
@@ -45,19 +45,19 @@ pub(super) fn model_shape(model: &StateSpace) -> [usize; 3] {
     [model.order(), model.inputs(), model.outputs()]
 }
 
-/// Change of the matrices with one parameter.
+/// How one parameter changes the matrices.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ParameterIncrement {
     /// `L`, per plausible standard deviation.
     pub(super) linear: Matrices,
-    /// `Q`, per square of it; `None` for a single run.
+    /// `Q`, per squared plausible standard deviation; `None` for a single run.
     pub(super) quadratic: Option<Matrices>,
 }
 
 impl ParameterIncrement {
     /// Computes `L` and `Q` from one or two runs; further runs are not used. Returns `None` without
-    /// a run, if two runs have the same step, and if a step is zero or not finite, or a run has not
-    /// the shape of its base.
+    /// a run, if two runs have the same step, if a step is zero or not finite, or if a run differs
+    /// in shape from its base.
     pub(super) fn from_runs(runs: &[RunStep<'_>]) -> Option<Self> {
         let first = runs.first()?;
         if !runs.iter().all(RunStep::fits) {
@@ -83,7 +83,7 @@ impl ParameterIncrement {
         })
     }
 
-    /// Adds the change at `z` to the matrices of a model.
+    /// Adds the change at `z` to a model's matrices.
     pub(super) fn add_to(&self, model: &mut Matrices, z: f64) {
         if z == 0.0 {
             return;
@@ -103,8 +103,8 @@ impl ParameterIncrement {
         derivative
     }
 
-    /// Returns `|z| ||Q|| / ||L||` of the system matrices, the share of the curvature in the change;
-    /// 0 for a single run, and where A does not change.
+    /// Returns `|z| ||Q|| / ||L||` for the system matrix A: quadratic over linear change; 0 for a
+    /// single run, and if A does not change.
     pub(super) fn curvature(&self, z: f64) -> f64 {
         let linear = self.linear.a.norm();
         match &self.quadratic {
@@ -125,10 +125,10 @@ impl ParameterIncrement {
     }
 }
 
-/// Change of a condition's physics models with all parameters, in the order of the parameters.
+/// How each parameter changes a condition's physics models, one increment per parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionIncrements {
-    /// State names of the base; empty if unknown.
+    /// The base's state names; empty if unknown.
     states: Arc<[String]>,
     order: usize,
     inputs: usize,
@@ -139,20 +139,20 @@ pub struct ConditionIncrements {
 /// Reasons why increments cannot be formed, or do not apply to a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IncrementError {
-    /// A parameter has no run, runs with the same step, or a run that does not fit its base or the
-    /// other parameters.
+    /// A parameter has no run, two runs with the same step, a step that is zero or not finite, or a
+    /// run that differs in shape from its base or from the other parameters' runs.
     #[error("parameter {parameter}: expected one run, or two with different steps other than 0")]
     Runs {
-        /// Index of the parameter, counted from 1.
+        /// Parameter number, counted from 1.
         parameter: usize,
     },
-    /// The states of a model are not those of the base.
+    /// A model has other states than the base.
     #[error("expected the states of the runs' base, found other states")]
     States,
     /// A model is a measured response.
     #[error("expected matrices, found a measured response")]
     Measured,
-    /// The number of values differs from the number of parameters.
+    /// There are more or fewer values than parameters.
     #[error("expected {expected} values, found {found}")]
     Count { expected: usize, found: usize },
     /// The matrices with the changes are not finite.
@@ -174,11 +174,11 @@ impl IncrementError {
 }
 
 impl ConditionIncrements {
-    /// Computes the increments of a condition from the runs of each parameter; `base` gives the
-    /// names of the states.
+    /// Computes a condition's increments from each parameter's runs; `base` gives the state names.
     ///
     /// # Errors
-    /// [`IncrementError::Runs`].
+    /// [`IncrementError::Measured`] if `base` is a measured response; [`IncrementError::Runs`] if a
+    /// parameter has no usable runs, or runs that differ from `base` in shape.
     pub fn new(base: &Model, runs: &[Vec<RunStep<'_>>]) -> Result<Self, IncrementError> {
         let Some(model) = base.state_space() else {
             return Err(IncrementError::Measured);
@@ -205,13 +205,13 @@ impl ConditionIncrements {
         })
     }
 
-    /// Returns the number of parameters.
+    /// Returns the parameter count.
     pub fn parameters(&self) -> usize {
         self.parameters.len()
     }
 
-    /// Returns whether a model has the states of the base: the same number, with the same names in
-    /// the same order where both give names.
+    /// Returns whether a model has the same states as the base: equally many, with the same names
+    /// in the same order if both give names.
     pub fn has_states_of(&self, model: &Model) -> bool {
         match model.state_space() {
             Some(matrices) => {
@@ -226,13 +226,13 @@ impl ConditionIncrements {
         }
     }
 
-    /// Returns the matrices of a model of the condition with the parameters at `z` (plausible
-    /// standard deviations): `A(z) = A + sum_k (z_k L_k + z_k^2 Q_k)`, and so on. Sample time and
-    /// delays stay.
+    /// Returns the matrices for one of the condition's models with the parameters at `z` (plausible
+    /// standard deviations): `A(z) = A + sum_k (z_k L_k + z_k^2 Q_k)`, and likewise B, C and D.
+    /// Sample time and delays stay.
     ///
     /// # Errors
-    /// [`IncrementError`] for a measured model, for other states than those of the base, for
-    /// another number of values, and for values at which the matrices are not finite.
+    /// [`IncrementError`] for a measured model, for other states than the base's, if `z` has the
+    /// wrong length, and for values at which the matrices are not finite.
     pub fn apply(&self, model: &Model, z: &[f64]) -> Result<StateSpace, IncrementError> {
         let Some(matrices) = model.state_space() else {
             return Err(IncrementError::Measured);
@@ -254,7 +254,7 @@ impl ConditionIncrements {
         Ok(moved.timed(matrices.timing().clone())?)
     }
 
-    /// Returns `|z| ||Q|| / ||L||` of the system matrices for each parameter; above
+    /// Returns `|z| ||Q|| / ||L||` for the system matrix A, per parameter; above
     /// [`NOTABLE_CURVATURE`], the effect bends (M18.7).
     pub fn curvatures(&self, z: &[f64]) -> Vec<f64> {
         self.parameters

@@ -1,5 +1,5 @@
-//! Intervals of the values, by jackknives over conditions, outputs, inputs and thirds of the band
-//! (step 9 of `physics`, M18.3).
+//! Confidence intervals for the parameter values, by jackknives over conditions, outputs, inputs
+//! and thirds of the band (step 9 in `physics`, M18.3).
 //!
 //! ```text
 //! V_kind = (n - 1) / n sum_i (z_(-i) - mean)^2   for each kind with n > 1 members
@@ -7,9 +7,9 @@
 //! half-width = t(n_c - 1) sqrt(V)
 //! ```
 //!
-//! `z_(-i)` solves the stored normal equations without member i, with `s^2` kept. `F` is the normal
-//! matrix of the parameters after elimination of all channels. The last term is the pull of the
-//! prior: a parameter on which the data are silent gets a wide interval, never a narrow zero.
+//! `z_(-i)` solves the stored normal equations without member i, with `s^2` kept. `F` is the
+//! parameters' normal matrix after eliminating all channels. The last term accounts for the prior:
+//! a parameter that the data do not determine gets a wide interval, not a narrow one around zero.
 //!
 //! B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
 
@@ -22,11 +22,11 @@ use super::problem::PhysicsError;
 use super::shared_system::SharedSystem;
 use crate::uncertainty::student_quantile;
 
-/// Fewest conditions for intervals and names.
+/// Minimum number of conditions for intervals and named parameters.
 pub const LEAST_CONDITIONS: usize = 4;
 
-/// The variance of a value, by source, in squares of plausible standard deviations. `None` for a
-/// kind with fewer than two members.
+/// A value's variance, by source, in squared plausible standard deviations. `None` for a source
+/// with fewer than two members.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ValueVariance {
     pub condition: Option<f64>,
@@ -47,12 +47,12 @@ impl ValueVariance {
     }
 }
 
-/// Intervals of the fitted parameters, in their order.
+/// Intervals for the fitted parameters, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Intervals {
     pub(super) variances: Vec<ValueVariance>,
-    /// Half-widths at the level of the problem, in plausible standard deviations; empty with fewer
-    /// than four conditions.
+    /// Half-widths at the problem's confidence level, in plausible standard deviations; empty with
+    /// fewer than four conditions.
     pub(super) half_widths: Vec<f64>,
     /// `z` without each condition.
     pub(super) without_condition: Vec<Vec<f64>>,
@@ -62,7 +62,7 @@ impl Intervals {
     /// Computes the intervals from the equations at the solution; `inverse` is `P^-1`.
     ///
     /// # Errors
-    /// [`PhysicsError::SingularNormalMatrix`].
+    /// [`PhysicsError::SingularNormalMatrix`] if the equations without a member have no solution.
     pub(super) fn new(
         equations: &PassEquations,
         inverse: &DMatrix<f64>,
@@ -112,7 +112,8 @@ impl Intervals {
     }
 }
 
-/// Solves the equations without each member of a kind that has data.
+/// Solves the equations once without each output, input or third, whichever `part` creates, that
+/// has data.
 fn solve_without(
     equations: &PassEquations,
     count: usize,
@@ -136,7 +137,7 @@ fn solve(
         .ok_or(singular(equations.counts))
 }
 
-/// Returns `(n - 1) / n sum (z_(-i) - mean)^2` of an unknown; `None` for fewer than two members.
+/// Returns `(n - 1) / n sum (z_(-i) - mean)^2` for an unknown; `None` for fewer than two members.
 fn jackknife(without: &[DVector<f64>], unknown: usize) -> Option<f64> {
     if without.len() < 2 {
         return None;

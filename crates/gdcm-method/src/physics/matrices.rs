@@ -1,10 +1,10 @@
-//! The four matrices of a model, or a change of them.
+//! A model's four matrices, or a change in them.
 
 use nalgebra::DMatrix;
 
 use gdcm_model::dataset::StateSpace;
 
-/// A, B, C and D of a model, or a change of them.
+/// A model's A, B, C and D, or a change in them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Matrices {
     /// n x n.
@@ -27,7 +27,7 @@ impl Matrices {
         }
     }
 
-    /// Returns whether the matrices have the shape of a model's.
+    /// Returns whether the matrices have the same shape as a model's.
     pub(super) fn has_shape_of(&self, model: &StateSpace) -> bool {
         self.a.nrows() == model.order() && self.d.shape() == (model.outputs(), model.inputs())
     }

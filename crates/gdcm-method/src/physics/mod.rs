@@ -1,5 +1,5 @@
-//! Named parameters of the physics model: which would have to move, and by how much, so that the
-//! physics model meets flight in all conditions at once (M18).
+//! Named physics parameters: which would have to move, and by how much, so that the physics model
+//! matches flight in all conditions at once (M18).
 //!
 //! ```text
 //!  1  each run gives the change of A, B, C, D for a step of one parameter: L_k (and Q_k from two runs)
@@ -13,17 +13,18 @@
 //!  8  again from 3, until no z moves by more than 1e-3 after three passes, or after 20
 //!  9  intervals: the stored equations without each condition, output, input and third
 //! 10  scores: conditions left out predicted by each parameter alone, and stepwise
-//! 11  what the data tell about each parameter, and which cannot be told apart
-//! 12  names and verdict
+//! 11  how well the data determine each parameter, and which cannot be told apart
+//! 12  named parameters and verdict
 //! ```
 //!
-//! `z_k` is the change of parameter k over its plausible standard deviation, `R` the identified
+//! `z_k` is parameter k's change divided by its plausible standard deviation, `R` the identified
 //! representative, `H` the physics representative. The ln gains `a`, `b` belong to a condition, the
 //! delays `tau` are common to all; both are left free, so that a calibration error is not blamed on
 //! the physics model. Every pass is convex with a single optimum; the sequence of passes is not
 //! proven.
 //!
-//! It is a diagnosis. A parameter that is not offered hides behind one that acts alike (M18.7).
+//! The result is a diagnosis. If the cause is a parameter without runs, another parameter with a
+//! similar effect is blamed for it (M18.7).
 //!
 //! | step | file |
 //! |---|---|

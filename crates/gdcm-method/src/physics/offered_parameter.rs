@@ -8,20 +8,20 @@ use gdcm_model::dataset::{Dataset, PhysicsParameter};
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfferedParameter {
     pub name: String,
-    /// Unit of its changes.
+    /// Unit for the changes.
     pub unit: String,
-    /// Standard deviation of the changes considered possible, in the unit; the unit of `z`.
+    /// Plausible change, one standard deviation, in `unit`; `z` counts in multiples of it.
     pub plausible_sd: f64,
-    /// Meaning of the parameter; empty if unknown.
+    /// The parameter's meaning; empty if unknown.
     pub description: String,
 }
 
 impl OfferedParameter {
-    /// Lists the parameters with at least one run: the declared ones in the order of the dataset,
-    /// then the others in the order of their first run.
+    /// Lists the parameters with at least one run: first those that the dataset declares, in its
+    /// order, then the others by their first run.
     ///
-    /// Where the dataset does not state the plausible standard deviation, it is the largest
-    /// magnitude of the steps of the parameter's runs in its unit.
+    /// If the dataset does not state the plausible standard deviation, the largest step magnitude
+    /// among the parameter's runs in its unit is used.
     pub fn list(dataset: &Dataset) -> Vec<Self> {
         let runs: Vec<&ParameterChange> = dataset
             .conditions()

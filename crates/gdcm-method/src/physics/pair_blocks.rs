@@ -1,28 +1,28 @@
-//! The products of a pass, for each response and third of the grid (step 5 of `physics`, M18.2).
+//! Products in a pass, for each response and third of the grid (step 5 in `physics`, M18.2).
 //!
-//! The residual of a response at a frequency is linear in the values `z` of the parameters, the sum
-//! `tau_o + tau_i` of two delays and the sum `a_oc + b_ic` of two ln gains:
+//! A response's residual at a frequency is linear in the parameter values `z`, in the delay sum
+//! `tau_o + tau_i` and in the ln gain sum `a_oc + b_ic`:
 //!
 //! ```text
 //! y - sum_k d_k z_k + j omega (tau_o + tau_i) - (a_oc + b_ic),   d_k = (dH/dz_k) / H
 //! y = ln(R / H^) + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
 //! ```
 //!
-//! with the values of the present pass in `y`. With `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is
-//! `sum q^2 Re(conj(v) v')` over the frequencies of a third: all later sums, with or without a
+//! with the present pass's values in `y`. With `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is
+//! `sum q^2 Re(conj(v) v')` over a third's frequencies: all later sums, with or without a
 //! condition, output, input or third, are sums of blocks.
 
 use nalgebra::Complex;
 
 use gdcm_model::dataset::PairTable;
 
-/// Number of parts of the grid that are left out one by one.
+/// Parts of the frequency grid that are left out one by one.
 pub(super) const THIRDS: usize = 3;
 
-/// The products of one response in one third of the grid.
+/// Products for one response in one third of the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Block {
-    /// Number of fitted parameters, K.
+    /// K, the count of fitted parameters.
     parameters: usize,
     /// `sum q^2 Re(conj(v) v')`, (K + 3) x (K + 3), row by row.
     products: Vec<f64>,
@@ -43,7 +43,7 @@ impl Block {
         }
     }
 
-    /// Returns the product of two entries of `v`.
+    /// Returns the summed product of two entries in `v`.
     pub(super) fn product(&self, row: usize, column: usize) -> f64 {
         self.products[row * (self.parameters + 3) + column]
     }
@@ -53,7 +53,7 @@ impl Block {
         self.parameters
     }
 
-    /// Returns the index of 1 in `v`.
+    /// Returns the index of the entry 1 in `v`.
     pub(super) fn gain(&self) -> usize {
         self.parameters + 1
     }
@@ -79,7 +79,7 @@ impl Block {
     }
 }
 
-/// The blocks of a condition.
+/// Blocks for a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ConditionBlocks {
     /// For each response, one block for each third of the grid.
@@ -88,7 +88,7 @@ pub(super) struct ConditionBlocks {
     pub(super) other_squares: Vec<f64>,
 }
 
-/// Sums over the blocks of a condition, or over some of them.
+/// Sums over all or some of a condition's blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct BlockSums {
     /// `sum q^2 |ln(R / H^)|^2`.

@@ -1,4 +1,4 @@
-//! The normal equations of a pass, summed over the conditions, and their solution (steps 6 and 7 of
+//! Normal equations in a pass, summed over the conditions, and their solution (steps 6 and 7 in
 //! `physics`, M18.2).
 
 use nalgebra::DVector;
@@ -17,7 +17,7 @@ use crate::correction::Channels;
 /// Least misfit `s`, ln units.
 const LEAST_MISFIT: f64 = 0.01;
 
-/// The normal equations of all conditions at a point.
+/// Normal equations for all conditions at a point.
 #[derive(Debug)]
 pub(super) struct PassEquations {
     pub(super) blocks: Vec<ConditionBlocks>,
@@ -86,8 +86,9 @@ impl PassEquations {
         })
     }
 
-    /// Returns the solution, with the values of the parameters cut to the greatest permitted;
-    /// parameters that are not fitted stay.
+    /// Returns the solution, with parameter values limited to
+    /// [`GREATEST_VALUE`](super::problem::GREATEST_VALUE) in magnitude; parameters that are not
+    /// fitted stay.
     pub(super) fn solution(
         &self,
         point: &FitPoint,
@@ -106,8 +107,7 @@ impl PassEquations {
         Ok(solution)
     }
 
-    /// Returns the values of the channels in a vector of unknowns, outputs first, from index
-    /// `first`.
+    /// Returns the channel values in a vector of unknowns, outputs first, from index `first`.
     fn channels(&self, values: &DVector<f64>, first: usize) -> Channels<f64> {
         let values = values.as_slice();
         let outputs = first + self.counts.outputs;
@@ -117,7 +117,7 @@ impl PassEquations {
         }
     }
 
-    /// Returns the number of conditions with any weight.
+    /// Counts the conditions with any weight.
     pub(super) fn counting_conditions(&self) -> usize {
         let mut count = 0;
         for blocks in &self.blocks {
@@ -142,7 +142,7 @@ impl PassEquations {
         false
     }
 
-    /// Returns the spread: the root of the mean over the conditions' other identified models;
+    /// Returns the spread: the root mean square over the conditions' other identified models;
     /// `None` without any.
     pub(super) fn spread(&self) -> Option<f64> {
         let squares: Vec<f64> = self
@@ -168,7 +168,7 @@ impl PassEquations {
     }
 }
 
-/// Returns the error of a normal matrix without Cholesky factors.
+/// Returns the error for a normal matrix without Cholesky factors.
 pub(super) fn singular(counts: UnknownCounts) -> PhysicsError {
     PhysicsError::SingularNormalMatrix {
         parameters: counts.parameters,

@@ -1,17 +1,17 @@
-//! The unknowns of the fit in the present pass (M18.2).
+//! The fit's unknowns in the present pass (M18.2).
 
 use gdcm_model::dataset::Pair;
 
 use crate::correction::Channels;
 
-/// Values of all unknowns.
+/// Values for all unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FitPoint {
-    /// Values of all parameters, held ones included, in plausible standard deviations.
+    /// All parameter values, including those set by hand, in plausible standard deviations.
     pub(super) z: Vec<f64>,
-    /// `tau`: delays of the channels, the same in all conditions \[s\].
+    /// `tau`: channel delays, the same in all conditions \[s\].
     pub(super) delays_s: Channels<f64>,
-    /// `a`, `b`: ln gains of the channels in each condition.
+    /// `a`, `b`: channel ln gains in each condition.
     pub(super) ln_gains: Vec<Channels<f64>>,
 }
 
@@ -26,7 +26,7 @@ impl FitPoint {
         }
     }
 
-    /// Returns the channels of a condition.
+    /// Returns the channel gains and delays in a condition.
     pub(super) fn channels(&self, condition: usize) -> ChannelPoint<'_> {
         ChannelPoint {
             delays_s: &self.delays_s,
@@ -34,7 +34,7 @@ impl FitPoint {
         }
     }
 
-    /// Moves from this point towards another by `share` of the way.
+    /// Moves towards another point by `share` of the way.
     pub(super) fn move_towards(&mut self, other: &Self, share: f64) {
         for (z, other) in self.z.iter_mut().zip(&other.z) {
             *z += share * (other - *z);
@@ -53,7 +53,7 @@ fn move_channels(channels: &mut Channels<f64>, other: &Channels<f64>, share: f64
     }
 }
 
-/// Gains and delays of the channels in a condition.
+/// Channel gains and delays in a condition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChannelPoint<'a> {
     delays_s: &'a Channels<f64>,

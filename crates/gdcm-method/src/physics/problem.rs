@@ -1,4 +1,4 @@
-//! Data and settings for the fit of parameters (M18.2).
+//! Data and settings for the parameter fit (M18.2).
 
 use std::sync::Arc;
 
@@ -10,18 +10,18 @@ pub use super::error::PhysicsError;
 use super::family::ModelFamily;
 use crate::fidelity::CoherenceWeights;
 
-/// Greatest magnitude of a parameter's value, in plausible standard deviations.
+/// Maximum magnitude that a parameter value can have, in plausible standard deviations.
 pub const GREATEST_VALUE: f64 = 3.0;
 
 /// A flight condition in the fit.
 #[derive(Clone, Debug)]
 pub struct PhysicsCondition {
     pub id: ConditionId,
-    /// The physics representative for any values of the parameters; p x m responses.
+    /// The physics representative for any parameter values; p x m responses.
     pub family: Arc<ModelFamily>,
     /// `R`, p x m: the identified representative, not finite where a response is missing.
     pub flight: Arc<FrequencyResponse>,
-    /// The other identified models of the bundle, from which the spread follows (M18.4).
+    /// The bundle's other identified models, from which the spread follows (M18.4).
     pub others: Vec<Arc<FrequencyResponse>>,
     /// Responses available in both representatives (M6, M6a); the others have weight 0.
     pub usable: PairTable<bool>,
@@ -32,7 +32,7 @@ pub struct PhysicsCondition {
     pub coherence: Option<PairTable<CoherenceWeights>>,
 }
 
-/// Treatment of a parameter that is on.
+/// How a parameter that is switched on gets its value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ParameterValue {
     /// Found by the fit.
@@ -42,14 +42,15 @@ pub enum ParameterValue {
     Held(f64),
 }
 
-/// Data for the fit: the conditions with runs of all parameters that are on.
+/// Data for the fit: the conditions with runs for all parameters that are switched on.
 #[derive(Clone, Debug)]
 pub struct PhysicsProblem {
-    /// The frequencies \[rad/s\] for all responses, ascending (40 logarithmic points of the band).
+    /// The frequencies \[rad/s\] for all responses, ascending (40 logarithmically spaced points in
+    /// the band).
     pub omega: Arc<[f64]>,
     /// The on-axis responses, which have twice the weight.
     pub on_axis: PairTable<bool>,
-    /// The parameters, in the order of the families.
+    /// The parameters, ordered as in the families.
     pub parameters: Vec<ParameterValue>,
     pub conditions: Vec<PhysicsCondition>,
     pub options: PhysicsOptions,
@@ -62,11 +63,11 @@ pub struct PhysicsOptions {
     pub gain_sd: f64,
     /// Prior standard deviation of the channels' delays \[s\]; 0: no delays.
     pub delay_sd_s: f64,
-    /// `nu`: number of independent frequencies that a response counts as.
+    /// `nu`: how many independent frequencies a response counts as.
     pub independent_frequencies: f64,
-    /// Most passes.
+    /// Maximum number of passes.
     pub passes: usize,
-    /// Confidence level of the intervals.
+    /// Confidence level for the intervals.
     pub level: f64,
 }
 
@@ -93,7 +94,7 @@ impl PhysicsProblem {
         self.on_axis.inputs()
     }
 
-    /// Returns the indices of the parameters that the fit finds, ascending.
+    /// Returns the fitted parameters' indices, ascending.
     pub(super) fn fitted_parameters(&self) -> Vec<usize> {
         let mut fitted = Vec::new();
         for (index, value) in self.parameters.iter().enumerate() {
@@ -104,7 +105,7 @@ impl PhysicsProblem {
         fitted
     }
 
-    /// Returns the values before the first pass: zero, or the values held.
+    /// Returns the values before the first pass: zero, or the values set by hand.
     pub(super) fn initial_values(&self) -> Vec<f64> {
         self.parameters
             .iter()
@@ -187,8 +188,8 @@ impl PhysicsOptions {
 }
 
 impl PhysicsCondition {
-    /// Returns the numbers of outputs, inputs and frequencies of each table; tables without
-    /// frequencies count as having `points`.
+    /// Returns each table's shape: outputs, inputs and frequencies; tables without frequencies
+    /// count as having `points`.
     fn table_shapes(&self, points: usize) -> Vec<[usize; 3]> {
         let family = &self.family;
         let mut shapes = vec![

@@ -1,5 +1,5 @@
-//! The resolvent `(s I - A)^-1` of a model at many points `s`, applied to B from the left and to C
-//! from the right (step 3 of `physics`).
+//! A model's resolvent `(s I - A)^-1` at many points `s`, applied to B from the left and to C from
+//! the right (step 3 in `physics`).
 //!
 //! ```text
 //! 1  A = Q F Q',  F upper Hessenberg,  B~ = Q' B,  C~ = C Q           once for all points
@@ -15,7 +15,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::matrices::Matrices;
 
-/// Responses of a model, and the state responses from which its derivatives follow.
+/// A model's responses, and the state responses from which the derivatives follow.
 pub(super) struct ResolventProducts {
     /// `H` at each point: `[(point p + output) m + input]`.
     pub(super) response: Vec<Complex<f64>>,
@@ -60,8 +60,8 @@ impl ResolventProducts {
     }
 }
 
-/// Stores `count` complex columns, given row by row, as real columns and imaginary columns of point
-/// `index`.
+/// Stores `count` complex columns, given row by row, as the real columns and imaginary columns of
+/// point `index`.
 fn store(stack: &mut DMatrix<f64>, index: usize, count: usize, rows: &[Complex<f64>]) {
     for (state, row) in rows.chunks_exact(count.max(1)).enumerate() {
         for (column, value) in row.iter().enumerate() {
@@ -110,8 +110,8 @@ struct PointSolution {
     output_count: usize,
     /// `U`, row by row.
     upper: Vec<Complex<f64>>,
-    /// For each eliminated row, whether it was exchanged with the next, and the multiple of it
-    /// subtracted from the next.
+    /// For each eliminated row, whether it was exchanged with the next, and the factor by which it
+    /// was subtracted from the next.
     steps: Vec<EliminationStep>,
     /// `X~`, n x m, row by row.
     inputs: Vec<Complex<f64>>,

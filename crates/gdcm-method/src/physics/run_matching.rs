@@ -1,8 +1,8 @@
-//! The runs of a condition and their bases (step 1 of `physics`, M18.1).
+//! Matches a condition's runs with their bases (step 1 in `physics`, M18.1).
 //!
-//! The base of a run is the physics model of the condition with equal perturbation values, the
-//! nominal model if there are several. Run and base must have the same states in the same order, the
-//! same channels, sample time and delays.
+//! A run's base is the condition's physics model with equal perturbation values, the nominal model
+//! if there are several. Run and base must have the same states in the same order, the same
+//! channels, sample time and delays.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::increments::{ConditionIncrements, IncrementError, RunStep, model_shap
 use super::offered_parameter::OfferedParameter;
 use super::run_refusal::{RefusedRun, RunRefusal};
 
-/// Most runs of a parameter in a condition.
+/// Maximum number of runs for a parameter in a condition.
 const MOST_RUNS: usize = 2;
 
 /// A run with its base.
@@ -29,10 +29,10 @@ pub struct MatchedRun<'a> {
     base_matrices: &'a StateSpace,
 }
 
-/// The runs of a condition that can be used, and those that cannot.
+/// A condition's usable and unusable runs.
 #[derive(Clone, Debug, Default)]
 pub struct MatchedRuns<'a> {
-    /// In file order, at most two for a parameter.
+    /// In file order, at most two per parameter.
     pub runs: Vec<MatchedRun<'a>>,
     pub refused: Vec<RefusedRun>,
 }
@@ -40,10 +40,10 @@ pub struct MatchedRuns<'a> {
 /// Why a condition takes no part in the fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionOmission {
-    /// No run of the condition can be used.
+    /// The condition has no usable run.
     #[error("no run can be used")]
     NoRuns,
-    /// A parameter that is on has no run that can be used.
+    /// A parameter that is switched on has no usable run.
     #[error("no run of the parameter \"{parameter}\" can be used")]
     MissingRun { parameter: String },
     /// The runs do not give increments.
@@ -63,9 +63,9 @@ impl ConditionOmission {
 }
 
 impl<'a> MatchedRuns<'a> {
-    /// Matches the runs of a condition with their bases. `is_used` tells whether a physics model is
-    /// neither rejected nor set aside (M5b); runs of parameters that are not in `parameters` are
-    /// passed over.
+    /// Matches a condition's runs with their bases. `is_used` returns whether a physics model is
+    /// neither rejected nor set aside (M5b); runs for parameters that are not in `parameters` are
+    /// skipped.
     pub fn new(
         condition: &'a Condition,
         parameters: &[OfferedParameter],
@@ -96,7 +96,7 @@ impl<'a> MatchedRuns<'a> {
         matched
     }
 
-    /// Checks a run against those of the same parameter that are used already.
+    /// Checks a run against earlier runs for the same parameter.
     fn check_earlier_runs(&self, run: MatchedRun<'a>) -> Result<MatchedRun<'a>, RunRefusal> {
         let mut count = 0;
         for earlier in &self.runs {
@@ -119,7 +119,7 @@ impl<'a> MatchedRuns<'a> {
         Ok(run)
     }
 
-    /// Computes the increments of the condition, in the order of `parameters`.
+    /// Computes the condition's increments, ordered as `parameters`.
     ///
     /// # Errors
     /// [`ConditionOmission`] if a parameter has no run.
@@ -136,8 +136,8 @@ impl<'a> MatchedRuns<'a> {
         )?)
     }
 
-    /// Computes the family of the condition's representative, with matrices if it has the states of
-    /// the base, otherwise with responses on the grid `omega` \[rad/s\].
+    /// Computes the family for the condition's representative: by matrices if it has the same
+    /// states as the base, otherwise by responses on the grid `omega` \[rad/s\].
     ///
     /// # Errors
     /// [`ConditionOmission`] if a parameter has no run.
@@ -155,7 +155,7 @@ impl<'a> MatchedRuns<'a> {
         ModelFamily::from_responses(representative, &steps, omega).ok_or(ConditionOmission::NoRuns)
     }
 
-    /// Returns the steps of each parameter.
+    /// Returns each parameter's runs, with steps in plausible standard deviations.
     fn steps(
         &self,
         parameters: &[OfferedParameter],
@@ -183,7 +183,7 @@ impl<'a> MatchedRuns<'a> {
     }
 }
 
-/// Finds the base of a run, and checks that both fit together.
+/// Finds a run's base, and checks that both fit together.
 fn checked_run<'a>(
     condition: &'a Condition,
     model: &'a Model,
@@ -233,8 +233,8 @@ fn checked_run<'a>(
     })
 }
 
-/// Checks that a run has the channels and states of its base, in the same order. Names are compared
-/// where both models give them.
+/// Checks that a run has its base's channels and states, in the same order. Names are compared if
+/// both models give them.
 fn check_states(
     run: &Model,
     run_matrices: &StateSpace,
@@ -263,8 +263,8 @@ fn check_states(
     Ok(())
 }
 
-/// Returns the physics model with the perturbation of a run or a rerun: the nominal model if it has it,
-/// otherwise the first.
+/// Returns the physics model with the same perturbation as a run or a rerun: the nominal model if
+/// it qualifies, otherwise the first.
 pub fn base_of<'a>(condition: &'a Condition, run: &Model) -> Option<&'a Model> {
     let bundle = condition.bundle(BundleKind::Physics);
     let nominal = &bundle[condition.nominal()];
@@ -273,8 +273,8 @@ pub fn base_of<'a>(condition: &'a Condition, run: &Model) -> Option<&'a Model> {
         .find(|model| is_same_trim(model, run))
 }
 
-/// Returns whether two models have equal perturbation values; a coordinate that one of them does
-/// not give is zero. A perturbed model without coordinates is at an unknown trim.
+/// Returns whether two models have equal perturbation values; a coordinate that one model does not
+/// give is zero. A perturbed model without coordinates is at an unknown trim.
 fn is_same_trim(base: &Model, run: &Model) -> bool {
     let nothing = BTreeMap::new();
     let base_offsets = match base.perturbation() {

@@ -5,7 +5,7 @@
 pub struct RefusedRun {
     /// Name of the run's model.
     pub model: String,
-    /// Name of the moved parameter.
+    /// Name of the parameter that the run moves.
     pub parameter: String,
     pub reason: RunRefusal,
 }
@@ -13,18 +13,18 @@ pub struct RefusedRun {
 /// Reasons for which a run is not used.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunRefusal {
-    /// No physics model of the condition has the run's perturbation.
+    /// No physics model in the condition has the run's perturbation.
     NoBase,
     /// The base is rejected or set aside.
     BaseNotUsed { base: String },
     /// The run or its base is a measured response.
     NoMatrices,
-    /// Run and base have different numbers of states, inputs or outputs.
+    /// Run and base differ in their counts of states, inputs or outputs.
     Shape {
         base: String,
-        /// States, inputs and outputs of the base.
+        /// The base's states, inputs and outputs.
         expected: [usize; 3],
-        /// States, inputs and outputs of the run.
+        /// The run's states, inputs and outputs.
         found: [usize; 3],
     },
     /// Run and base have different states, or the same states in another order.
@@ -41,13 +41,13 @@ pub enum RunRefusal {
     Unit { expected: String, found: String },
     /// The step is zero or not finite.
     Step { delta: f64 },
-    /// The run has the matrices of its base.
+    /// The run's matrices equal the base's.
     NoChange { base: String },
-    /// An earlier run of the parameter has the same step.
+    /// An earlier run for the parameter has the same step.
     StepRepeated { other: String, delta: f64 },
-    /// An earlier run of the parameter has the same matrices, at another step.
+    /// An earlier run for the parameter has the same matrices, at another step.
     MatricesRepeated { other: String },
-    /// Two earlier runs of the parameter are used already.
+    /// Two earlier runs for the parameter are used already.
     TooMany,
 }
 

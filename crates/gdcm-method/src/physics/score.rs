@@ -1,5 +1,5 @@
-//! How well conditions left out are predicted with each parameter, alone and stepwise (step 10 of
-//! `physics`, M18.4).
+//! Scores how well each parameter, alone and stepwise, helps to predict conditions left out of the
+//! fit (step 10 in `physics`, M18.4).
 //!
 //! ```text
 //! 1  for each condition: z, tau <- the other conditions' equations;  a, b <- its own gains
@@ -11,12 +11,12 @@
 use super::pass_equations::PassEquations;
 use super::shared_system::SharedSystem;
 
-/// Score of a set of parameters.
+/// Score for a set of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
-    /// `sum q^2 |y - J x|^2` of each condition, predicted from the others.
+    /// `sum q^2 |y - J x|^2` for each condition, predicted from the others.
     pub per_condition: Vec<f64>,
-    /// Sum over the conditions over that with no parameter.
+    /// Sum over the conditions, divided by the same sum without any parameter.
     pub ratio: f64,
 }
 
@@ -29,7 +29,7 @@ impl Score {
     }
 }
 
-/// A step of the stepwise list.
+/// A step in the stepwise list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScoreStep {
     /// The added parameter; `None` for the score with no parameter.
@@ -37,19 +37,19 @@ pub struct ScoreStep {
     pub score: Score,
 }
 
-/// Scores of the fitted parameters.
+/// Scores for the fitted parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scores {
-    /// Ratio of each parameter alone, in the order of the fitted parameters.
+    /// Ratio with each parameter alone, ordered as the fitted parameters.
     pub alone: Vec<f64>,
-    /// The list, from the score with no parameter to that with all. `added` is an index among the
-    /// problem's parameters.
+    /// The list, from the score with no parameter to the score with all. `added` is an index among
+    /// the problem's parameters.
     pub stepwise: Vec<ScoreStep>,
 }
 
 impl Scores {
-    /// Computes the scores; `fitted` are the indices of the fitted parameters. Returns `None` for
-    /// fewer than two conditions, and where a condition cannot be predicted.
+    /// Computes the scores; `fitted` are the fitted parameters' indices. Returns `None` for fewer
+    /// than two conditions, or if a condition cannot be predicted.
     pub(super) fn new(equations: &PassEquations, fitted: &[usize]) -> Option<Self> {
         if equations.counting_conditions() < 2 {
             return None;
@@ -97,8 +97,8 @@ impl Scores {
         Some(Self { alone, stepwise })
     }
 
-    /// Returns `1 -` the least ratio of the stepwise list: the share of the misfit of conditions
-    /// left out that the parameters explain.
+    /// Returns 1 minus the least ratio in the stepwise list: the share of left-out conditions'
+    /// misfit that the parameters explain.
     pub fn explained(&self) -> f64 {
         let least = self
             .stepwise
@@ -141,8 +141,8 @@ impl<'a> Scorer<'a> {
         }
     }
 
-    /// Returns the score of each condition with these parameters, indices among the fitted ones
-    /// (steps 1 and 2).
+    /// Returns each condition's score with these parameters, given by index among the fitted
+    /// parameters (steps 1 and 2).
     fn score(&self, parameters: &[usize]) -> Option<Vec<f64>> {
         let equations = self.equations;
         let mut scores = Vec::with_capacity(self.others.len());

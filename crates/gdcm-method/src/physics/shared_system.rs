@@ -1,10 +1,10 @@
-//! The normal equations for the parameters and delays, summed over conditions (step 7 of `physics`).
+//! Normal equations for the parameters and delays, summed over conditions (step 7 in `physics`).
 //!
 //! ```text
 //! (sum_c S'_c + prior) x = sum_c g'_c,   prior: 1 for a parameter, 1 / sd_delay^2 for a delay
 //! ```
 //!
-//! Unknowns that are off, among the parameters or the delays, are held at zero.
+//! Parameters or delays that are switched off are fixed at zero.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -14,7 +14,7 @@ use super::condition_equations::{ReducedEquations, UnknownCounts, symmetrise};
 #[derive(Clone, Debug)]
 pub(super) struct SharedSystem {
     counts: UnknownCounts,
-    /// Prior standard deviation of a delay \[s\]; 0 for no delays.
+    /// Prior standard deviation of a delay \[s\]; 0: no delays.
     delay_sd_s: f64,
     matrix: DMatrix<f64>,
     right: DVector<f64>,
@@ -80,8 +80,8 @@ impl SharedSystem {
         }
     }
 
-    /// Returns `F`: the normal matrix of the parameters after elimination of the delays; `None` if
-    /// the delays are not determined.
+    /// Returns `F`: the parameters' normal matrix after eliminating the delays; `None` if the
+    /// delays are not determined.
     pub(super) fn parameter_information(&self) -> Option<DMatrix<f64>> {
         let size = self.counts.parameters;
         let mut information = self.matrix.view((0, 0), (size, size)).into_owned();
@@ -101,7 +101,7 @@ impl SharedSystem {
         Some(information)
     }
 
-    /// Returns the prior precision of a shared unknown.
+    /// Returns a shared unknown's prior precision, 1 / variance.
     fn prior(&self, unknown: usize) -> f64 {
         if unknown < self.counts.parameters {
             1.0

@@ -1,37 +1,40 @@
-//! Which parameters are named, and what they explain together (step 12 of `physics`, M18.4).
+//! Decides which parameters are named, and how much they explain together (step 12 in `physics`,
+//! M18.4).
 //!
-//! A parameter is named where all hold: its interval excludes 0; its step in the stepwise list
-//! lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or more
-//! are in the fit.
+//! A parameter is named if all of these are true: its interval excludes 0; its step in the stepwise
+//! list lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or
+//! more are in the fit.
 
 use super::intervals::LEAST_CONDITIONS;
 use super::problem::GREATEST_VALUE;
 
-/// Least decrease of the ratio by a parameter's step.
+/// Minimum by which a parameter's step must lower the ratio.
 pub const LEAST_GAIN: f64 = 0.01;
-/// Share explained below which no parameter is named.
+/// Minimum explained share for naming any parameter.
 pub const LEAST_EXPLAINED: f64 = 0.1;
-/// Share explained from which the parameters may account for the misfit.
+/// Minimum explained share for the verdict that the parameters account for the misfit.
 pub const MOSTLY_EXPLAINED: f64 = 0.5;
-/// Misfit over spread up to which the rest counts as the spread of the identified models.
+/// Maximum misfit, relative to the spread, for which the remaining misfit counts as spread between
+/// the identified models.
 pub const SPREAD_RATIO: f64 = 1.75;
-/// Learned share below which the data say nothing about a parameter.
+/// Minimum learned share for a parameter that the data determine.
 pub const LEAST_LEARNED: f64 = 0.5;
 
-/// What the parameters explain together.
+/// How much the parameters explain together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// None of them explains what gains and delays leave.
+    /// They explain less than a tenth of the misfit that gains and delays leave.
     None,
     /// They explain a part; something else is also at work.
     InPart,
-    /// They account for what gains and delays leave, up to the spread of the identified models.
+    /// They account for the misfit that gains and delays leave, up to the spread between identified
+    /// models.
     Accounts,
 }
 
 impl Verdict {
-    /// Decides from the share explained, the misfit and the spread of the identified models; `None`
-    /// for a spread that is unknown, with one identified model in each condition.
+    /// Decides from the explained share, the misfit and the spread between identified models; the
+    /// spread is `None` if each condition has only one identified model.
     pub fn new(explained: f64, misfit: f64, spread: Option<f64>) -> Self {
         let is_near_spread = match spread {
             Some(spread) => misfit <= SPREAD_RATIO * spread,
@@ -101,12 +104,12 @@ pub(super) struct NamingFacts {
     /// `None` without intervals.
     pub(super) half_width: Option<f64>,
     pub(super) learned: f64,
-    /// Decrease of the ratio by its step; `None` without scores.
+    /// How much the parameter's step lowers the ratio; `None` without scores.
     pub(super) gain: Option<f64>,
 }
 
 impl NamingFacts {
-    /// Returns why the parameter is not named; `None` for a named one.
+    /// Returns why the parameter is not named; `None` for a named parameter.
     pub(super) fn why_not_named(&self) -> Option<WhyNotNamed> {
         let (Some(half_width), Some(explained), Some(gain)) =
             (self.half_width, self.explained, self.gain)

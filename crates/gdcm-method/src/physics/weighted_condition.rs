@@ -1,4 +1,4 @@
-//! A condition linearised around the present pass, and its blocks (steps 4 and 5 of `physics`,
+//! A condition linearised around the present pass, and its blocks (steps 4 and 5 in `physics`,
 //! M18.2).
 //!
 //! ```text
@@ -21,7 +21,7 @@ use super::point::ChannelPoint;
 use super::problem::{PhysicsCondition, PhysicsProblem};
 use super::weights::FixedWeight;
 
-/// Data of a condition that do not change between passes.
+/// A condition's data that do not change between passes.
 pub(super) struct WeightedCondition<'a> {
     condition: &'a PhysicsCondition,
     omega: &'a [f64],
@@ -39,7 +39,7 @@ impl<'a> WeightedCondition<'a> {
         }
     }
 
-    /// Computes the blocks of the condition at the unknowns of the present pass.
+    /// Computes the condition's blocks at the present pass's unknowns.
     pub(super) fn blocks(&self, pass: &PassPoint<'_>) -> ConditionBlocks {
         let linearisation = Linearisation {
             condition: self,
@@ -73,7 +73,7 @@ impl<'a> WeightedCondition<'a> {
         }
     }
 
-    /// Returns the weighted mean squares of the other identified models (M18.4).
+    /// Returns the other identified models' weighted mean squares (M18.4).
     fn other_squares(&self, squared_weights: &PairTable<Vec<f64>>) -> Vec<f64> {
         let mut squares = Vec::new();
         for other in &self.condition.others {
@@ -83,16 +83,16 @@ impl<'a> WeightedCondition<'a> {
     }
 }
 
-/// The unknowns of the present pass, as one condition sees them.
+/// The present pass's unknowns, reduced to those that one condition needs.
 pub(super) struct PassPoint<'a> {
-    /// Values of all parameters.
+    /// All parameter values.
     pub(super) z: &'a [f64],
-    /// Indices of the fitted parameters.
+    /// Fitted parameters' indices.
     pub(super) fitted: &'a [usize],
     pub(super) channels: ChannelPoint<'a>,
 }
 
-/// The residuals of a condition, linear around the present pass.
+/// A condition's residuals, linearised around the present pass.
 struct Linearisation<'a> {
     condition: &'a WeightedCondition<'a>,
     pass: &'a PassPoint<'a>,
@@ -113,7 +113,7 @@ impl Linearisation<'_> {
         let response = self.physics.response[place];
         let channel = Complex::new(channels.ln_gain(pair), -omega[k] * channels.delay_s(pair));
         let error = log_ratio(condition.flight.curve(pair)[k], response) - channel;
-        // The principal value of the phase error.
+        // Principal value of the phase error.
         let error = Complex::new(error.re, wrap(error.im));
         let [derivatives @ .., delay, gain, target] = v else {
             return None;

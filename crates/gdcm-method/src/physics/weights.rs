@@ -1,4 +1,4 @@
-//! The weight `q` of a response at a frequency (step 4 of `physics`, M18.2).
+//! Weight `q` for a response at a frequency (step 4 in `physics`, M18.2).
 //!
 //! ```text
 //! q = w_p w_gamma / sqrt(1 + (sd / 0.06)^2)  min(1, |H^ / R|) / (1 + (e s_q / 10)^2)^(1/4)
@@ -22,11 +22,11 @@ use gdcm_model::dataset::Pair;
 use super::problem::{PhysicsCondition, PhysicsProblem};
 use crate::fidelity::summand;
 
-/// Weight of an on-axis response relative to the others, `w_p`.
+/// `w_p`: an on-axis response's weight relative to the others.
 const ON_AXIS: f64 = 2.0;
-/// Standard deviation of `ln H` at which `s_q` is reduced by the factor `1 / sqrt(2)`.
+/// Standard deviation of `ln H` that reduces `s_q` by the factor `1 / sqrt(2)`.
 const DEVIATION: f64 = 0.06;
-/// `e s_q` at which the weight of a frequency is reduced by the factor `2^(-1/4)`, as an outlier.
+/// `e s_q` that reduces a frequency's weight by the factor `2^(-1/4)`, as an outlier.
 const OUTLIER: f64 = 10.0;
 
 /// Weight factors that do not change between passes.
@@ -39,7 +39,7 @@ pub(super) struct FixedWeight {
 }
 
 impl FixedWeight {
-    /// Returns the fixed weights of a response at all frequencies.
+    /// Returns a response's fixed weights at all frequencies.
     pub(super) fn for_response(
         problem: &PhysicsProblem,
         condition: &PhysicsCondition,

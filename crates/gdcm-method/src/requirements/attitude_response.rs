@@ -22,13 +22,13 @@ use gdcm_model::response::wrap;
 use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};
 
-/// Number of frequencies searched for sign changes.
+/// Number of frequencies on which crossings are searched.
 const SEARCH_POINTS: usize = 400;
 /// A model is searched from the lower band end divided by this factor to the upper band end times
 /// this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
-/// Phases \[deg\] at the lowest frequency of the band that do not indicate a reversed sign: all but
-/// 45 to 135 deg, which on the branch (-270, 90] are -270 to -225 deg and 45 to 90 deg.
+/// Phases \[deg\] at the lowest band frequency that do not indicate a reversed sign: all but 45 to
+/// 135 deg, which on the branch (-270, 90] are -270 to -225 deg and 45 to 90 deg.
 const NOT_REVERSED_DEG: RangeInclusive<f64> = -225.0..=45.0;
 
 /// Quantity that an output represents: an attitude or its rate.
@@ -98,8 +98,8 @@ impl AttitudeOutput {
 /// A response evaluated at any frequencies \[rad/s\]; NaN where no response is available.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
-/// Returns the frequencies \[rad/s\] searched for crossings of a model: 400, logarithmic, from
-/// `band / 4` to `4 band`.
+/// Returns the frequencies \[rad/s\] on which a model's crossings are searched: 400, spaced
+/// logarithmically, from a quarter of the lower band end to four times the upper.
 pub fn search_frequencies(band: Band) -> Vec<f64> {
     log_spaced(
         band.min() / SEARCH_BEYOND_BAND,
@@ -111,11 +111,11 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 /// `Theta(j omega)`: magnitude and continuous phase on a grid and between its points.
 ///
 /// For a rate response H it is `H / (j omega)`. The phase is continuous, and lies in (-270, 90] deg
-/// at the lowest frequency of the band: below it, where records carry no information, slow and
-/// unstable modes turn a physics model's phase by whole turns.
+/// at the lowest band frequency: below it, where records carry no information, slow and unstable
+/// modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
-    /// Response for long sequences of frequencies; may interpolate, for speed.
+    /// Response at many frequencies; may interpolate, for speed.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
     /// Grid frequencies \[rad/s\] with a finite nonzero response, ascending; at least two.
@@ -124,7 +124,7 @@ pub struct AttitudeResponse<'a> {
     pub(super) magnitude_db: Vec<f64>,
     /// Continuous phase \[rad\] on the grid.
     pub(super) phase: Vec<f64>,
-    /// Grid index of the lowest band frequency, which fixes the phase branch.
+    /// The lowest band frequency's grid index, which fixes the phase branch.
     pub(super) lowest_of_band: usize,
 }
 
@@ -182,16 +182,16 @@ impl<'a> AttitudeResponse<'a> {
         })
     }
 
-    /// Evaluates long sequences of frequencies by `samples`, which may interpolate, instead of
+    /// Evaluates many frequencies at once by `samples`, which may interpolate, instead of
     /// `response`.
     #[must_use]
     pub fn sampled_by(self, samples: &'a ResponseAt<'a>) -> Self {
         Self { samples, ..self }
     }
 
-    /// Returns the phase \[deg\] at the lowest frequency of the band if it indicates an input or an
-    /// output with reversed sign: a phase of 45 to 135 deg, where an attitude that follows its
-    /// input has 0 to -90 deg. The bandwidths are then wrong.
+    /// Returns the phase \[deg\] at the lowest band frequency if it indicates an input or an output
+    /// with reversed sign: a phase of 45 to 135 deg, where an attitude that follows its input has 0
+    /// to -90 deg. The bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
         if NOT_REVERSED_DEG.contains(&phase_deg) {
@@ -206,8 +206,8 @@ impl<'a> AttitudeResponse<'a> {
         Some(polar(self.response, self.output, &[omega])[0]?.magnitude_db)
     }
 
-    /// Returns the phase \[rad\] at `omega` \[rad/s\] on the branch of the surrounding grid; `None`
-    /// outside the grid or without a response.
+    /// Returns the phase \[rad\] at `omega` \[rad/s\] on the same branch as the surrounding grid
+    /// points; `None` outside the grid or without a response.
     pub fn phase_at(&self, omega: f64) -> Option<f64> {
         let near = between(&self.omega, &self.phase, omega)?;
         let principal = polar(self.response, self.output, &[omega])[0]?.phase;
@@ -261,7 +261,7 @@ fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Ve
     polar
 }
 
-/// Returns the index range of the first run of values without a gap.
+/// Returns the index range of the first values without a gap.
 fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
     let start = polar
         .iter()

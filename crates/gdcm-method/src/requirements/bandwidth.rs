@@ -1,4 +1,4 @@
-//! Bandwidth and phase delay of an attitude response (M17.1).
+//! Bandwidth and phase delay, read from an attitude response (M17.1).
 //!
 //! ```text
 //! 1  Theta = H/(j omega) for a rate, H for an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
@@ -36,7 +36,7 @@ const NEUTRAL_DEG: f64 = -180.0;
 /// Phase at `omega_phase` \[deg\]: a 45 deg margin.
 const PHASE_MARGIN_DEG: f64 = -135.0;
 
-/// Type of the response to the inceptor of an axis.
+/// How an axis responds to its inceptor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CommandType {
@@ -47,7 +47,7 @@ pub enum CommandType {
     Attitude,
 }
 
-/// Response type, band, and treatment of values above the band.
+/// Response type, band, and how values above the band are treated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthSettings {
     pub command: CommandType,
@@ -64,12 +64,12 @@ pub enum BandwidthRule {
     Phase,
     /// The 6 dB gain margin, if it occurs at a lower frequency than the phase margin.
     Gain,
-    /// The phase margin, because there is no gain margin without `omega_180`: an upper bound of
-    /// the bandwidth.
+    /// The phase margin, because there is no gain margin without `omega_180`: an upper bound on the
+    /// bandwidth.
     PhaseGainUnknown,
 }
 
-/// Bandwidth and phase delay of a response (M17.1; ADS-33E-PRF 3.3.2.1).
+/// Bandwidth and phase delay (M17.1; ADS-33E-PRF 3.3.2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bandwidth {
     /// Frequency at -180 deg \[rad/s\].
@@ -117,7 +117,7 @@ impl Bandwidth {
     }
 
     /// Returns whether the gain margin occurs at a lower frequency than the phase margin: the
-    /// standard warns of this for every response type.
+    /// standard warns about this for every response type.
     pub fn is_gain_limited(&self) -> bool {
         match (&self.omega_gain, &self.omega_phase) {
             (Ok(gain), Ok(phase)) => gain.value < phase.value,
@@ -190,9 +190,9 @@ impl Reading<'_> {
         self.metric(root, [root, root], deviation)
     }
 
-    /// Returns the index `k` of the grid interval `[k, k + 1]` in which the phase falls through
-    /// `level` \[rad\]: the lowest in the band, unless the phase has fallen through `level` below
-    /// the band and stays below it.
+    /// Returns `k` for the grid interval `[k, k + 1]` in which the phase falls through `level`
+    /// \[rad\]: the lowest in the band, unless the phase has fallen through `level` below the band
+    /// and stays below it.
     fn falling_interval(&self, level: f64) -> Option<usize> {
         let phase = &self.attitude.phase;
         let first = self.attitude.lowest_of_band;
@@ -277,7 +277,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Returns the lower of both margins; the result also depends on the frequencies of the other
+    /// Returns the lower of both margins; the result also depends on the frequencies at the other
     /// margin, because both are compared.
     fn lower_margin(&self, phase: Metric, gain: Metric) -> Result<LimitingMargin, NoMetric> {
         let rule = if gain.value < phase.value {

@@ -1,5 +1,5 @@
-//! Standard deviations of bandwidth and phase delay (M17.1), to first order from the standard
-//! deviations of the identified response (M14).
+//! Standard deviations of bandwidth and phase delay (M17.1), to first order from the identified
+//! response's standard deviations (M14).
 //!
 //! ```text
 //! phase crossing:  sd = sd_phase(omega) / |phase'(omega)|
@@ -7,17 +7,17 @@
 //! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
 //!
-//! `m` is the magnitude \[dB\]; primes mark derivatives with respect to omega; `sd_dB` and `sd_phase`
-//! are the standard deviations of the response's magnitude and phase; `sd(omega_180)` is that of the
-//! phase crossing. The frequencies are defined in `bandwidth`.
+//! `m` is the magnitude \[dB\]; primes mark derivatives with respect to omega; `sd_dB` and
+//! `sd_phase` are standard deviations of the response's magnitude and phase, `sd(omega_180)` that
+//! of the phase crossing. The frequencies are defined in `bandwidth`.
 //!
-//! The phase delay is that of its formula `-(Phi(2 omega_180) + pi) / (2 omega_180)`, with `omega_180`
-//! shifted by the error of the phase there: exact to first order if the phase is linear between
+//! The phase delay follows its formula `-(Phi(2 omega_180) + pi) / (2 omega_180)`, with `omega_180`
+//! shifted by the phase error there: exact to first order if the phase is linear between
 //! `omega_180` and `2 omega_180`.
 //!
-//! Magnitude and phase errors, and errors at distant frequencies, are assumed independent. Errors at
-//! neighbouring frequencies are not: the deviation of a phase delay read from the least-squares line
-//! is also computed from the two ends, because independent errors along the line would make it
+//! Magnitude and phase errors, and errors at distant frequencies, are assumed independent. Errors
+//! at neighbouring frequencies are not: the deviation for a phase delay read from the least-squares
+//! line is also computed from the two ends, because independent errors along the line would make it
 //! arbitrarily small with more points.
 
 use gdcm_model::dataset::Pair;
@@ -26,10 +26,10 @@ use gdcm_model::response::interpolation::between;
 
 use super::attitude_response::AttitudeResponse;
 
-/// Half the step of a difference quotient, relative to the frequency.
+/// Half the distance between the two points in a difference quotient, relative to the frequency.
 const HALF_STEP: f64 = 1e-4;
 
-/// The uncertainty band of an identified response, linear in log omega and undefined outside its
+/// An identified response's uncertainty band, linear in log omega and undefined outside its
 /// frequencies (M14).
 #[derive(Clone, Copy, Debug)]
 pub struct PairBand<'a> {
@@ -57,7 +57,7 @@ impl PairBand<'_> {
         .map(f64::to_radians)
     }
 
-    /// Returns the standard deviation \[rad/s\] of the frequency at which the phase crosses a
+    /// Returns the standard deviation \[rad/s\] for the frequency at which the phase crosses a
     /// level.
     pub(super) fn phase_crossing_sd(
         &self,
@@ -68,8 +68,8 @@ impl PairBand<'_> {
         Some(self.sd_phase(omega)? / slope.abs())
     }
 
-    /// Returns the standard deviation \[rad/s\] of the frequency at which the magnitude exceeds its
-    /// value at `omega_180` by 6 dB.
+    /// Returns the standard deviation \[rad/s\] for the frequency at which the magnitude exceeds
+    /// its value at `omega_180` by 6 dB.
     pub(super) fn gain_crossing_sd(
         &self,
         attitude: &AttitudeResponse<'_>,
@@ -85,7 +85,7 @@ impl PairBand<'_> {
         Some(level / magnitude_slope(attitude, omega_gain)?.abs())
     }
 
-    /// Returns the standard deviation of the phase delay \[s\].
+    /// Returns the phase delay's standard deviation \[s\].
     pub(super) fn phase_delay_sd(&self, omega_180: f64) -> Option<f64> {
         let twice = 2.0 * omega_180;
         Some(self.sd_phase(omega_180)?.hypot(self.sd_phase(twice)?) / twice)

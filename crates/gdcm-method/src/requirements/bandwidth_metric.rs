@@ -2,7 +2,7 @@
 
 use gdcm_model::units::number;
 
-/// Treatment of values read above the identified band.
+/// How values read above the identified band are treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AboveBand {
     /// Returned, and marked as dependent on the model above the band.
@@ -12,8 +12,7 @@ pub enum AboveBand {
     Refused,
 }
 
-/// A value read from a response, with its uncertainty and the range of frequencies that determine
-/// the value.
+/// A value read from a response, with its uncertainty and the frequency range that determines it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     /// The value: \[rad/s\] or \[s\].

@@ -1,4 +1,4 @@
-//! Handling-qualities level boundaries over bandwidth and phase delay, and the level of a point
+//! Handling-qualities level boundaries over bandwidth and phase delay, and the level at a point
 //! (M17.1).
 //!
 //! No boundaries apply by default, because they depend on the mission task element and the category
@@ -10,21 +10,21 @@
 //!       +---------+----------+---------- omega_BW
 //! ```
 //!
-//! A point meets Level n if it lies on the boundary of Level n or to the right of it, and has the
-//! lowest number n that it meets. Beyond the boundary of the highest number N its level is N + 1.
+//! A point meets Level n if it lies on the Level n boundary or to its right, and is assigned the
+//! lowest number n that it meets. If it does not meet the highest number N, its level is N + 1.
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::message_text::quoted;
 use gdcm_model::units::number;
 
-/// A boundary: a polyline in the plane of bandwidth and phase delay.
+/// A boundary: a polyline over bandwidth and phase delay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelBoundary {
     /// Level name ("Level 1").
     pub name: String,
-    /// Number of the level that is met on the boundary and to the right of it, 1 for the best;
-    /// `None` for a boundary that is drawn and gives no level.
+    /// Level number met on the boundary and to its right, 1 for the best; `None` for a boundary
+    /// that is only drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<u32>,
     /// Output to which the boundary applies ("P").
@@ -32,32 +32,32 @@ pub struct LevelBoundary {
     /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two. Where `level`
     /// is given, neither coordinate decreases.
     pub points: Vec<[f64; 2]>,
-    /// Document, paragraph and figure of the points, and the error of reading them.
+    /// Document, paragraph and figure that give the points, and the error in reading them.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
 }
 
-/// Position of a point relative to a boundary.
+/// Where a point lies relative to a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BoundarySide {
-    /// On the boundary or to the right of it.
+    /// On the boundary or to its right.
     Within,
     Beyond,
-    /// Above the end of the boundary, and to the right of its end.
+    /// Above and to the right of the boundary's end, where it decides nothing.
     Undrawn,
 }
 
-/// Level of a bandwidth and a phase delay.
+/// Level assigned to a bandwidth and a phase delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssessedLevel {
-    /// Number of the level, 1 for the best.
+    /// Level number, 1 for the best.
     Level(u32),
-    /// The point lies above the end of a boundary that would decide its level.
+    /// The point lies above the end of a boundary that would have to decide its level.
     AboveBoundaries,
 }
 
 impl AssessedLevel {
-    /// Returns the number of the level, if the boundaries determine it.
+    /// Returns the level number, if the boundaries determine it.
     pub fn number(self) -> Option<u32> {
         match self {
             Self::Level(number) => Some(number),
@@ -77,7 +77,7 @@ pub struct LevelBoundaries(Vec<LevelBoundary>);
 pub enum LevelBoundaryError {
     #[error("boundary {entry}: expected a name, found none")]
     NoName {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
     },
     #[error(
@@ -85,7 +85,7 @@ pub enum LevelBoundaryError {
         quoted(name)
     )]
     NoAxis {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
         name: String,
     },
@@ -94,21 +94,21 @@ pub enum LevelBoundaryError {
         quoted(name)
     )]
     TooFewPoints {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
         name: String,
         found: usize,
     },
-    /// A coordinate of a point is negative or not finite.
+    /// A point has a coordinate that is negative or not finite.
     #[error(
         "boundary {entry}, {}, point {point}: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found {} and {}",
         quoted(name), number(found[0]), number(found[1])
     )]
     Point {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
         name: String,
-        /// Index of the point, counted from 1.
+        /// Point number, counted from 1.
         point: usize,
         found: [f64; 2],
     },
@@ -117,7 +117,7 @@ pub enum LevelBoundaryError {
         quoted(name)
     )]
     LevelZero {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
         name: String,
     },
@@ -127,10 +127,10 @@ pub enum LevelBoundaryError {
         quoted(name)
     )]
     Descending {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
         name: String,
-        /// Index of the point, counted from 1.
+        /// Point number, counted from 1.
         point: usize,
     },
     #[error(
@@ -139,7 +139,7 @@ pub enum LevelBoundaryError {
         quoted(axis)
     )]
     DuplicateLevel {
-        /// Index of the entry, counted from 1.
+        /// Entry number, counted from 1.
         entry: usize,
         name: String,
         axis: String,
@@ -214,7 +214,7 @@ impl LevelBoundary {
     }
 
     /// Returns the lowest bandwidth \[rad/s\] on the boundary at a phase delay; below its first
-    /// point, that of the first point; `None` above its last point.
+    /// point, the first point's bandwidth; `None` above its last point.
     fn least_bandwidth(&self, phase_delay_s: f64) -> Option<f64> {
         let first = self.points.first()?;
         if phase_delay_s <= first[1] {
@@ -223,7 +223,7 @@ impl LevelBoundary {
         for ends in self.points.windows(2) {
             let [from, to] = [ends[0], ends[1]];
             if phase_delay_s <= to[1] {
-                // Not horizontal: the phase delay is above that of `from`.
+                // Not horizontal: the phase delay exceeds `from`'s.
                 let share = (phase_delay_s - from[1]) / (to[1] - from[1]);
                 return Some(from[0] + share * (to[0] - from[0]));
             }
@@ -278,7 +278,7 @@ impl LevelBoundaries {
         self.0.iter().filter(move |boundary| boundary.axis == axis)
     }
 
-    /// Returns the boundaries that give levels for an axis, in the order of the levels.
+    /// Returns the boundaries that give levels for an axis, best level first.
     fn assessing(&self, axis: &str) -> Vec<&LevelBoundary> {
         let mut found = Vec::new();
         for boundary in &self.0 {
@@ -297,7 +297,7 @@ impl LevelBoundaries {
             .any(|boundary| boundary.axis == axis && boundary.level.is_some())
     }
 
-    /// Returns the level of a bandwidth \[rad/s\] and a phase delay \[s\]; `None` if no boundary
+    /// Returns the level for a bandwidth \[rad/s\] and a phase delay \[s\]; `None` if no boundary
     /// gives levels for the axis.
     ///
     /// ```text
@@ -324,7 +324,7 @@ impl LevelBoundaries {
         Some(AssessedLevel::Level(last.saturating_add(1)))
     }
 
-    /// Returns these boundaries with all boundaries of the axes in `others` replaced by `others`.
+    /// Returns these boundaries after replacing all for the axes in `others` by `others`.
     pub fn replaced_by(&self, others: &Self) -> Self {
         let mut boundaries = self.0.clone();
         boundaries.retain(|boundary| !others.0.iter().any(|other| other.axis == boundary.axis));
@@ -339,7 +339,7 @@ impl LevelBoundaries {
         Self(boundaries)
     }
 
-    /// Returns these boundaries for another axis, the name of an output.
+    /// Returns these boundaries for another axis, an output's name.
     pub fn for_axis(&self, axis: &str) -> Self {
         let mut boundaries = self.0.clone();
         for boundary in &mut boundaries {
@@ -353,7 +353,7 @@ impl LevelBoundaries {
         others.0.iter().all(|other| self.0.contains(other))
     }
 
-    /// Returns the axes that are not outputs of the dataset, without duplicates.
+    /// Returns the axes that are not among the dataset's outputs, without duplicates.
     pub fn unknown_axes(&self, outputs: &[String]) -> Vec<&str> {
         let mut unknown: Vec<&str> = Vec::new();
         for LevelBoundary { axis, .. } in &self.0 {

@@ -1,4 +1,5 @@
-//! Modes of models against those identified from flight, with user-defined tolerances (M17.3).
+//! Compares models' modes with the modes identified from flight, within user-defined tolerances
+//! (M17.3).
 //!
 //! ```text
 //! 1  pair every model's modes with the identified ones by distance and shape (mode_pairing)
@@ -44,11 +45,11 @@ pub enum ModeVerdict {
     NotDetermined,
     /// The table has no tolerance for the mode.
     NoTolerance,
-    /// Unpaired: no remaining mode of the model is within the limits on distance and likeness.
+    /// Unpaired: no remaining mode in the model is within the limits on distance and likeness.
     NotPaired,
 }
 
-/// A model's counterpart of a flown mode.
+/// A model's counterpart to a flown mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMode {
     /// Index among the model's modes.
@@ -71,11 +72,11 @@ impl ComparedMode {
 /// A mode identified from flight (the flown mode), and its counterparts in the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeRow {
-    /// Name of the mode; `None` if neither states nor frequency determine a name.
+    /// Mode name; `None` if neither states nor frequency determine it.
     pub name: Option<ModeName>,
     pub named_by: NamedBy,
     pub flown: ComparedMode,
-    /// Standard deviations of `flown`; `None` if the identification result is unavailable.
+    /// Standard deviations for `flown`; `None` if the identification result is unavailable.
     pub deviation: Option<ModeValues>,
     /// Whether flight determines the mode: its frequency is not below the band, and its standard
     /// deviations are within the tolerance (if both are available).
@@ -93,7 +94,7 @@ pub struct ModeRow {
 /// measured response).
 ///
 /// A row takes its name from the first model with named states and a counterpart. No two rows have
-/// the same name: of two such rows, only the row with the lower pairing cost keeps the name.
+/// the same name: if two would, only the row with the lower pairing cost keeps it.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],
@@ -143,22 +144,22 @@ pub fn compare_modes(
     rows
 }
 
-/// A model, and the partner of each flown mode among its modes.
+/// A model, and each flown mode's partner among its modes.
 struct PairedModel<'a> {
     model: ModelModes<'a>,
-    /// Partner of the flown mode in each row; `None` if unpaired.
+    /// For each row, the flown mode's partner; `None` if unpaired.
     pairs: Vec<Option<ModePair>>,
 }
 
 impl PairedModel<'_> {
-    /// Returns the model's counterpart of the flown mode in this row.
+    /// Returns the model's counterpart to the flown mode in this row.
     fn counterpart(&self, row: usize) -> Option<ComparedMode> {
         let pair = self.pairs[row]?;
         Some(ComparedMode::new(pair.mode, &self.model.modes[pair.mode]))
     }
 }
 
-/// Modes, pole uncertainty and band of the identified model.
+/// The identified model's modes, pole uncertainty and band.
 struct FlownModel<'a> {
     modes: &'a [Mode],
     /// The flown poles with their uncertainty; empty if unavailable.
@@ -200,12 +201,12 @@ impl FlownModel<'_> {
 struct Naming {
     name: Option<ModeName>,
     named_by: NamedBy,
-    /// Pairing cost of the mode whose states give the name; infinite for a name by frequency.
+    /// Pairing cost for the mode whose states give the name; infinite for a name by frequency.
     doubt: f64,
 }
 
 impl Naming {
-    /// Returns the name from the states of the first model with named states and a counterpart, the
+    /// Returns the name from the states in the first model with named states and a counterpart, the
     /// flown model first; otherwise a guess from the flown mode's frequency.
     fn from_states_or_frequency(
         flown: ModelModes<'_>,
@@ -262,7 +263,7 @@ fn keep_surest_names(namings: &mut [Naming]) {
     }
 }
 
-/// Returns the verdict on a model's counterpart of a flown mode.
+/// Returns the verdict on a model's counterpart to a flown mode.
 fn verdict(
     flown: &FlownMode,
     counterpart: Option<&ComparedMode>,

@@ -1,4 +1,4 @@
-//! Names of helicopter modes (M17.3).
+//! Names for helicopter modes (M17.3).
 //!
 //! ```text
 //! if states are named: sum the participations by kind of state
@@ -72,7 +72,7 @@ impl fmt::Display for ModeName {
     }
 }
 
-/// Basis of a mode's name.
+/// What a mode's name is based on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedBy {
@@ -94,7 +94,7 @@ impl ModeName {
         (Self::by_states(mode, shares, states), NamedBy::States)
     }
 
-    /// Names a mode by the kinds of states that participate; `shares` holds their indices and
+    /// Names a mode by the kinds of the participating states; `shares` holds their indices and
     /// participations.
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
         use StateKind::{CyclicFlap, P, Phi, Psi, Q, R, Theta, U, V, W};
@@ -123,8 +123,7 @@ impl ModeName {
         }
     }
 
-    /// Guesses a name from values of frequency \[rad/s\] and damping that are typical of
-    /// helicopters.
+    /// Guesses a name from frequencies \[rad/s\] and dampings that are typical for helicopters.
     fn by_frequency(mode: &Mode) -> Option<Self> {
         let damping = mode.damping_ratio?;
         match (mode.oscillates(), mode.frequency_rad_s) {
@@ -139,15 +138,15 @@ impl ModeName {
     }
 }
 
-/// Participation of named states in a mode.
+/// How much named states participate in a mode.
 struct KindShares<'a> {
-    /// Index and participation of each participating state.
+    /// Each participating state's index and participation.
     shares: &'a [(usize, f64)],
     states: &'a [String],
 }
 
 impl KindShares<'_> {
-    /// Returns the summed participation of these kinds.
+    /// Sums the participation over these kinds.
     fn sum(&self, kinds: &[StateKind]) -> f64 {
         self.shares
             .iter()
@@ -161,7 +160,7 @@ impl KindShares<'_> {
     }
 }
 
-/// Kind of a state that tells modes apart.
+/// Physical quantity that a state represents; only the quantities that distinguish modes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum StateKind {
     /// Velocity along the longitudinal body axis.

@@ -11,12 +11,13 @@
 //!    an unpaired flown mode counts as 1
 //! ```
 //!
-//! `r_k` are the residues of mode k in the outputs, with `v_k` and `w_k` the right and the left
-//! eigenvector of its pole `lambda_k`, and `C` and `B` the output and the input matrix; primes mark the
-//! other model. `omega_min` is the lower band end: below it flight resolves poles only by their absolute
-//! difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for orthogonal
-//! shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis", Proc. 1st
-//! International Modal Analysis Conference, 1982. Assignment: see `fidelity/assignment.rs`.
+//! `r_k` are mode k's residues in the outputs, with `v_k` and `w_k` the right and the left
+//! eigenvector for its pole `lambda_k`, and `C` and `B` the output and the input matrix; primes
+//! mark the other model. `omega_min` is the lower band end: below it flight resolves poles only by
+//! their absolute difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for
+//! orthogonal shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis",
+//! Proc. 1st International Modal Analysis Conference, 1982. Assignment: see
+//! `fidelity/assignment.rs`.
 
 use nalgebra::Complex;
 
@@ -26,14 +27,14 @@ use crate::fidelity::assignment::cheapest_assignment;
 
 /// Maximum s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Minimum likeness `c` of the shapes within a pair.
+/// Minimum likeness `c` between the shapes in a pair.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
-/// Cost of a flown mode without a partner: equal to the cost of the worst admissible pair.
+/// Cost for a flown mode without a partner: equals the cost of the worst admissible pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
-/// Cost of an inadmissible pair: exceeds the cost of leaving all modes unpaired.
+/// Cost for an inadmissible pair: exceeds the cost for leaving all modes unpaired.
 const BARRED_COST: f64 = 1e9;
 
-/// A model's counterpart of a flown mode.
+/// A model's counterpart to a flown mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ModePair {
     /// Index among the model's modes.
@@ -42,15 +43,15 @@ pub(super) struct ModePair {
     pub(super) cost: f64,
 }
 
-/// Returns the indices of modes, each conjugate pair once.
+/// Returns mode indices, each conjugate pair once.
 pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
     (0..modes.len())
         .filter(|&index| modes[index].pole.im >= 0.0)
         .collect()
 }
 
-/// Returns the partner in `model` for each of the [`single_modes`] in `flown`; `None` if unpaired.
-/// No mode is a partner twice.
+/// Returns a partner in `model` for each of the [`single_modes`] in `flown`; `None` if unpaired. No
+/// mode is a partner twice.
 pub(super) fn mode_pairs(
     flown: &[Mode],
     model: &[Mode],
@@ -81,7 +82,7 @@ pub(super) fn mode_pairs(
     pairs
 }
 
-/// Returns `d + 1 - c` of two modes; `None` if they cannot be a pair.
+/// Returns `d + 1 - c` for two modes; `None` if they cannot be a pair.
 fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Option<f64> {
     let largest = flown
         .frequency_rad_s
@@ -98,8 +99,8 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` for each output, over all flown poles: both of a conjugate pair count. Zero if
-/// none has a residue in the output.
+/// Returns `s_i` for each output, over all flown poles: both poles in a conjugate pair count. Zero
+/// if no pole has a residue in the output.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
@@ -112,7 +113,7 @@ fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     squares.into_iter().map(f64::sqrt).collect()
 }
 
-/// Returns `c` of two modes; `None` if a shape is unavailable, or no flown mode has a residue in
+/// Returns `c` for two modes; `None` if a shape is unavailable, or no flown mode has a residue in
 /// any output.
 fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     let flown = mode_shape(flown)?;

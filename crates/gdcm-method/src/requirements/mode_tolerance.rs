@@ -1,4 +1,4 @@
-//! User-defined tolerances of modes (M17.3).
+//! User-defined tolerances on modes (M17.3).
 //!
 //! The default table follows 14 CFR part 60, appendix C, table C2A, 2.c.3.a and 2.d.3.a.
 
@@ -11,22 +11,22 @@ use super::mode_name::ModeName;
 use super::mode_values::ModeValues;
 use super::positive_number::{NamedLimit, WrongLimit, first_not_positive};
 
-/// A row: a tolerance of the period, and alternative tolerances of amplitude and damping.
+/// A row: a tolerance on the period, and alternative tolerances on amplitude and damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModeTolerance {
     /// Name in the source ("long term").
     pub response: String,
     /// Modes to which the row applies.
     pub modes: Vec<ModeName>,
-    /// Tolerance of the period, relative to the flown period.
+    /// Tolerance on the period, relative to the flown period.
     pub period: f64,
-    /// Absolute tolerance of the period \[s\], used if wider than the relative tolerance; `None` if
+    /// Absolute tolerance on the period \[s\], used if wider than the relative tolerance; `None` if
     /// only the latter applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// Tolerance of the time to half or double amplitude, relative to the flown time.
+    /// Tolerance on the time to half or double amplitude, relative to the flown time.
     pub amplitude_time: f64,
-    /// Absolute tolerance of the damping ratio.
+    /// Absolute tolerance on the damping ratio.
     pub damping_ratio: f64,
     /// Entry in the source ("2.c.3.a").
     #[serde(default)]
@@ -42,7 +42,7 @@ pub struct ModeToleranceTable(Vec<ModeTolerance>);
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("mode tolerance {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
 pub struct ModeToleranceError {
-    /// Index of the row, counted from 1.
+    /// Row number, counted from 1.
     pub row: usize,
     pub response: String,
     /// `period`, `period_s`, `amplitude_time` or `damping_ratio`.
@@ -89,9 +89,9 @@ impl ModeTolerance {
         }
     }
 
-    /// Returns whether flight determines the mode to within the tolerance: the standard deviation
-    /// of the period is within its tolerance, and so is the standard deviation of the time to half
-    /// amplitude or of the damping ratio. A value that the flown mode lacks has the tolerance zero.
+    /// Returns whether flight determines the mode to within the tolerance: the period's standard
+    /// deviation is within its tolerance, and so is that of the time to half amplitude or the
+    /// damping ratio. A value that the flown mode lacks has the tolerance zero.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
         let period_s = match flown.period_s {
             Some(period_s) => self.period_tolerance_s(period_s),
@@ -166,7 +166,7 @@ impl TryFrom<Vec<ModeTolerance>> for ModeToleranceTable {
 }
 
 impl Default for ModeToleranceTable {
-    /// Returns the tolerances of 14 CFR part 60, appendix C, table C2A, 2.c.3.a (long-term
+    /// Returns the tolerances from 14 CFR part 60, appendix C, table C2A, 2.c.3.a (long-term
     /// response) and 2.d.3.a (lateral-directional oscillations).
     fn default() -> Self {
         Self(vec![

@@ -1,4 +1,4 @@
-//! Period, time to half amplitude and damping ratio of a mode, with standard deviations (M17.3).
+//! A mode's period, time to half amplitude and damping ratio, with standard deviations (M17.3).
 //!
 //! ```text
 //! lambda: the mode's pole, Re and Im its parts; sd_Re, sd_Im: their standard deviations
@@ -14,7 +14,7 @@ use serde::Serialize;
 use gdcm_model::response::Mode;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 
-/// The compared values of a mode, or their standard deviations.
+/// A mode's compared values, or their standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModeValues {
     /// Period \[s\]; `None` for a mode that does not oscillate.
@@ -41,8 +41,7 @@ impl ModeValues {
         }
     }
 
-    /// Computes the standard deviations from the standard deviations of the pole, to first order
-    /// (M14.5).
+    /// Computes the standard deviations from the pole's, to first order (M14.5).
     pub fn deviation(mode: &Mode, pole: &PoleEstimate) -> Self {
         let values = Self::new(mode);
         let re = mode.pole.re.abs();

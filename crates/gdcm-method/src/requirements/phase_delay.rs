@@ -15,13 +15,13 @@ use super::attitude_response::AttitudeResponse;
 
 /// Points used to judge the phase between `omega_180` and `2 omega_180`.
 const LINE_POINTS: usize = 400;
-/// Departure of the phase from its chord \[deg\] up to which the phase counts as straight.
+/// Departure from its chord \[deg\] up to which the phase counts as straight.
 const STRAIGHT_DEG: f64 = 10.0;
 
 /// The phase from `omega_180` to `2 omega_180`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseLine {
-    /// Maximum departure of the phase from the line between its ends \[deg\].
+    /// The phase's maximum departure from the line between its ends \[deg\].
     pub departure_deg: f64,
     /// Phase delay from the two ends \[s\]: `-(Phi(2 omega_180) + pi) / (2 omega_180)`.
     pub two_points_s: f64,
@@ -72,7 +72,7 @@ fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     largest
 }
 
-/// Returns the slope \[s\] of the least-squares line of `phase` over `omega`.
+/// Returns the slope \[s\] of the least-squares line through `phase` over `omega`.
 fn slope(omega: &[f64], phase: &[f64]) -> f64 {
     let mean_omega = mean(omega);
     let mean_phase = mean(phase);

@@ -1,4 +1,4 @@
-//! Check of user-defined limits.
+//! Checks user-defined limits.
 
 /// A limit with its field name, for error messages.
 pub(super) struct NamedLimit {

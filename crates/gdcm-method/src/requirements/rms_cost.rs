@@ -4,7 +4,7 @@
 //! J_rms = sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)),   W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
 //! ```
 //!
-//! `y` are the flown and `y^` the simulated outputs over `n_t` samples, `n_o` the number of outputs
+//! `y` are the flown and `y^` the simulated outputs over `n_t` samples, `n_o` counts the outputs
 //! with a weight.
 //!
 //! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3.
@@ -18,7 +18,7 @@ use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_facto
 pub struct RmsCost {
     /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
     pub value: f64,
-    /// Indices of outputs without a weight, in units other than angle, speed or acceleration.
+    /// Outputs without a weight, by index: their units are not for an angle, speed or acceleration.
     pub left_out: Vec<usize>,
 }
 

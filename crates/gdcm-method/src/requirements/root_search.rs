@@ -1,4 +1,4 @@
-//! Root of a function of frequency between two frequencies, by Chandrupatla's method.
+//! Finds a root between two frequencies by Chandrupatla's method.
 
 /// Relative bracket width at which the search ends.
 const ROOT_TOLERANCE: f64 = 1e-12;
@@ -17,7 +17,7 @@ const ROOT_TOLERANCE: f64 = 1e-12;
 pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
     let mut a = Sample::new(high, &value);
     let mut b = Sample::new(low, &value);
-    // Position of the next point: 0 at a, 1 at b.
+    // Where the next point lies: 0 at a, 1 at b.
     let mut fraction = 0.5;
     loop {
         let new = Sample::new(a.omega + fraction * (b.omega - a.omega), &value);
@@ -29,7 +29,8 @@ pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<
         };
         a = new;
         let best = if a.value.abs() < b.value.abs() { a } else { b };
-        // The tolerance as a fraction of the bracket; above 1/2 the bracket is narrower than twice it.
+        // The tolerance relative to the bracket width; above 1/2 the bracket is narrower than twice
+        // the tolerance.
         let least = ROOT_TOLERANCE * best.omega / (b.omega - a.omega).abs();
         if least > 0.5 || best.value == 0.0 || !least.is_finite() {
             return best.omega;
@@ -63,7 +64,7 @@ impl Sample {
 }
 
 /// Returns whether the inverse quadratic through three points is monotonic over the bracket
-/// (Chandrupatla's criterion): `xi` and `phi` are the positions of `a` between `b` (0) and `c` (1) in
+/// (Chandrupatla's criterion): `xi` and `phi` say where `a` lies between `b` (0) and `c` (1) in
 /// frequency and in value.
 fn is_monotonic(a: Sample, b: Sample, c: Sample) -> bool {
     let xi = (a.omega - b.omega) / (c.omega - b.omega);
@@ -71,8 +72,7 @@ fn is_monotonic(a: Sample, b: Sample, c: Sample) -> bool {
     phi.powi(2) < xi && (1.0 - phi).powi(2) < 1.0 - xi
 }
 
-/// Returns the root of the inverse quadratic through three points, as its position between `a` (0)
-/// and `b` (1).
+/// Returns where the inverse quadratic through three points is zero, between `a` (0) and `b` (1).
 fn quadratic_fraction(a: Sample, b: Sample, c: Sample) -> f64 {
     a.value / (b.value - a.value) * c.value / (b.value - c.value)
         + (c.omega - a.omega) / (b.omega - a.omega) * a.value / (c.value - a.value) * b.value

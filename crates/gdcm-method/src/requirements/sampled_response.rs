@@ -1,5 +1,5 @@
 //! A model's response sampled once on the search frequencies and interpolated between them, so that
-//! bandwidths under many corrections need no further evaluation of the model (M17.1).
+//! bandwidths under many corrections need no further model evaluation (M17.1).
 
 use nalgebra::Complex;
 
@@ -19,7 +19,7 @@ pub struct SampledResponse {
     omega: Vec<f64>,
     /// All responses at `omega`, without correction.
     values: FrequencyResponse,
-    /// Number of search frequencies.
+    /// Count of search frequencies, the first in `omega`.
     searched: usize,
 }
 
@@ -93,12 +93,12 @@ fn corrected(values: &[Complex<f64>], omega: &[f64], correction: GainDelay) -> V
         .collect()
 }
 
-/// A response sampled at equal steps of ln omega.
+/// A response sampled at equal steps in ln omega.
 struct CubicInterpolation<'a> {
     curve: &'a [Complex<f64>],
     /// ln omega at the first sample.
     start: f64,
-    /// Step of ln omega.
+    /// Step in ln omega.
     step: f64,
 }
 
@@ -111,7 +111,7 @@ impl CubicInterpolation<'_> {
         if !(-ROUNDING..=last + ROUNDING).contains(&place) {
             return None;
         }
-        // The first of the four samples: one before the interval, except at the ends.
+        // First sample: one before the interval, except at the ends.
         let from = (place.floor() - 1.0).clamp(0.0, last - 3.0);
         Some(cubic(&self.curve[from as usize..][..4], place - from))
     }

@@ -1,11 +1,11 @@
-//! Error bar of a requirement's metric from the other models of the bundles (M13, M17.1): the metric
-//! is computed again with each of them instead of the representative.
+//! Error bar for a requirement's metric from the bundles' other models (M13, M17.1): the metric is
+//! computed again with each other model instead of the representative.
 
 use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};
 
-/// Computes the error bar of `value`, a non-negative metric of the two representatives (M13.1,
-/// M13.3). The entries of `physics` and `identified` are the metric with that representative
-/// replaced by another model of its bundle; `None` if the metric does not exist, which the bar
+/// Computes the error bar for `value`, a non-negative metric from the two representatives (M13.1,
+/// M13.3). The entries in `physics` and `identified` are the metric with that representative
+/// replaced by another model from its bundle; `None` if the metric does not exist, which the bar
 /// counts as left out.
 pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
     let left_out = physics

@@ -1,4 +1,4 @@
-//! Summary costs of a model in a condition (M17.4): mean J, weighted rms error in time, Theil's
+//! Summary costs for a model in a condition (M17.4): mean J, weighted rms error in time, Theil's
 //! coefficients, and the share of the band inside the MUAD envelopes.
 //!
 //! ```text
@@ -23,22 +23,22 @@ use crate::fidelity::{CostAverage, Mismatch, ranges_outside};
 /// A model in a condition, compared with flight.
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
-    /// Difference between each response of the model and of the identified representative; `None`
-    /// where no comparison exists.
+    /// Difference between the model and the identified representative, per response; `None` where
+    /// no comparison exists.
     pub mismatch: &'a PairTable<Option<Mismatch>>,
-    /// Correction of each response; `None` without a positive net gain.
+    /// Correction per response; `None` without a positive net gain.
     pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
     pub on_axis: &'a PairTable<bool>,
     /// Band frequencies \[rad/s\], ascending.
     pub omega: &'a [f64],
-    /// Kind of average over frequency in J.
+    /// How J averages over frequency.
     pub average: CostAverage,
-    /// Comparison of the model with a record of flight, if any.
+    /// The model's comparison with a flight record, if any.
     pub validation: Option<&'a Validation>,
     pub outputs: &'a [Channel],
 }
 
-/// The summary costs of a model in a condition.
+/// Summary costs for a model in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     pub cost: OnAxisAndAll,
@@ -46,7 +46,7 @@ pub struct Summary {
     pub rms: Option<RmsCost>,
     /// Theil's coefficient by output, 0 to 1; empty without a record, `None` for a constant output.
     pub theil: Vec<Option<f64>>,
-    /// Mean share of the band inside MUAD, 0 to 1.
+    /// Mean over responses: share of the band inside MUAD, 0 to 1.
     pub muad: OnAxisAndAll,
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::units::number;
 
-/// Shape of a test input over time.
+/// How a test input varies over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TestInputShape {
@@ -21,7 +21,7 @@ pub struct TestInput {
     pub shape: TestInputShape,
     /// Amplitude, in the input's unit.
     pub size: f64,
-    /// Duration of the whole input \[s\]; for a doublet, of both halves.
+    /// Total duration \[s\]; for a doublet, both halves together.
     pub duration_s: f64,
 }
 

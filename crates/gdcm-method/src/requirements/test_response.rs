@@ -1,4 +1,4 @@
-//! Response of a model to a test input, simulated over time (M17.2).
+//! Simulates a model's response to a test input over time (M17.2).
 
 use nalgebra::{DMatrix, DVector};
 

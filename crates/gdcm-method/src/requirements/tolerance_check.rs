@@ -11,9 +11,9 @@
 //! `y` are the flown and `y^` the simulated samples with index n, `dt` apart; `theta` is an attitude
 //! and `q` its rate.
 //!
-//! 14 CFR part 60, appendix C, table C2A. The check is not a qualification: the tests of that table
-//! are steps and doublets at given conditions. Integrals of body rates are attitudes for small
-//! angles only.
+//! 14 CFR part 60, appendix C, table C2A. The check is not a qualification: the table's tests are
+//! steps and doublets at given conditions. Integrated body rates are attitudes for small angles
+//! only.
 
 use nalgebra::DMatrix;
 
@@ -62,24 +62,24 @@ pub struct ToleranceCheck {
     pub flown: Vec<f64>,
     /// Simulated samples as compared.
     pub simulated: Vec<f64>,
-    /// Half-width of the corridor around flight at each sample.
+    /// Half-width of the corridor around the flown samples, per sample.
     pub width: Vec<f64>,
-    /// Number of samples inside the corridor.
+    /// Count of samples inside the corridor.
     pub inside: usize,
     /// Maximum distance beyond the corridor; negative if all samples are inside.
     pub largest_excess: f64,
-    /// Time of `largest_excess` \[s\].
+    /// Time at which `largest_excess` occurs \[s\].
     pub largest_excess_at_s: f64,
-    /// Maximum error as a multiple of the corridor's half-width at the same sample; above 1 if a
-    /// sample is outside.
+    /// Maximum ratio between the error and the corridor's half-width at the same sample; above 1 if
+    /// a sample is outside.
     pub peak_error: f64,
-    /// Time of `peak_error` \[s\].
+    /// Time at which `peak_error` occurs \[s\].
     pub peak_error_at_s: f64,
     trend: TrendSums,
 }
 
 impl ToleranceCheck {
-    /// Checks a window of a record, treated as a separate manoeuvre, against `tolerance`.
+    /// Checks a window from a record, treated as a separate manoeuvre, against `tolerance`.
     ///
     /// # Errors
     /// [`ToleranceCheckError`] if there is no such output, there are no samples, the sample counts
@@ -111,7 +111,7 @@ impl ToleranceCheck {
         })
     }
 
-    /// Returns the number of compared samples, at least one.
+    /// Returns the compared sample count, at least one.
     pub fn samples(&self) -> usize {
         self.flown.len()
     }
@@ -190,7 +190,7 @@ fn compared_samples(
     Ok(samples)
 }
 
-/// Returns the half-width of the corridor at each sample (step 2).
+/// Returns the corridor's half-width at each sample (step 2).
 fn corridor_width(flown: &[f64], tolerance: &ChannelTolerance) -> Vec<f64> {
     let start = flown[0];
     flown
@@ -225,7 +225,7 @@ fn error_multiples(flown: &[f64], simulated: &[f64], width: &[f64]) -> Vec<f64> 
         .collect()
 }
 
-/// Returns the index of the maximum, the first among equals.
+/// Returns the maximum's index, the first among equals.
 fn first_maximum(values: &[f64]) -> usize {
     let mut largest = 0;
     for (n, value) in values.iter().enumerate() {
@@ -247,8 +247,8 @@ fn integral(samples: &[f64], sample_time_s: f64) -> Vec<f64> {
     integrals
 }
 
-/// Sums over the samples, after subtraction of the means, from which the correlation is computed
-/// (step 4).
+/// Sums over the samples, after subtracting the means, from which the correlation is computed (step
+/// 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct TrendSums {
     flown_squared: f64,
@@ -291,7 +291,7 @@ impl TrendSums {
     }
 }
 
-/// An output over all windows of a record, each with its own estimated initial state (M14, 6).
+/// An output over all windows in a record, each with its own estimated initial state (M14, 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
     /// Record index, counted from 0.
@@ -301,7 +301,7 @@ pub struct RecordCheck {
 }
 
 impl RecordCheck {
-    /// Checks the records of `windows` against `tolerance`; every window is treated as a separate
+    /// Checks the records in `windows` against `tolerance`; every window is treated as a separate
     /// manoeuvre.
     ///
     /// # Errors

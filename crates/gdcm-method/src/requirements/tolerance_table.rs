@@ -29,8 +29,8 @@ pub struct Tolerance {
     pub absolute: f64,
     /// Unit of `absolute` ("deg").
     pub unit: String,
-    /// The tolerance relative to the change from the start of the manoeuvre; `None` if only
-    /// `absolute` applies.
+    /// The tolerance relative to the change since the manoeuvre's start; `None` if only `absolute`
+    /// applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
     /// Entries in the source ("2.b.3.b, 2.d.1").
@@ -63,14 +63,14 @@ pub enum ToleranceError {
         quoted(quantity)
     )]
     NoChannelName {
-        /// Index of the row, counted from 1.
+        /// Row number, counted from 1.
         row: usize,
         quantity: String,
     },
     /// A tolerance is not finite, or not above zero.
     #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
     NotPositive {
-        /// Index of the row, counted from 1.
+        /// Row number, counted from 1.
         row: usize,
         quantity: String,
         /// `absolute` or `relative`.
@@ -100,7 +100,7 @@ pub enum ToleranceError {
         channel: String,
         unit: String,
     },
-    /// The unit of the tolerance cannot be converted to the output's unit.
+    /// The tolerance's unit cannot be converted to the output's unit.
     #[error(
         "{} is not compared: the tolerance is in {}, but {} is in {}",
         quoted(quantity),
@@ -112,7 +112,7 @@ pub enum ToleranceError {
         quantity: String,
         channel: String,
         unit: String,
-        /// Unit of the output or its integral.
+        /// The output's unit, or its integral's.
         compared_unit: String,
     },
 }
@@ -134,7 +134,7 @@ impl ToleranceError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {
     pub output: usize,
-    /// Whether the integral of the output is compared.
+    /// Whether the output's integral is compared.
     pub integrated: bool,
     /// The absolute tolerance, in `unit`.
     pub absolute: f64,
@@ -264,8 +264,8 @@ impl TryFrom<ToleranceRows> for ToleranceTable {
 }
 
 impl Default for ToleranceTable {
-    /// Returns the tolerances of 14 CFR part 60, appendix C, table C2A: hover and low speed (2.b),
-    /// longitudinal (2.c), lateral and directional (2.d).
+    /// Returns the tolerances from 14 CFR part 60, appendix C, table C2A: hover and low speed
+    /// (2.b), longitudinal (2.c), lateral and directional (2.d).
     fn default() -> Self {
         let rows = DEFAULT_ROWS.iter().map(DefaultRow::tolerance).collect();
         Self {
@@ -275,7 +275,7 @@ impl Default for ToleranceTable {
     }
 }
 
-/// A default row; an absolute tolerance in deg applies to the integral of a rate.
+/// A default row; an absolute tolerance in deg applies to a rate's integral.
 struct DefaultRow {
     quantity: &'static str,
     channel: &'static str,

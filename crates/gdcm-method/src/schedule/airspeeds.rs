@@ -1,5 +1,6 @@
-//! Scale and clusters of the scheduled airspeeds (M11, M11b). Conditions in the same cluster count as
-//! one airspeed: a table has a value for each cluster, and a polynomial at most as many coefficients.
+//! Scale and clusters for the scheduled airspeeds (M11, M11b). Conditions in the same cluster count
+//! as one airspeed: a table has a value for each cluster, and a polynomial at most as many
+//! coefficients.
 
 /// The conditions' airspeeds, centred and scaled: `v = (V - mean V) / (half the range of V)` (M11).
 #[derive(Clone, Debug, PartialEq)]

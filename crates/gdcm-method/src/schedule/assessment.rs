@@ -1,4 +1,4 @@
-//! Benefit of a correction: J before and after (M12).
+//! What a correction improves: J before and after (M12).
 
 use gdcm_model::dataset::{Pair, PairTable};
 

@@ -11,11 +11,11 @@ pub enum ScheduleCaution {
     DegreeLowered {
         /// Requested degree.
         asked: usize,
-        /// Number of clusters.
+        /// Airspeed clusters, the count of distinct airspeeds.
         clusters: usize,
     },
-    /// Between two clusters, a gain leaves the range of the conditions' gains by more than half the
-    /// width of that range (M11b).
+    /// Between two clusters, a gain leaves the range of the conditions' gains by more than half
+    /// that range's width (M11b).
     Overshoot {
         channel: Channel,
         /// Mean airspeeds \[kt\] in the neighbouring clusters.
@@ -39,7 +39,7 @@ pub enum ScheduleCaution {
     /// A gain is not positive at an intermediate airspeed, possible only if `k` itself is
     /// regressed.
     NotPositive,
-    /// J of a condition under the schedule is more than twice J under the condition's own
+    /// A condition's J under the schedule is more than twice its J under the condition's own
     /// correction (M12).
     CostsMore(ScheduledCost),
 }
@@ -48,7 +48,7 @@ pub enum ScheduleCaution {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduledCost {
     pub condition: ConditionId,
-    /// Name of the nominal model, or of the representative if the nominal model is rejected.
+    /// The nominal model's name, or the representative's if the nominal model is rejected.
     pub model: String,
     /// J under the schedule.
     pub scheduled: f64,
@@ -57,9 +57,9 @@ pub struct ScheduledCost {
 }
 
 impl ScheduledCost {
-    /// Ratio of `scheduled` to `own` above which a caution is raised.
+    /// `scheduled / own` above which a caution is raised.
     const NOTABLE_RATIO: f64 = 2.0;
-    /// `scheduled` below which no caution is raised: 1 corresponds to an error of 0.2 dB.
+    /// `scheduled` below which no caution is raised: 1 corresponds to a 0.2 dB error.
     const LEAST_NOTABLE: f64 = 1.0;
 
     /// Returns whether the scheduled J is above 1 and more than twice the condition's own J.

@@ -1,4 +1,5 @@
-//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5): fit and evaluation.
+//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5):
+//! fitted and evaluated.
 //!
 //! ```text
 //! 1  cluster the conditions' airspeeds; v = (V - mean V) / (half the range of V)
@@ -25,7 +26,7 @@ use super::second_term::SecondTerm;
 use super::settings::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::correction::{ChannelCorrection, Channels, LeadPrice};
 
-/// Number of steps over the airspeed range at which a schedule is inspected.
+/// Steps over the airspeed range at which a schedule is inspected.
 pub(super) const STEPS: u32 = 100;
 
 /// Every channel's gain (and delay, where requested) as a function of airspeed.
@@ -37,9 +38,9 @@ pub struct Schedule {
     pub gains: Channels<Regression>,
     /// The second variable's contribution to each regression, if any.
     pub second: Option<SecondTerm>,
-    /// Delays as functions of airspeed, where these are scheduled.
+    /// Delays over airspeed; `None` if they are not scheduled.
     pub delays: Option<DelaySchedule>,
-    /// Signed delays as functions of airspeed, where the conditions' corrections have leads (M15).
+    /// Signed delays over airspeed; `None` unless the conditions' corrections have leads (M15).
     pub leads: Option<LeadSchedule>,
     pub cautions: Vec<ScheduleCaution>,
 }
@@ -49,7 +50,7 @@ impl Schedule {
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from the effect of airspeed.
+    /// effect cannot be separated from the airspeed's.
     pub fn fit(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -108,8 +109,8 @@ impl Schedule {
         self.delays.is_some() || self.leads.is_some()
     }
 
-    /// Returns the price of the scheduled leads: for each channel the maximum over the airspeeds.
-    /// `None` for a schedule without lead filters.
+    /// Returns the price paid for the scheduled leads: for each channel the maximum over the
+    /// airspeeds. `None` for a schedule without lead filters.
     pub fn lead_price(&self) -> Option<LeadPrice> {
         let leads = self.leads.as_ref()?;
         let steps = if leads.degree() == 0 { 0 } else { STEPS };
@@ -145,7 +146,7 @@ impl Schedule {
     /// end value applies.
     ///
     /// Scheduled delays are limited to their bounds: from zero to the conditions' upper bounds,
-    /// interpolated linearly. A second variable is set to the middle of its range.
+    /// interpolated linearly. A second variable is set to its mid-range value.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
         self.evaluate(airspeed_kt, None)
     }
@@ -195,13 +196,14 @@ impl Schedule {
         rows
     }
 
-    /// Returns the design columns that depend on airspeed: powers of `v`, or cluster indicators.
+    /// Returns the design matrix columns that depend on airspeed: powers of `v`, or cluster
+    /// indicators.
     pub fn airspeed_design(&self) -> Vec<Vec<f64>> {
         design(&self.airspeeds, self.settings.kind)
     }
 
     /// Returns the design row for an airspeed \[kt\], limited to the conditions' range. A second
-    /// variable is set to the middle of its range.
+    /// variable is set to its mid-range value.
     pub fn design_row(&self, airspeed_kt: f64) -> Vec<f64> {
         let mut row = match self.degree() {
             Some(degree) => powers(self.airspeeds.scaled(airspeed_kt), degree),

@@ -6,7 +6,7 @@ use super::regression::Regression;
 use super::settings::ScheduledQuantity;
 use crate::correction::{Channel, Channels};
 
-/// Column headings of a polynomial, lowest power first.
+/// Column headings for a polynomial, lowest power first.
 const POWERS: [&str; 4] = ["1", "v", "v²", "v³"];
 
 /// A channel's coefficients or values.
@@ -26,7 +26,7 @@ pub struct CoefficientTable {
     pub columns: Vec<String>,
     /// Inputs, then outputs; gains, then delays if scheduled.
     pub rows: Vec<CoefficientRow>,
-    /// Definition of `v`: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
+    /// How `v` is defined: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
     pub scale: String,
 }
 
@@ -87,7 +87,7 @@ impl Schedule {
         }
     }
 
-    /// Returns the regressions of delays and signed delays, where these are scheduled.
+    /// Returns the regressions for delays and signed delays, if these are scheduled.
     fn scheduled_delays(&self) -> Vec<&Channels<Regression>> {
         let mut scheduled = Vec::new();
         if let Some(delays) = &self.delays {
@@ -99,7 +99,7 @@ impl Schedule {
         scheduled
     }
 
-    /// Returns the coefficients or values of a regression in the table's columns.
+    /// Returns a regression's coefficients or values in the table's columns.
     fn row_figures(&self, regression: &Regression, columns: usize) -> Vec<f64> {
         match (self.degree(), regression) {
             // Signed delays are a polynomial even where the gains are a lookup table.

@@ -1,4 +1,4 @@
-//! Delays as functions of airspeed (M11). Signed delays are in `lead_schedule`.
+//! Delays over airspeed (M11). Signed delays are in `lead_schedule`.
 
 use super::airspeeds::Airspeeds;
 use super::regression::Regression;

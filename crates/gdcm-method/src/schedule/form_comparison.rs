@@ -1,5 +1,4 @@
-//! Comparison of the forms of a schedule: residuals and leave-one-condition-out errors of the gains
-//! (M11).
+//! Compares schedule forms by the gains' residuals and leave-one-condition-out errors (M11).
 //!
 //! ```text
 //! for each form (polynomials of each degree, table):
@@ -7,7 +6,7 @@
 //! 2  leave-one-out error of condition c: the same with the schedule of the other conditions
 //! ```
 //!
-//! `k` is the net gain `k_o k_i` of a response, `V` the airspeed.
+//! `k` is a response's net gain `k_o k_i`, `V` the airspeed.
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -16,7 +15,7 @@ use super::predictions::Predictions;
 use super::scheduled_point::ScheduledPoint;
 use super::settings::{ScheduleKind, ScheduleSettings};
 
-/// All forms of a schedule: polynomials from the mean to the cubic, and the table.
+/// All schedule forms: polynomials from the mean to the cubic, and the table.
 pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
     ScheduleKind::Polynomial { degree: 0 },
     ScheduleKind::Polynomial { degree: 1 },
@@ -25,10 +24,10 @@ pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
     ScheduleKind::Table,
 ];
 
-/// Computes residuals and leave-one-condition-out errors (M11) for every form of the schedule;
-/// `settings` gives the regressed quantity and the cluster tolerance.
+/// Computes residuals and leave-one-condition-out errors (M11) for every schedule form; `settings`
+/// gives the regressed quantity and the cluster tolerance.
 ///
-/// Each condition is left out in turn. The schedule of the others, evaluated at the omitted
+/// Each condition is left out in turn. The schedule fitted to the others, evaluated at the omitted
 /// airspeed (beyond their range, its end value), is compared with the condition's own gain.
 ///
 /// # Errors
@@ -80,23 +79,23 @@ fn gain_residuals(
     }
 }
 
-/// Fits of all forms of the schedule.
+/// Fits with all schedule forms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormComparison {
-    /// Airspeed by condition \[kt\], in the order of the residuals.
+    /// Airspeed by condition \[kt\], ordered as the residuals.
     pub airspeeds_kt: Vec<f64>,
-    /// Fits in the order of [`SCHEDULE_KINDS`].
+    /// Fits ordered as [`SCHEDULE_KINDS`].
     pub fits: Vec<FormFit>,
 }
 
 impl FormComparison {
-    /// Returns the fit of a form; `None` if the form was not fitted.
+    /// Returns the fit with a form; `None` if the form was not fitted.
     pub fn form(&self, kind: ScheduleKind) -> Option<&FormFit> {
         self.fits.iter().find(|form| form.kind == kind)
     }
 }
 
-/// Residuals by response under a form of the schedule.
+/// Residuals by response under one schedule form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormFit {
     pub kind: ScheduleKind,
@@ -107,7 +106,7 @@ pub struct FormFit {
 }
 
 impl FormFit {
-    /// Returns the leave-one-condition-out error of `ln k_o k_i`, root mean square over these
+    /// Returns the leave-one-condition-out error in `ln k_o k_i`, root mean square over these
     /// responses; `None` if a residual is missing.
     pub fn left_out_rms_ln(&self, pairs: impl IntoIterator<Item = Pair>) -> Option<f64> {
         let mut squares = Vec::new();
@@ -119,23 +118,23 @@ impl FormFit {
     }
 }
 
-/// A gain's residuals under a form of the schedule, by condition.
+/// A gain's residuals under one schedule form, by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResiduals {
-    /// Residual of each condition; `None` if the scheduled gain is not positive.
+    /// Each condition's residual; `None` if the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
-    /// Residual of each condition against the schedule fitted without that condition; `None` for
-    /// the only condition.
+    /// Each condition's residual against the schedule fitted without that condition; `None` for the
+    /// only condition.
     pub left_out: Vec<Option<Residual>>,
 }
 
 impl FitResiduals {
-    /// Returns the root mean square residual of `ln k`; `None` if a residual is missing.
+    /// Returns the root mean square residual in `ln k`; `None` if a residual is missing.
     pub fn rms_ln(&self) -> Option<f64> {
         rms(&self.residuals)
     }
 
-    /// Returns the leave-one-condition-out error of `ln k`, root mean square; `None` if a residual
+    /// Returns the leave-one-condition-out error in `ln k`, root mean square; `None` if a residual
     /// is missing.
     pub fn left_out_rms_ln(&self) -> Option<f64> {
         rms(&self.left_out)
@@ -147,7 +146,7 @@ impl FitResiduals {
 pub struct Residual {
     /// `ln k - ln k_scheduled`.
     pub ln: f64,
-    /// `100 (k / k_scheduled - 1)`, in percent of the scheduled gain.
+    /// `100 (k / k_scheduled - 1)`, relative to the scheduled gain \[%\].
     pub percent: f64,
 }
 
@@ -176,7 +175,7 @@ fn rms(residuals: &[Option<Residual>]) -> Option<f64> {
     root_mean(&squares)
 }
 
-/// Returns the root of the mean; `None` without values.
+/// Returns the square root of the mean; `None` without values.
 fn root_mean(squares: &[f64]) -> Option<f64> {
     if squares.is_empty() {
         return None;

@@ -1,4 +1,4 @@
-//! Checks of a schedule between its conditions (M11b): a polynomial through few airspeeds can leave
+//! Checks a schedule between its conditions (M11b): a polynomial through few airspeeds can leave
 //! the range of the gains to which it is fitted.
 
 use super::caution::ScheduleCaution;
@@ -7,8 +7,8 @@ use super::scheduled_point::ScheduledPoint;
 use super::settings::ScheduleKind;
 use crate::correction::Channel;
 
-/// Distance of a gain from the conditions' range that does not count as an overshoot, relative to
-/// the width of the range.
+/// Distance between a gain and the conditions' range that does not count as an overshoot, relative
+/// to the range's width.
 const TOLERATED_SHARE: f64 = 0.5;
 /// Relative rounding error that does not count as an overshoot where all gains are equal.
 const ROUNDING: f64 = 1e-9;

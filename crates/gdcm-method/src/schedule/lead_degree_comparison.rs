@@ -1,5 +1,5 @@
-//! Fit of the signed delays by polynomials of each degree: root mean square differences, with all
-//! conditions and with each condition left out (M15.5).
+//! How well polynomials of each degree fit the signed delays: root mean square differences, with
+//! all conditions and with each condition left out (M15.5).
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -8,8 +8,8 @@ use super::scheduled_point::ScheduledPoint;
 use super::settings::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
 use crate::correction::ChannelCorrection;
 
-/// Computes the fit of the signed delays for each degree from 0 to [`HIGHEST_DEGREE`]; empty if a
-/// condition's correction has no leads.
+/// Fits the signed delays with each degree from 0 to [`HIGHEST_DEGREE`]; empty if a condition's
+/// correction has no leads.
 pub fn compare_lead_degrees(
     points: &[ScheduledPoint<'_>],
     settings: ScheduleSettings,
@@ -20,7 +20,7 @@ pub fn compare_lead_degrees(
     }
     for degree in 0..=HIGHEST_DEGREE {
         let settings = ScheduleSettings {
-            // Signed delays depend on airspeed only, whatever the form of the gains.
+            // Signed delays depend on airspeed only, whatever form the gains have.
             kind: ScheduleKind::Polynomial { degree: 0 },
             tau_degree: degree,
             second: None,
@@ -37,11 +37,11 @@ pub fn compare_lead_degrees(
     fits
 }
 
-/// Fit of the signed delays by polynomials of one degree.
+/// How well polynomials of one degree fit the signed delays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     pub degree: usize,
-    /// Fit of each response's net signed delay.
+    /// Differences by response.
     pub pairs: PairTable<NetDelayFit>,
 }
 
@@ -49,13 +49,14 @@ pub struct LeadDegreeFit {
 /// scheduled ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NetDelayFit {
-    /// With the schedule of all conditions.
+    /// With the schedule fitted to all conditions.
     pub rms_s: f64,
-    /// With predictions from the schedule of the other conditions; `None` for the only condition.
+    /// With each condition predicted by the schedule fitted to the others; `None` for the only
+    /// condition.
     pub left_out_rms_s: Option<f64>,
 }
 
-/// Returns the fit of a response's net signed delay.
+/// Returns the differences for a response's net signed delay.
 fn net_delay_fit(
     points: &[ScheduledPoint<'_>],
     predictions: &Predictions,

@@ -1,4 +1,4 @@
-//! Signed delays as functions of airspeed (M15.5).
+//! Signed delays over airspeed (M15.5).
 
 use std::sync::Arc;
 
@@ -9,11 +9,11 @@ use crate::correction::Channels;
 use crate::correction::channel_leads::ChannelLeads;
 use crate::correction::lead_design::LeadDesign;
 
-/// Every channel's signed delay as a function of airspeed: the sum of two regressions is the
+/// Every channel's signed delay as a function of airspeed: two regressions added up are the
 /// regression of the sum, so every response's net lead is scheduled exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadSchedule {
-    /// Design that gives the filter of a signed delay.
+    /// Design that gives the filter for a signed delay.
     pub design: Arc<LeadDesign>,
     /// Signed delays by channel \[s\].
     pub taus_s: Channels<Regression>,
@@ -24,8 +24,8 @@ pub struct LeadSchedule {
 }
 
 impl LeadSchedule {
-    /// Fits polynomials of this degree to the conditions' signed delays; `None` without conditions,
-    /// or if a condition has no signed delays.
+    /// Fits polynomials with this degree to the conditions' signed delays; `None` without
+    /// conditions, or if a condition has no signed delays.
     pub(super) fn fit(
         points: &[ScheduledPoint<'_>],
         airspeeds: &Airspeeds,
@@ -60,7 +60,7 @@ impl LeadSchedule {
         Some(schedule)
     }
 
-    /// Returns the maximum degree of the polynomials.
+    /// Returns the polynomials' maximum degree.
     pub fn degree(&self) -> usize {
         self.taus_s
             .iter()

@@ -1,5 +1,5 @@
-//! Scheduled corrections at the conditions to which the schedule is fitted, and at each condition
-//! when it is left out of the fit (M11).
+//! Scheduled corrections at the fitted conditions, and at each condition when it is left out of the
+//! fit (M11).
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -9,13 +9,13 @@ use super::scheduled_point::ScheduledPoint;
 use super::settings::ScheduleSettings;
 use crate::correction::ChannelCorrection;
 
-/// Scheduled corrections at the conditions, of which there is at least one.
+/// Scheduled corrections at the conditions; there is at least one condition.
 pub(super) struct Predictions {
     /// Polynomial degree, possibly less than requested (M11b); `None` for a table.
     pub(super) degree: Option<usize>,
-    /// Correction of each condition by the schedule of all conditions.
+    /// Each condition's correction by the schedule fitted to all conditions.
     pub(super) scheduled: Vec<ChannelCorrection>,
-    /// Correction of each condition by the schedule of the other conditions; `None` if that
+    /// Each condition's correction by the schedule fitted to the other conditions; `None` if that
     /// schedule does not exist.
     pub(super) left_out: Vec<Option<ChannelCorrection>>,
 }

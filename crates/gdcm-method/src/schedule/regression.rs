@@ -25,7 +25,7 @@ pub enum Regression {
 }
 
 impl Regression {
-    /// Fits a function of this form to one value for each condition.
+    /// Fits a function with this form to one value for each condition.
     pub(super) fn fit(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Self {
         match kind {
             ScheduleKind::Polynomial { degree } => Self::polynomial(airspeeds, values, degree),
@@ -117,9 +117,9 @@ pub(super) fn powers(v: f64, degree: usize) -> Vec<f64> {
 
 /// Neighbouring points in an ascending list; beyond its ends both are the end point.
 struct Bracket {
-    /// Index of the lower neighbour.
+    /// Lower neighbour's index.
     before: usize,
-    /// Index of the upper neighbour.
+    /// Upper neighbour's index.
     after: usize,
     /// Position between the neighbours, 0 to 1.
     fraction: f64,
@@ -147,7 +147,7 @@ impl Bracket {
     }
 }
 
-/// Returns the weight of each of the ascending `places` in the linear interpolation at `x`.
+/// Returns the weights that the ascending `places` have in the linear interpolation at `x`.
 pub(super) fn interpolation_weights(places: &[f64], x: f64) -> Vec<f64> {
     let mut weights = vec![0.0; places.len()];
     let Bracket {

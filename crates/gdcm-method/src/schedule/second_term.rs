@@ -4,9 +4,10 @@
 //! y(V, z) = f(V) + gamma z,   gamma = z_r' y / z_r' z_r,   z_r = z - Q Q' z
 //! ```
 //!
-//! `y` is a channel's regressed value, `z` the variable scaled to -1 to 1 over the conditions, `f` the
-//! function of airspeed, and `Q` an orthonormal basis of its design columns. By the
-//! Frisch-Waugh-Lovell theorem this `gamma` is the coefficient of `z` in the common least-squares fit.
+//! `y` is a channel's regressed value, `z` the variable scaled to -1 to 1 over the conditions, `f`
+//! the function of airspeed, and `Q` an orthonormal basis for its design columns. By the
+//! Frisch-Waugh-Lovell theorem this `gamma` is the coefficient of `z` in the common least-squares
+//! fit.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,10 +16,10 @@ use super::second_variable::SecondVariable;
 use crate::correction::Channels;
 
 /// A column counts as linearly dependent if its residual after projection on the others is below
-/// this fraction of its norm.
+/// this, relative to its norm.
 const DEPENDENT: f64 = 1e-9;
 
-/// Contribution `gamma z` of a second variable to each channel's value; `z` is the variable scaled
+/// A second variable's contribution `gamma z` to each channel's value; `z` is the variable scaled
 /// to -1 to 1 over its range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondTerm {
@@ -34,8 +35,8 @@ pub struct SecondTerm {
 impl SecondTerm {
     /// Fits `gamma` by least squares.
     ///
-    /// `values` has the second variable of each condition, `airspeed_design` the other design
-    /// columns (a row for each condition), `regressed` the values by channel and condition.
+    /// `values` has each condition's second variable, `airspeed_design` the other design columns (a
+    /// row for each condition), `regressed` the values by channel and condition.
     ///
     /// # Errors
     /// [`ScheduleError::NotToldApart`] if the second variable depends linearly on those columns.

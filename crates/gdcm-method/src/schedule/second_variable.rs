@@ -44,7 +44,7 @@ impl SecondVariable {
         }
     }
 
-    /// Returns a condition's label for altitude or weight, stated instead of a number.
+    /// Returns a condition's altitude or weight class ("low", "high"), if it has one.
     fn label(self, state: &FlightState) -> Option<&str> {
         match self {
             Self::Altitude => state.altitude.as_deref(),
@@ -64,8 +64,8 @@ impl SecondVariable {
     }
 }
 
-/// Returns -1 for the first and 1 for the second of two different labels, in alphabetical order;
-/// `None` unless there are exactly two different labels.
+/// Returns -1 for the first and 1 for the second label, in alphabetical order; `None` unless there
+/// are exactly two different labels.
 fn signs_of_labels(labels: &[&str]) -> Option<Vec<f64>> {
     let mut distinct = labels.to_vec();
     distinct.sort_unstable();

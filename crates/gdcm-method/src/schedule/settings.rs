@@ -12,7 +12,7 @@ pub const HIGHEST_DEGREE: usize = 3;
 /// Default cluster tolerance \[kt\] (M11b).
 pub const DEFAULT_TOLERANCE_KT: f64 = 2.0;
 
-/// Form of a schedule.
+/// Schedule form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ScheduleKind {
     /// Polynomial by least squares.
@@ -27,14 +27,14 @@ pub enum ScheduleKind {
 /// Quantity regressed on airspeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ScheduledQuantity {
-    /// `ln k`, for which the product of two channels' regressions is the regression of the product.
+    /// `ln k`: the product of two scheduled gains is then the regression of the product.
     #[serde(rename = "ln k")]
     LnGain,
     #[serde(rename = "k")]
     Gain,
 }
 
-/// Form, degree and variables of a gain schedule (M11, M13.7).
+/// Form, degree and variables for a gain schedule (M11, M13.7).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
@@ -44,10 +44,10 @@ pub struct ScheduleSettings {
     /// conditions. Older program versions read this field from study settings; there it is `true`
     /// only if delays are always scheduled.
     pub delays: bool,
-    /// Polynomial degree of signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
+    /// Polynomial degree for signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
     /// sensor and computing lags do not depend on airspeed (M15.5).
     pub tau_degree: usize,
-    /// Maximum distance between neighbours in a cluster of airspeeds \[kt\] (M11b).
+    /// Maximum distance between neighbours in an airspeed cluster \[kt\] (M11b).
     pub airspeed_tolerance_kt: f64,
     /// Variable scheduled besides airspeed (M13.7).
     pub second: Option<SecondVariable>,

@@ -1,4 +1,4 @@
-//! Error bar of a value (M13.3).
+//! Error bar for a value (M13.3).
 //!
 //! ```text
 //! whole bar: q_0 +- t(nu) u,   u^2 = s_phys^2 + s_id^2,   nu by Satterthwaite's formula (variance_component)
@@ -11,18 +11,18 @@
 use super::distributions::student_quantile;
 use super::variance_component::{VarianceComponent, satterthwaite};
 
-/// Source of a bar's identification part.
+/// Where a bar's identification part comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IdentificationSource {
     /// Spread among the identified models, pooled with the other conditions (M13.2).
     Spread,
-    /// Coherence of the measured response, where the resulting standard error exceeds the spread.
+    /// The measured response's coherence, if the resulting standard error exceeds the spread.
     Coherence,
-    /// Confidence band of the identified model, where it exceeds the spread.
+    /// The identified model's confidence band, if it exceeds the spread.
     ModelBand,
 }
 
-/// Uncertainty of a value: the natural logarithm of a gain, or a delay \[s\].
+/// A value with its uncertainty: a gain's natural logarithm, or a delay \[s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     /// Value with both representatives, `q_0`.
@@ -33,7 +33,7 @@ pub struct Bar {
     /// model and no standard error is available from coherence or a model's band.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
-    /// Number of substitutions for which the value does not exist.
+    /// Count of substitutions for which the value does not exist.
     pub left_out: usize,
     /// Minimum and maximum admissible value.
     pub range: [f64; 2],
@@ -127,15 +127,15 @@ impl Bar {
 /// Remark on an error bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BarRemark {
-    /// The uncertainty of the trim is not included.
+    /// The trim's uncertainty is not included.
     NoTrim,
-    /// The uncertainty of the identification is not included.
+    /// The identification's uncertainty is not included.
     NoIdentification,
-    /// All models of the bundle give the same value.
+    /// All models in the bundle give the same value.
     NoSpread,
     /// The identification part is computed from the coherence.
     FromCoherence,
-    /// The identification part is computed from the standard deviations of the model.
+    /// The identification part is computed from the identified model's standard deviations.
     FromModelBand,
 }
 

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use gdcm_model::statistics::median;
 
-/// Data of a measurement that determine the standard error of its response.
+/// Measurement data that determine the measured response's standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// Number of independent averages, `n_d`.
+    /// Count of independent averages, `n_d`.
     pub averages: f64,
     /// Window length \[s\], `T_w`. `None` if unknown: all frequencies then have a common error.
     pub window_s: Option<f64>,
@@ -30,8 +30,8 @@ impl Measurement {
         2.0 * self.averages
     }
 
-    /// Computes the standard deviation of `ln |H|`, which is also the standard deviation of `arg H`
-    /// \[rad\]: `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
+    /// Computes the standard deviation of `ln |H|`, which is also that of `arg H` \[rad\]: `epsilon
+    /// = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
     pub fn deviation(&self, coherence: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Error bars of all conditions (M13.2, M13.3).
+//! Error bars for all conditions (M13.2, M13.3).
 //!
 //! ```text
 //! s_phys^2, s_own^2 <- mean square changes if other models are substituted (spread)
@@ -10,14 +10,14 @@ use super::scalar::{Figures, Scalar, ScalarTable};
 use super::spread::ConditionSpread;
 use super::variance_component::{VarianceComponent, pooled};
 
-/// Data of a condition from which its bars are computed.
+/// A condition's data from which its bars are computed.
 #[derive(Clone, Debug)]
 pub struct BarSource<'a> {
     /// Scalars with both representatives.
     pub figures: Figures,
-    /// Changes of the scalars if other models are substituted.
+    /// How the scalars change if other models are substituted.
     pub spread: &'a ConditionSpread,
-    /// Standard errors of the identified representative; `None` where unavailable.
+    /// The identified representative's standard errors; `None` where unavailable.
     pub reported: ScalarTable<Option<ReportedUncertainty>>,
     /// Lower and upper bound on a channel delay \[s\].
     pub delay_bounds_s: [f64; 2],
@@ -69,19 +69,19 @@ impl BarSource<'_> {
     }
 }
 
-/// Standard error of an identified representative, from its confidence band or its coherence.
+/// An identified representative's standard error, from its confidence band or its coherence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
     pub part: VarianceComponent,
-    /// Source of the standard error: coherence or confidence band.
+    /// Where the standard error comes from: coherence or confidence band.
     pub source: IdentificationSource,
 }
 
 impl ReportedUncertainty {
     /// Returns whether the standard error replaces the spread: if it is larger, or if there is no
-    /// spread. The spread of leave-one-record-out models underestimates the error of a single model
-    /// by a factor of about the square root of the number of records (Efron's jackknife); the
-    /// standard error does not.
+    /// spread. The spread between leave-one-record-out models underestimates a single model's error
+    /// by a factor of about the square root of the record count (Efron's jackknife); the standard
+    /// error does not.
     fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
         spread.is_none_or(|spread| self.part.variance > spread.variance)
     }

@@ -8,11 +8,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A column is linearly dependent if less than this fraction of its norm is orthogonal to the columns
-/// before it.
+/// A column is linearly dependent if its part orthogonal to the columns before it is smaller than
+/// this, relative to its norm.
 const DEPENDENT: f64 = 1e-9;
 
-/// Maximum number of columns in a design; a lookup table over more airspeeds has neither a variance
+/// Maximum column count in a design; a lookup table over more airspeeds has neither a variance
 /// split nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
@@ -62,20 +62,20 @@ impl Design {
     }
 
     /// Returns the hat values by condition, `h_c`: derivatives of the fitted values with respect to
-    /// the condition's own value.
+    /// each condition's own value.
     pub fn hat_values(&self) -> Vec<f64> {
         (0..self.conditions())
             .map(|row| self.q.row(row).norm_squared().min(1.0))
             .collect()
     }
 
-    /// Computes `x' (X'X)^-1 x` for any row `x`; NaN for a row with another number of columns.
+    /// Computes `x' (X'X)^-1 x` for any row `x`; NaN if the row's length is not the column count.
     pub fn leverage(&self, row: &[f64]) -> f64 {
         if row.len() != self.rank() {
             return f64::NAN;
         }
         let row = DVector::from_column_slice(row);
-        // X'X = R'R, so that the leverage is the squared norm of R'^-1 x.
+        // X'X = R'R, so that the leverage is |R'^-1 x|^2.
         self.r
             .transpose()
             .solve_lower_triangular(&row)
@@ -124,13 +124,13 @@ impl Design {
 /// Least-squares fit to one value for each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Coefficient of each column.
+    /// One coefficient per column.
     pub coefficients: Vec<f64>,
-    /// Residual of each condition.
+    /// One residual per condition.
     pub residuals: Vec<f64>,
 }
 
-/// Returns the sum of the squared values.
+/// Sums the squared values.
 pub(super) fn sum_of_squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }

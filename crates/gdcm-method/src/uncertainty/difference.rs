@@ -1,11 +1,11 @@
-//! Significance of differences between two conditions (M13.4).
+//! How significant differences between two conditions are (M13.4).
 //!
 //! ```text
 //! ratio <- |delta| / u_delta,   delta = q_c - q_c',   u_delta = sqrt(u_c^2 + u_c'^2);   p from Student's distribution
 //! ```
 //!
-//! `q_c` and `u_c` are the value and the standard deviation of a condition's error bar. Over several
-//! differences, the probabilities p are corrected by Holm's method.
+//! `q_c` and `u_c` are the value and the standard deviation in a condition's error bar. Over
+//! several differences, the probabilities p are corrected by Holm's method.
 
 use super::bar::Bar;
 use super::distributions::student_two_sided;
@@ -34,8 +34,8 @@ impl Difference {
         }
     }
 
-    /// Returns `|delta| / u_delta`, the difference as a multiple of its expected standard
-    /// deviation; `None` without a spread.
+    /// Returns `|delta| / u_delta`, the difference over its expected standard deviation; `None`
+    /// without a spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some(self.delta.abs() / self.deviation)

@@ -1,4 +1,4 @@
-//! Quantiles and probabilities of Student's, Fisher's and the chi-squared distribution.
+//! Quantiles and probabilities for Student's, Fisher's and the chi-squared distribution.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
@@ -7,8 +7,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, St
 const NORMAL_FROM: f64 = 1e8;
 
 /// Degrees of freedom above which Student's quantile is expanded about the normal quantile. Four
-/// terms have an error of 1e-12 there, and the inverse incomplete beta function does not converge
-/// for some larger values.
+/// terms have an error around 1e-12 there, and the inverse incomplete beta function does not
+/// converge for some larger values.
 const EXPANDED_FROM: f64 = 1e3;
 
 /// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, at least 1; the
@@ -50,7 +50,7 @@ pub fn student_two_sided(ratio: f64, degrees: f64) -> f64 {
 }
 
 /// Computes the upper tail of Fisher's distribution, `1 - F_(above, below)(ratio)`: the probability
-/// that two estimates of the same variance have this ratio or more, with `above` and `below`
+/// that two estimates of one variance have this ratio or a larger one, with `above` and `below`
 /// degrees of freedom. `None` if the degrees of freedom are not positive.
 pub fn fisher_upper(ratio: f64, above: f64, below: f64) -> Option<f64> {
     Some(FisherSnedecor::new(above, below).ok()?.sf(ratio))

@@ -1,5 +1,5 @@
-//! Uncertainty in the results (M13): error bars, differences between conditions, split of the
-//! scatter, bands for a schedule, and the test for a second variable.
+//! Uncertainty in the results (M13): error bars, differences between conditions, how the scatter
+//! splits into sources, bands for a schedule, and the test for a second variable.
 //!
 //! ```text
 //!  1  for each condition c: q_0 <- the analysis with the representatives (a^, b^)
@@ -24,9 +24,9 @@
 //! | 9 | `schedule_band` |
 //! | 10 | `second_variable_effect` |
 //!
-//! `q` is a scalar result of a condition, such as `ln k`; `u` and `nu` are the standard deviation and
-//! the degrees of freedom of its bar; `s_coh` is the measurement error from the coherence; `f` and
-//! `h_c` are the degrees of freedom and the hat values of the schedule's fit; `t` is Student's
+//! `q` is a condition's scalar result, such as `ln k`; `u` and `nu` are its bar's standard
+//! deviation and degrees of freedom; `s_coh` is the measurement error from the coherence; `f` and
+//! `h_c` are the degrees of freedom and the hat values in the schedule's fit; `t` is Student's
 //! quantile. The other symbols are defined in the files.
 
 pub mod bar;

@@ -10,7 +10,7 @@ use crate::correction::Channel;
 /// A condition's scalars; `None` if a scalar does not exist.
 pub type Figures = ScalarTable<Option<f64>>;
 
-/// Scalar result of a condition, `q` in M13.
+/// A condition's scalar result, `q` in M13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scalar {
     /// `ln G`.
@@ -37,7 +37,7 @@ impl Scalar {
     }
 }
 
-/// An entry for each scalar of a condition.
+/// An entry for each of a condition's scalars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
 
@@ -57,7 +57,7 @@ impl<T> ScalarTable<T> {
         self.0.iter().map(|(scalar, entry)| (*scalar, entry))
     }
 
-    /// Builds a table from the entries of this table.
+    /// Builds a table from this table's entries.
     pub fn map<U>(&self, mut entry: impl FnMut(Scalar, &T) -> U) -> ScalarTable<U> {
         ScalarTable(
             self.iter()
@@ -75,7 +75,7 @@ impl<T> Index<Scalar> for ScalarTable<T> {
     }
 }
 
-/// Returns all scalars: first of the responses, then of the channels.
+/// Lists all scalars: first for the responses, then for the channels.
 fn scalars(outputs: usize, inputs: usize) -> Vec<Scalar> {
     let of_response = [
         Scalar::Gain,

@@ -4,7 +4,7 @@
 //! confidence band: t(f) S' sqrt(h),   band for a further condition: t(f) S' sqrt(1 + h),   S'^2 = max(S^2, B)
 //! ```
 //!
-//! `h` is the leverage of the airspeed, `f`, `S^2` and `B` are explained in `variance_decomposition`.
+//! `h` is the airspeed's leverage; `f`, `S^2` and `B` are explained in `variance_decomposition`.
 
 use std::sync::Arc;
 
@@ -12,7 +12,8 @@ use super::design::Design;
 use super::distributions::student_quantile;
 use super::variance_decomposition::VarianceDecomposition;
 
-/// Bands of a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
+/// Bands about a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2,
+/// B)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBand {
     design: Arc<Design>,
@@ -30,7 +31,7 @@ impl ScheduleBand {
         }
     }
 
-    /// Returns the half-widths of the bands at a design row.
+    /// Returns the bands' half-widths at a design row.
     pub fn at(&self, row: &[f64]) -> BandWidths {
         let h = self.design.leverage(row);
         BandWidths {
@@ -40,11 +41,11 @@ impl ScheduleBand {
     }
 }
 
-/// Half-widths of the two bands about a scheduled `ln k` at an airspeed.
+/// Half-widths about a scheduled `ln k` at an airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandWidths {
-    /// Half-width of the confidence band of the schedule itself.
+    /// Half-width: confidence band for the schedule itself.
     pub confidence: f64,
-    /// Half-width of the band that is expected to contain a further condition.
+    /// Half-width: band that is expected to contain a further condition.
     pub scatter: f64,
 }

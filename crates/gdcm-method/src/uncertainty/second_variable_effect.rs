@@ -9,7 +9,7 @@
 use super::design::{Design, sum_of_squares};
 use super::distributions::{student_quantile, student_two_sided};
 
-/// Maximum ratio of the leave-one-out errors with and without a variable at which the variable
+/// Maximum ratio between the leave-one-out errors with and without a variable at which the variable
 /// counts as needed.
 const NOTABLE_RATIO: f64 = 0.9;
 
@@ -62,7 +62,7 @@ impl SecondVariableDesign {
         }
     }
 
-    /// Returns the leave-one-out errors of both fits. A condition that either fit interpolates
+    /// Returns the leave-one-out errors in both fits. A condition that either fit interpolates
     /// counts in neither list.
     fn left_out_errors(&self, values: &[f64]) -> LeftOutErrors {
         let mut found = LeftOutErrors::default();
@@ -93,7 +93,7 @@ struct LeftOutErrors {
 pub struct SecondVariableEffect {
     /// Change between the variable's lowest and highest value, `2 gamma`.
     pub effect: f64,
-    /// Half-width of the confidence interval of `effect`, `2 t se`; smaller effects are not
+    /// Half-width of the confidence interval for `effect`, `2 t se`; smaller effects are not
     /// detectable.
     pub visible: f64,
     /// Probability that an effect this large arises without a true effect.
@@ -121,7 +121,7 @@ pub enum SecondVariableError {
     /// A condition lacks the variable, or all values are equal.
     #[error("the conditions must have at least two different values")]
     NotVaried,
-    /// The variable is a function of airspeed in these conditions.
+    /// In these conditions the variable depends linearly on the columns for airspeed.
     #[error("its effect cannot be separated from the effect of airspeed")]
     NotToldApart,
     /// The fit has too few degrees of freedom.

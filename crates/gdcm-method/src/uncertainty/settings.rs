@@ -7,19 +7,19 @@ use super::coherence_error::Measurement;
 /// Settings for the error bars; no gain and no delay depends on them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UncertaintySettings {
-    /// Confidence level `L` of every bar, interval and test.
+    /// Confidence level `L` for every bar, interval and test.
     pub level: f64,
-    /// Maximum degrees of freedom that the identification part of a condition's error bar borrows
+    /// Maximum degrees of freedom that the identification part in a condition's error bar borrows
     /// from the other conditions; 0 uses the condition's own data only.
     pub prior_degrees: f64,
-    /// Number of independent averages of measured responses whose files do not state it; `None`
+    /// Count of independent averages for measured responses whose files do not state it; `None`
     /// leaves their coherence unused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub averages: Option<f64>,
-    /// Window length \[s\] of measured responses whose files do not state it.
+    /// Window length \[s\] for measured responses whose files do not state it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
-    /// Whether the windows of measured responses overlap by half: `C_epsilon` is then `sqrt(0.55)`
+    /// Whether the windows for measured responses overlap by half: `C_epsilon` is then `sqrt(0.55)`
     /// instead of 1.
     #[serde(default)]
     pub half_overlap: bool,
@@ -38,8 +38,8 @@ impl Default for UncertaintySettings {
 }
 
 impl UncertaintySettings {
-    /// Combines a measured response's own data with these defaults; `None` if the number of
-    /// averages is unknown.
+    /// Combines a measured response's own data with these defaults; `None` if the average count is
+    /// unknown.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
         let averages = averages
             .or(self.averages)

@@ -5,7 +5,7 @@
 //! s_own^2  <- the same over the other kept identified models
 //! ```
 //!
-//! `q` is a scalar of the condition, `q_0` its value with both representatives.
+//! `q` is one of the condition's scalars, `q_0` its value with both representatives.
 
 use super::scalar::{Figures, Scalar, ScalarTable};
 use super::variance_component::VarianceComponent;
@@ -17,7 +17,7 @@ pub(super) struct Changes {
     pub(super) trim: Option<VarianceComponent>,
     /// `s_own^2`: changes due to other identified models.
     pub(super) own: Option<VarianceComponent>,
-    /// Number of substitutions for which the scalar does not exist.
+    /// Count of substitutions for which the scalar does not exist.
     pub(super) left_out: usize,
 }
 
@@ -54,7 +54,7 @@ impl ConditionSpread {
     }
 }
 
-/// Returns the changes of a scalar from `base` in the substitutions for which it exists.
+/// Returns a scalar's changes from `base` in the substitutions for which it exists.
 fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f64> {
     let mut changes = Vec::new();
     for figures in swaps.iter().flatten() {

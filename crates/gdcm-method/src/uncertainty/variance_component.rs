@@ -1,7 +1,7 @@
 //! Variances with degrees of freedom: from substitutions, summed, and pooled over conditions (M13.1 to
 //! M13.3).
 
-/// Variance of the natural logarithm of a gain, or of a delay \[s^2\], with its degrees of freedom.
+/// Variance of a gain's natural logarithm, or of a delay \[s^2\], with its degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceComponent {
     /// The mean square.
@@ -15,14 +15,14 @@ pub struct VarianceComponent {
 const ROUNDING: f64 = 1e-9;
 
 impl VarianceComponent {
-    /// Computes the mean square of changes from the representative's value (M13.1); `None` without
+    /// Computes the mean square change from the representative's value (M13.1); `None` without
     /// changes.
     ///
-    /// The mean square is not a variance about the mean, and is never divided by the number of
-    /// models: a further model does not determine the flown trim better, and identified models
-    /// share records. For independent identified models it is about twice their error variance. The
-    /// surplus keeps the bars at their confidence level if up to half the error variance is common
-    /// to all models (measured in `docs/uncertainty.md`).
+    /// The mean square is not a variance about the mean, and is never divided by the model count: a
+    /// further model does not determine the flown trim better, and identified models share records.
+    /// For independent identified models it is about twice their error variance. The surplus keeps
+    /// the bars at their confidence level if up to half the error variance is common to all models
+    /// (measured in `docs/uncertainty.md`).
     pub fn from_changes(changes: &[f64]) -> Option<Self> {
         if changes.is_empty() {
             return None;
@@ -48,8 +48,9 @@ impl VarianceComponent {
     }
 }
 
-/// Computes the degrees of freedom of a sum of variances, `u^4 / sum(s^4 / nu)`, where `s^2` are the
-/// variances, `nu` their degrees of freedom and `u^2 = sum s^2`; `None` if all variances are zero.
+/// Computes the degrees of freedom of a sum of variances, `u^4 / sum(s^4 / nu)`, where `s^2` are
+/// the variances, `nu` their degrees of freedom and `u^2 = sum s^2`; `None` if all variances are
+/// zero.
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components",
 /// *Biometrics Bulletin* 2, 1946.
@@ -61,7 +62,7 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     if parts.is_empty() {
         return None;
     }
-    // Scaled by the largest variance, because squares of small variances underflow.
+    // Scaled by the largest variance, because small variances underflow when squared.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
     let mut sum = 0.0;
     let mut spread = 0.0;
@@ -73,16 +74,16 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     Some(sum * sum / spread)
 }
 
-/// Computes the pooled identification part of each condition (M13.2).
+/// Computes each condition's pooled identification part (M13.2).
 ///
 /// ```text
 /// s_id^2 = (n s_own^2 + d_0 s_pooled^2) / (n + d_0),
 /// s_pooled^2 = sum n s_own^2 / sum n over all conditions,   d_0 = min(prior_degrees, sum of the others' n)
 /// ```
 ///
-/// `own` holds `s_own^2`, the mean square of each condition, with its degrees of freedom n. A
-/// condition with a single identified model has `None`, n = 0, and takes the pooled variance. `None`
-/// if no condition has two identified models, or if `d_0` is 0 for such a condition.
+/// `own` holds `s_own^2`, each condition's mean square, with its degrees of freedom n. A condition
+/// with a single identified model has `None`, n = 0, and takes the pooled variance. `None` if no
+/// condition has two identified models, or if `d_0` is 0 for such a condition.
 pub fn pooled(
     own: &[Option<VarianceComponent>],
     prior_degrees: f64,

@@ -1,4 +1,4 @@
-//! Split of the scatter about a schedule into the parts that the bundles explain, and the rest
+//! Splits the scatter about a schedule into the parts that the bundles explain, and the rest
 //! (M13.5).
 //!
 //! ```text
@@ -7,9 +7,9 @@
 //! rest^2 <- max(0, S^2 - B)
 //! ```
 //!
-//! `e_c` and `h_c` are the residual and the hat value of condition c (`design`); `s_phys,c` and
-//! `s_id,c` are the parts of its error bar (`bar`). If the bundles explain the scatter fully, `S^2 / B`
-//! has Fisher's distribution.
+//! `e_c` and `h_c` are condition c's residual and hat value (`design`); `s_phys,c` and `s_id,c` are
+//! the parts in its error bar (`bar`). If the bundles explain the scatter fully, `S^2 / B` has
+//! Fisher's distribution.
 
 use super::bar::Bar;
 use super::design::{Design, sum_of_squares};
@@ -78,8 +78,7 @@ impl VarianceDecomposition {
         }
     }
 
-    /// Returns `sqrt(S^2 / B)`, the scatter as a multiple of the expected scatter; `None` without
-    /// spread.
+    /// Returns `sqrt(S^2 / B)`, the scatter over the expected scatter; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some((self.scatter / self.explained()).sqrt())
@@ -94,7 +93,7 @@ impl VarianceDecomposition {
         )
     }
 
-    /// Returns the confidence interval of `rest`, the unexplained standard deviation.
+    /// Returns the confidence interval for `rest`, the unexplained standard deviation.
     pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
         Some([
             self.unexplained_limit(0.5 * (1.0 + level))?,

@@ -21,7 +21,7 @@ use crate::reference_study::ReferenceStudy;
 /// Airspeed at which constant couplings are evaluated \[kt\].
 const AIRSPEED_KT: f64 = 60.0;
 
-/// Compares the matrices of a coupled state space.
+/// Compares a coupled model's state-space matrices.
 pub(super) fn coupled_state_space(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let case = MIXING.read()?.member("state_space")?;
     let physics = StateSpace::new(
@@ -80,7 +80,7 @@ fn constant_couplings(
     }
 }
 
-/// Compares the coefficients of the synthetic aircraft after each solve.
+/// Compares the synthetic aircraft's coupling coefficients after each solve.
 pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let toy = MIXING.read()?.member("toy")?;
     let omega: Arc<[f64]> = toy.numbers("omega_rad_s")?.into();

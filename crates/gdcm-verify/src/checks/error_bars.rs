@@ -8,10 +8,10 @@ use crate::check::{CheckFault, Found};
 use crate::reference::{Reference, UNCERTAINTY};
 use crate::reference_study::ReferenceStudy;
 
-/// Confidence level of the reference.
+/// Confidence level in the reference file.
 const LEVEL: f64 = 0.9;
 
-/// Compares the bars of the net gains and of the delta delays.
+/// Compares the error bars for net gains and delta delays.
 pub(super) fn bars_of_the_example(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let analysis = study.analysis()?;
     let uncertainty = study
@@ -59,7 +59,7 @@ fn compare_bar(found: &mut Found, bar: &Bar, expected: &Reference) -> Result<(),
     Ok(())
 }
 
-/// Returns the standard deviation of a part; 0 if the bar does not have it.
+/// Returns a variance component's standard deviation; 0 if the bar lacks the component.
 fn deviation_of(part: Option<VarianceComponent>) -> f64 {
     match part {
         Some(part) => part.variance.sqrt(),
@@ -67,7 +67,7 @@ fn deviation_of(part: Option<VarianceComponent>) -> f64 {
     }
 }
 
-/// Degrees of freedom, with t at 90 % and at 95 % (two-sided).
+/// Each row: degrees of freedom, t at 90 %, t at 95 % (two-sided).
 const STUDENT: [[f64; 3]; 6] = [
     [1.0, 6.314, 12.706],
     [3.0, 2.353, 3.182],

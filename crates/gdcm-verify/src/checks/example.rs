@@ -7,16 +7,16 @@ use crate::check::{CheckFault, Found};
 use crate::reference::{EXAMPLE, Reference};
 use crate::reference_study::ReferenceStudy;
 
-/// Gains, ratios and their logarithms have the order of magnitude 1.
+/// Scale for gains, ratios and their logarithms, whose order of magnitude is 1.
 const GAIN: f64 = 1.0;
-/// A tenth of the smallest delay that matters to an engineer.
+/// Scale for delays \[s\]: a tenth of the smallest delay that matters to an engineer.
 const DELAY_S: f64 = 1e-3;
-/// A J of 1 is a fiftieth of the value at which responses are almost indistinguishable.
+/// Scale for J: a fiftieth of the value at which responses are almost indistinguishable.
 const COST: f64 = 1.0;
-/// The objective of eq. (11) is a sum of squared delays \[s^2\].
+/// Scale for the objective in eq. (11), a sum of squared delays \[s^2\].
 const DELAY_OBJECTIVE: f64 = 1e-4;
 
-/// Compares every condition by `compare`.
+/// Runs `compare` on every condition.
 fn each_condition(
     study: &mut ReferenceStudy,
     compare: fn(&mut Found, &ConditionAnalysis, &Reference) -> Result<(), CheckFault>,
@@ -34,7 +34,7 @@ fn each_condition(
     Ok(found)
 }
 
-/// Compares the values of a table; missing values disagree.
+/// Compares tables entry by entry; missing values disagree.
 fn compare_table<T>(
     found: &mut Found,
     own: &PairTable<Option<T>>,
@@ -131,14 +131,13 @@ pub(super) fn costs(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     })
 }
 
-/// Part of J.
 #[derive(Clone, Copy)]
 enum Part {
     Magnitude,
     Phase,
 }
 
-/// Compares a part of J of all responses: before the correction for `index` 0, after it for 1.
+/// Compares one part of J for all responses: before the correction if `index` is 0, after it if 1.
 fn compare_costs(
     found: &mut Found,
     result: &ConditionAnalysis,

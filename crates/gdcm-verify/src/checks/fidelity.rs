@@ -9,10 +9,10 @@ use crate::check::{CheckFault, Found};
 use crate::reference::MUAD;
 use crate::reference_study::ReferenceStudy;
 
-/// Weight of the phase error in the paper.
+/// Phase weight `W_p` as in the paper (M4).
 const PHASE_WEIGHT: f64 = 0.0175;
 
-/// Compares J of pure gains and pure delays with its closed form.
+/// Compares J for pure gains and pure delays with its closed form.
 pub(super) fn cost_of_gain_and_delay(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let band = Band::new(0.5, 12.0).map_err(CheckFault::no_result)?;
     let grid = FrequencyGrid::logarithmic(band, 200);
@@ -46,13 +46,13 @@ pub(super) fn cost_of_gain_and_delay(_: &mut ReferenceStudy) -> Result<Found, Ch
     Ok(found)
 }
 
-/// Returns the median of a rising function of an even number of frequencies.
+/// Returns the median over frequency of a rising function, for an even frequency count.
 fn middle_of_rising(omega: &[f64], function: fn(f64) -> f64) -> f64 {
     let half = omega.len() / 2;
     0.5 * (function(omega[half - 1]) + function(omega[half]))
 }
 
-/// Compares the weights of coherence.
+/// Compares coherence weights.
 pub(super) fn coherence_weights(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for row in MUAD.read()?.list("Wgamma")? {
@@ -65,7 +65,7 @@ pub(super) fn coherence_weights(_: &mut ReferenceStudy) -> Result<Found, CheckFa
     Ok(found)
 }
 
-/// Compares the envelopes of maximum unnoticeable added dynamics.
+/// Compares the envelopes for maximum unnoticeable added dynamics (MUAD).
 pub(super) fn envelopes(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for row in MUAD.read()?.list("rows")? {

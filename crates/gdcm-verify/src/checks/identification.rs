@@ -13,16 +13,14 @@ use gdcm_sysid::identification::{Options, Preparation};
 use crate::check::{CheckFault, Found};
 use crate::reference_study::ReferenceStudy;
 
-/// Sample time of the records \[s\].
 const SAMPLE_TIME_S: f64 = 0.02;
-/// Number of samples of a record: 40 s.
+/// Samples per record: 40 s.
 const SAMPLES: usize = 2000;
-/// Number of records.
 const RECORDS: usize = 3;
-/// Number of sine waves in an input.
+/// Sine waves per input.
 const LINES: usize = 40;
 
-/// The system: a Dutch roll near 2.1 rad/s, coupled to a faster pair of modes.
+/// The true system: a Dutch roll near 2.1 rad/s, coupled to a faster pair of modes.
 fn truth() -> Result<StateSpace, CheckFault> {
     StateSpace::new(
         dmatrix![
@@ -37,8 +35,8 @@ fn truth() -> Result<StateSpace, CheckFault> {
     .map_err(CheckFault::no_result)
 }
 
-/// Generates a record: sums of sine waves, each input large in some records and small in the others.
-/// Between samples the inputs are straight lines, as the simulation takes them.
+/// Generates a record from sums of sine waves; each input is large in some records and small in the
+/// others. Between samples the inputs are straight lines, as the simulation takes them.
 fn record(truth: &StateSpace, number: usize) -> Result<FlightRecord, CheckFault> {
     let mut inputs = DMatrix::zeros(SAMPLES, 2);
     let mut time_s = Vec::with_capacity(SAMPLES);
@@ -69,7 +67,7 @@ fn record(truth: &StateSpace, number: usize) -> Result<FlightRecord, CheckFault>
     })
 }
 
-/// Compares the response of the refined model with that of the system.
+/// Compares the refined model's response with the true system's.
 pub(super) fn known_model(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let truth = truth()?;
     let mut records = Vec::with_capacity(RECORDS);

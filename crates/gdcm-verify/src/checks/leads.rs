@@ -1,4 +1,4 @@
-//! Lead filters and programs of signed delays (M15).
+//! Lead filters, and problems with signed delays (M15).
 
 use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::correction::{Bounds, Outcome, Problem};
@@ -28,7 +28,7 @@ fn design(entry: &Reference) -> Result<LeadDesign, CheckFault> {
     Ok(LeadDesign::new(settings, grid.omega().into()))
 }
 
-/// Compares filters, their delays in the band, and the lead of a signed delay.
+/// Compares filters, their band delays, and the lead time that a signed delay needs.
 pub(super) fn filters(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let reference = LEADS.read()?;
     let mut found = Found::default();
@@ -60,7 +60,7 @@ pub(super) fn filters(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     Ok(found)
 }
 
-/// Compares the minima of programs of signed delays; a minimum that is not proven disagrees.
+/// Compares minima for signed delays; a minimum that is not proven disagrees.
 pub(super) fn programs(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for entry in LEADS.read()?.list("programs")? {

@@ -1,4 +1,4 @@
-//! The comparisons, one file for each part of the method.
+//! The comparisons, one file per part of the method.
 
 mod couplings;
 mod error_bars;
@@ -13,14 +13,14 @@ mod responses;
 
 use crate::check::Check;
 
-/// Code that shares nothing with the program.
+/// Source of expected values: code that shares nothing with the program.
 const NUMPY: &str = "independent NumPy code of the method on a dataset of eleven conditions";
 
 /// Reason for a tolerance of 1e-6 where medians and quantiles are compared.
 const OF_MEDIANS: &str = "both programs take medians and quantiles of the same 200 values, which the \
                           reference has to about 1e-9";
 
-/// All comparisons, in the order of the method.
+/// All comparisons, ordered by method section.
 pub const CHECKS: &[Check] = &[
     Check {
         code: "frequency-responses",

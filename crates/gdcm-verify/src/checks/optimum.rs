@@ -8,13 +8,13 @@ use crate::check::{CheckFault, Found};
 use crate::reference::{DELAY_INSTANCES, GAIN_INSTANCES, Reference};
 use crate::reference_study::ReferenceStudy;
 
-/// Maximum relative gap of a proof.
+/// Maximum relative gap between a proven bound and the minimum.
 const PROOF_GAP: f64 = 1e-9;
 
-/// The on-axis responses of the instances of eq. (11), `[output, input]` (Table 2).
+/// On-axis responses for eq. (11), `[output, input]` (Table 2).
 const ON_AXIS: [[usize; 2]; 5] = [[0, 1], [1, 0], [2, 2], [4, 2], [5, 3]];
 
-/// Solves a problem within the default budget of the proof.
+/// Solves a problem within the default proof budget.
 pub(super) fn solved(problem: &Problem) -> Result<Solution, CheckFault> {
     solve(problem, ProofBudget::default(), &|| false).map_err(CheckFault::no_result)
 }
@@ -32,8 +32,8 @@ fn gain_problem(instance: &Reference) -> Result<Problem, CheckFault> {
     })
 }
 
-/// Compares the minima of eq. (7) with certified ones. A minimum that is not proven, or proven to a
-/// bound above the certified minimum, disagrees.
+/// Compares minima for eq. (7) with certified ones. A minimum that is not proven, or whose proven
+/// lower bound exceeds the certified minimum, disagrees.
 pub(super) fn certified_gains(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for instance in GAIN_INSTANCES.read()?.list("instances")? {
@@ -54,7 +54,7 @@ pub(super) fn certified_gains(_: &mut ReferenceStudy) -> Result<Found, CheckFaul
     Ok(found)
 }
 
-/// Compares held products with their targets, and gains with their bounds.
+/// Compares constrained products with their targets, and gains with their bounds.
 pub(super) fn held_products(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for instance in GAIN_INSTANCES.read()?.list("instances")? {
@@ -76,7 +76,7 @@ pub(super) fn held_products(_: &mut ReferenceStudy) -> Result<Found, CheckFault>
     Ok(found)
 }
 
-/// Compares the minima of eq. (11).
+/// Compares minima for eq. (11) with certified ones.
 pub(super) fn certified_delays(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for instance in DELAY_INSTANCES.read()?.list("instances")? {

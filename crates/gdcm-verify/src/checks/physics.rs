@@ -17,10 +17,10 @@ use crate::check::{CheckFault, Found};
 use crate::reference::{PHYSICS, Reference};
 use crate::reference_study::ReferenceStudy;
 
-/// Parameters of the synthetic aircraft: the first has two runs, the second one.
+/// The synthetic aircraft's parameters: the first has two runs, the second has one.
 const PARAMETERS: [&str; 2] = ["a", "b"];
 
-/// A run of a parameter, with its step in plausible standard deviations.
+/// A run with one parameter moved; the step is in plausible standard deviations.
 struct Run {
     z: f64,
     model: StateSpace,
@@ -89,7 +89,7 @@ fn condition(
     })
 }
 
-/// Compares the parameters of the synthetic aircraft after each pass, with exact and with disturbed
+/// Compares the synthetic aircraft's parameters after each pass, with exact and with disturbed
 /// flight responses.
 pub(super) fn synthetic_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let toy = PHYSICS.read()?.member("toy")?;

@@ -27,7 +27,7 @@ impl SecondOrderAttitude {
     }
 }
 
-/// Returns the attitude response of a case of the reference.
+/// Evaluates the attitude response for a reference case at `s`.
 fn attitude(case: usize, s: Complex<f64>) -> Complex<f64> {
     match case {
         0 => SecondOrderAttitude {

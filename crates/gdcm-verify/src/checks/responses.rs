@@ -10,7 +10,7 @@ use crate::check::{CheckFault, Found};
 use crate::reference::{RESPONSES, Reference, model_file};
 use crate::reference_study::ReferenceStudy;
 
-/// Compares responses with arithmetic of 50 digits.
+/// Compares responses with 50-digit arithmetic.
 pub(super) fn golden_responses(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for case in RESPONSES.read()?.list("cases")? {
@@ -37,7 +37,7 @@ pub(super) fn golden_responses(study: &mut ReferenceStudy) -> Result<Found, Chec
     Ok(found)
 }
 
-/// Returns a model of the reference dataset, or a model from the literature.
+/// Returns the model that a case names: from the reference dataset or from the literature.
 fn dynamics_of(case: &Reference, study: &mut ReferenceStudy) -> Result<Dynamics, CheckFault> {
     let name = case.text("model")?;
     if !case.has("condition") {
@@ -69,7 +69,7 @@ fn dynamics_of(case: &Reference, study: &mut ReferenceStudy) -> Result<Dynamics,
     Err(CheckFault::no_result(format!("no model {name}")))
 }
 
-/// Evaluates a model at one frequency: the lower end of a grid of two points, since a grid contains
+/// Evaluates a model at one frequency, the lower end of a two-point grid, since a grid contains
 /// both ends of its band.
 fn response_at(dynamics: &Dynamics, omega: f64) -> Result<FrequencyResponse, CheckFault> {
     let band = Band::new(omega, 2.0 * omega).map_err(CheckFault::no_result)?;
@@ -84,11 +84,11 @@ struct TimedLag {
     output_delay_s: f64,
 }
 
-/// Pole of the continuous-time lag \[rad/s\], and of the discrete-time lag.
+/// Poles: continuous-time lag \[rad/s\], discrete-time lag \[-\].
 const POLES: [f64; 2] = [-1.7, 0.9];
-/// Gain from input to state.
+/// Gain from input to state, `b` in the closed form.
 const GAIN: f64 = 0.8;
-/// Feed-through.
+/// Feed-through, `d` in the closed form.
 const FEED_THROUGH: f64 = 0.3;
 
 impl TimedLag {

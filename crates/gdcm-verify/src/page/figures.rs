@@ -1,4 +1,4 @@
-//! Recorded figures of the tests.
+//! Figures that tests record for the page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -7,17 +7,17 @@ use serde::{Deserialize, Serialize};
 
 /// Deviations up to this size are rounding, which differs from processor to processor.
 const ROUNDING: f64 = 1e-9;
-/// Maximum ratio of two larger deviations that count as the same figure: they depend on where an
-/// iteration stops.
+/// Maximum ratio between two larger deviations that count as the same figure, since they depend on
+/// where an iteration stops.
 const SAME_RATIO: f64 = 2.0;
-/// Maximum difference of two shares of covered values that count as the same figure.
+/// Maximum difference between two coverages (shares from 0 to 1) that count as the same figure.
 const SAME_SHARE: f64 = 0.005;
 
-/// Deviations of a test from independent figures.
+/// Deviations from independent figures, as a test records them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviations {
     pub code: String,
-    /// Crate and name of the test.
+    /// Crate that contains `test`.
     #[serde(rename = "crate")]
     pub package: String,
     pub test: String,
@@ -27,31 +27,30 @@ pub struct Deviations {
     pub tolerance: f64,
 }
 
-/// Share of intervals that contain the true value.
+/// How many of a test's confidence intervals contain the true value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     pub code: String,
     #[serde(rename = "crate")]
     pub package: String,
     pub test: String,
-    /// Number of intervals.
     pub intervals: usize,
-    /// Number of intervals that contain the true value.
+    /// Count of intervals that contain the true value.
     pub covered: usize,
-    /// Nominal share.
+    /// Nominal share, 0 to 1.
     pub nominal: f64,
-    /// Seeds of the generated data.
+    /// Seeds that generated the data.
     pub seeds: String,
 }
 
-/// All figures of the page, by code.
+/// All figures on the page, by code.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     pub deviations: BTreeMap<String, Deviations>,
     pub coverage: BTreeMap<String, Coverage>,
 }
 
-/// A figure that cannot be read, or that differs from the figure of the page.
+/// Reason why a figure is unreadable, missing or different from the page.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureFault {
     #[error("{path}: {reason}")]
@@ -91,7 +90,7 @@ impl Figures {
         Ok(figures)
     }
 
-    /// Adds a line of JSON.
+    /// Adds a figure from a JSON line.
     fn add(&mut self, line: &str) -> Result<(), serde_json::Error> {
         let value: serde_json::Value = serde_json::from_str(line)?;
         if value.get("nominal").is_some() {
@@ -104,7 +103,7 @@ impl Figures {
         Ok(())
     }
 
-    /// Compares fresh figures with these figures of the page, code by code.
+    /// Compares these figures, those on the page, with fresh ones, code by code.
     pub fn differences(&self, fresh: &Self) -> Vec<FigureFault> {
         let mut faults = Vec::new();
         for (code, known) in &self.deviations {
@@ -168,7 +167,7 @@ fn unreadable(path: &Path, error: &dyn std::error::Error) -> FigureFault {
 }
 
 impl Deviations {
-    /// Returns whether two figures of a test are the same, but for rounding.
+    /// Returns whether two runs of a test give the same figure, but for rounding.
     fn agrees(&self, other: &Self) -> bool {
         let is_same_test = self.package == other.package && self.test == other.test;
         let is_same_count = self.instances == other.instances && self.values == other.values;
@@ -182,12 +181,12 @@ impl Deviations {
 }
 
 impl Coverage {
-    /// Returns the share of covered values.
+    /// Returns the share of intervals that contain the true value, 0 to 1.
     pub fn share(&self) -> f64 {
         self.covered as f64 / self.intervals as f64
     }
 
-    /// Returns whether two figures of a test are the same, but for rounding.
+    /// Returns whether two runs of a test give the same figure, but for rounding.
     fn agrees(&self, other: &Self) -> bool {
         self.package == other.package
             && self.test == other.test

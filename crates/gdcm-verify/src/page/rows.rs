@@ -1,19 +1,19 @@
-//! What each recorded figure is about.
+//! Subject and method section for each recorded figure.
 
 use crate::checks::CHECKS;
 
-/// A section of the method, with the page that describes it.
+/// A method section, with the page in `docs` that describes it.
 pub struct Section {
     pub number: &'static str,
     pub title: &'static str,
     pub page: &'static str,
-    /// Codes of the evidence.
+    /// Codes of the comparisons and coverages that test this section.
     pub codes: &'static [&'static str],
     /// Other tests, or the reason why there is no independent figure.
     pub note: &'static str,
 }
 
-/// The sections of the method.
+/// All method sections, in order.
 pub const SECTIONS: &[Section] = &[
     Section {
         number: "M1",
@@ -177,11 +177,11 @@ pub struct EvidenceRow {
     pub what: &'static str,
     pub source: &'static str,
     pub measure: &'static str,
-    /// Whether `gdcm verify` makes it too.
+    /// Whether `gdcm verify` makes the comparison too.
     pub is_verified: bool,
 }
 
-/// Comparisons that tests make beside those of `gdcm verify`.
+/// Comparisons that only tests make, not `gdcm verify`.
 const OTHERS: &[EvidenceRow] = &[
     EvidenceRow {
         code: "recovered-gains-and-delays",
@@ -202,7 +202,7 @@ const OTHERS: &[EvidenceRow] = &[
     },
 ];
 
-/// Returns all comparisons: those of `gdcm verify`, then the others.
+/// Returns all comparisons: those that `gdcm verify` makes, then the others.
 pub fn evidence_rows() -> Vec<EvidenceRow> {
     let mut rows = Vec::with_capacity(CHECKS.len() + OTHERS.len());
     for check in CHECKS {
@@ -221,7 +221,7 @@ pub fn evidence_rows() -> Vec<EvidenceRow> {
     rows
 }
 
-/// A measured coverage of intervals.
+/// A measured coverage: how many intervals contain the true value.
 pub struct CoverageRow {
     pub code: &'static str,
     pub sections: &'static str,

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::figures::{Coverage, Deviations, FigureFault, Figures};
 use super::rows::{COVERAGE, EvidenceRow, SECTIONS, evidence_rows};
 
-/// Codes of the comparisons with certified optima.
+/// Codes for the comparisons with certified optima.
 const OPTIMA: [&str; 3] = ["certified-gains", "certified-delays", "signed-delays"];
 
 const HEAD: &str = "\
@@ -185,13 +185,13 @@ fn coverage_line(code: &str, sections: &str, found: &Coverage) -> String {
     )
 }
 
-/// Formats the name of a test, which a renderer may break between its modules.
+/// Formats a test name, which a renderer may break between its modules.
 fn test_name(test: &str) -> String {
     let parts: Vec<String> = test.split("::").map(|part| format!("`{part}`")).collect();
     parts.join(" :: ")
 }
 
-/// Rounds a deviation up to one digit, and one below 1e-9 up to a power of ten.
+/// Rounds a deviation up to one digit; below 1e-9, up to a power of ten.
 fn bound_text(worst: f64) -> String {
     if worst == 0.0 {
         return "0".to_owned();

@@ -1,42 +1,41 @@
-//! Minimum of a convex quadratic function over a box, by a primal active-set method: the step of
+//! Minimises a convex quadratic function over a box by a primal active-set method: the step in
 //! `newton`.
 //!
 //! ```text
 //! min g' d + d' H d / 2   subject to   low <= d <= high
 //! ```
 //!
-//! A bound is *active* if it holds its scale; the other scales are *free*. Source: Nocedal & Wright,
-//! "Numerical Optimization", 2nd ed. 2006, 16.5.
+//! A bound is *active* if it fixes its scale; the other scales are *free*. Source: Nocedal &
+//! Wright, "Numerical Optimization", 2nd ed. 2006, 16.5.
 
 use super::effort::Effort;
 use super::expansion::{Expansion, ScaleBox};
 
-/// Ridge on the diagonal of the Hessian relative to its largest entry, far below the curvature of any
-/// scale that matters.
+/// Ridge on the Hessian's diagonal, relative to its largest entry; far below any curvature that
+/// matters.
 const RIDGE: f64 = 1e-12;
-/// Slope relative to the largest slope below which a slope is a rounding error.
+/// Slopes below this, relative to the largest, are rounding errors.
 const SLOPE_ROUNDING: f64 = 1e-14;
 
 /// Quadratic model `g' d + d' H d / 2` over the box `low <= d <= high`: [`QuadraticModel::set_box`]
 /// sets the box, [`QuadraticModel::minimise`] finds `step`. The memory is reused.
 #[derive(Clone, Debug)]
 pub(super) struct QuadraticModel {
-    /// Number of scales.
     scales: usize,
-    /// Lower bound on the step of each scale, at most 0.
+    /// Lower bound on each scale's step, at most 0.
     pub(super) low: Vec<f64>,
-    /// Upper bound on the step of each scale, at least 0.
+    /// Upper bound on each scale's step, at least 0.
     pub(super) high: Vec<f64>,
     /// The step `d`.
     pub(super) step: Vec<f64>,
-    /// Slope `g + H d` of the model after the step.
+    /// The model's slope `g + H d` after the step.
     slope: Vec<f64>,
     /// Scales without an active bound, in ascending order.
     free: Vec<usize>,
     /// For each scale, whether it has no active bound; [`Self::solve_free`] lists these scales in
     /// `free`.
     is_free: Vec<bool>,
-    /// Lower Cholesky factor of the Hessian of the free scales. Its rows and columns are places in
+    /// Lower Cholesky factor for the free scales' Hessian. Its rows and columns are places in
     /// `free`, not scales; each row has memory for all scales.
     factor: Vec<f64>,
     /// Further step to the unbounded minimum over the free scales, by scale.
@@ -59,7 +58,7 @@ impl QuadraticModel {
         }
     }
 
-    /// Sets the box of the steps that lead from the point `scales` to points within `bounds`.
+    /// Sets the box to the steps that lead from the point `scales` to points within `bounds`.
     pub(super) fn set_box(&mut self, bounds: ScaleBox<'_>, scales: &[f64]) {
         for (index, scale) in scales.iter().enumerate() {
             self.low[index] = bounds.lower[index] - scale;
@@ -67,7 +66,7 @@ impl QuadraticModel {
         }
     }
 
-    /// Minimises the model, with the gradient and Hessian of `at`, over `low <= d <= high` by a
+    /// Minimises the model, with the gradient and Hessian in `at`, over `low <= d <= high` by a
     /// primal active-set method, which is exact and finite.
     ///
     /// ```text
@@ -122,15 +121,15 @@ impl QuadraticModel {
         Some(-change)
     }
 
-    /// Returns the work of a pass: a Cholesky factorisation of the free part, and products with the
-    /// whole Hessian.
+    /// Returns the work per pass: a Cholesky factorisation for the free scales, and products with
+    /// the whole Hessian.
     fn work(&self) -> u64 {
         let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
         1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
     }
 
-    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales, where `H_ff` is the Hessian of
-    /// these scales. `None` if it is not positive definite.
+    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales, where `H_ff` is their Hessian.
+    /// `None` if it is not positive definite.
     fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         self.free.clear();
         self.free
@@ -140,8 +139,8 @@ impl QuadraticModel {
         Some(())
     }
 
-    /// Writes the Cholesky factor of `H_ff + ridge I` to `factor`; `None` if it is not positive
-    /// definite. `row`, `column` and `inner` are places in `free`.
+    /// Factorises `H_ff + ridge I` (Cholesky) into `factor`; `None` if it is not positive definite.
+    /// `row`, `column` and `inner` are places in `free`.
     fn factorise_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         for row in 0..self.free.len() {
             for column in 0..=row {
@@ -190,7 +189,7 @@ impl QuadraticModel {
         }
     }
 
-    /// Returns the fraction of `move_to` that stays inside the box, and the bound that limits it.
+    /// Returns how far `move_to` stays inside the box, as a fraction, and the bound that limits it.
     fn longest_step(&self) -> AllowedMove {
         let mut fraction = 1.0;
         let mut blocking = None;
@@ -249,9 +248,9 @@ impl QuadraticModel {
     }
 }
 
-/// The part of a move that lies inside the box.
+/// How far a move stays inside the box.
 struct AllowedMove {
-    /// Share of the move; 1 for the whole move.
+    /// Fraction of the move inside the box; 1 for the whole move.
     fraction: f64,
     /// The first bound that the move reaches; `None` if the whole move is inside the box.
     blocking: Option<Blocking>,

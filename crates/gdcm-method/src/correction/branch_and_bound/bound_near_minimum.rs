@@ -1,20 +1,20 @@
-//! Lower bound of the objective over a region that contains a minimum or lies beside it, from the
-//! gradient and the Hessian at the minimum (line 8 of the algorithm in [`super`]).
+//! Lower bound on the objective over a region that contains a minimum or lies beside it, from the
+//! gradient and the Hessian at the minimum (line 8 in [`super`]'s algorithm).
 
 use super::convex_bound::quadratic_bound;
 use super::expansion::Expansion;
 use super::node_exclusion::NodeExclusion;
 use crate::correction::interval::Interval;
 
-/// Distance from the minimum, much larger than the error of the scales, much smaller than a distance
-/// over which the curvature changes.
+/// Distance from the minimum: much larger than the error in the scales, much smaller than a
+/// distance over which the curvature changes.
 const WITHIN: f64 = 0.01;
 
 impl NodeExclusion<'_> {
     /// Bounds the objective from below over a region on which it is convex, from its gradient and
     /// Hessian at `minimum`. `None` if the gradient is too large for such a bound.
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // A difference of two scales changes by up to twice the distance.
+        // The difference between two scales changes by up to twice the distance.
         let least = self.least_hessian(|term| {
             let u = term.difference(minimum);
             Interval {
@@ -39,8 +39,8 @@ impl NodeExclusion<'_> {
         quadratic_bound(at, &reach, WITHIN, |scale| pressures[scale] > 0.0)
     }
 
-    /// Returns the magnitude of the slope that certainly presses the scale against its active
-    /// bound; 0 without an active bound or a certain sign.
+    /// Returns how steeply the objective certainly presses the scale against its active bound, a
+    /// slope's magnitude; 0 without an active bound or a certain sign.
     fn pressure(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
         let is_stopped = if slope > 0.0 {
@@ -56,8 +56,8 @@ impl NodeExclusion<'_> {
     }
 
     /// Chooses a reference for each floating piece: a fixed scale or, if bounds are active, the
-    /// scale with the largest pressure. Returns `None` if this pressure is less than the sum of the
-    /// slope magnitudes of the scales in the piece without pressure.
+    /// scale with the largest pressure. Returns `None` if this pressure is less than the summed
+    /// slope magnitudes of the piece's scales without pressure.
     fn anchors(&self, at: &Expansion, pressures: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {

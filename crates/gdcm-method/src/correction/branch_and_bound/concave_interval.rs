@@ -1,25 +1,24 @@
-//! The interval on which a sum of two exponentials is concave.
+//! Interval on which a sum of two exponentials is concave.
 //!
 //! ```text
 //! f(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2
 //! f''(u) = 2 / z^2 (2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2),   z = e^u
 //! ```
 //!
-//! `R1`, `c1` are the weight and the centre of the `forward` exponential, `R2`, `c2` those of the
-//! `backward` exponential.
+//! `R1`, `c1` are the `forward` exponential's weight and centre, `R2`, `c2` the `backward`
+//! exponential's.
 
 use super::exponential::Exponential;
 use crate::correction::interval::Interval;
 
-/// Finds the only interval on which the sum of two exponentials is concave, widened slightly;
-/// `None` if the sum is convex everywhere.
+/// Finds the only interval on which the exponentials' sum is concave, widened slightly; `None` if
+/// the sum is convex everywhere.
 ///
 /// With `z = e^u` the curvature times `z^2 / 2` is the quartic
 /// `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`. Its coefficients change sign twice, so that it has
 /// either no or two positive roots (Descartes); its derivative has a single positive root.
 pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Interval> {
-    // Far above the rounding error of a logarithm of magnitude up to 83 (twice 180 dB, in both
-    // directions).
+    // Far above the rounding error in a logarithm up to 83 (twice 180 dB, in both directions).
     const SLACK: f64 = 1e-11;
     match (forward.is_zero(), backward.is_zero()) {
         (true, true) => return None,
@@ -41,8 +40,8 @@ pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) ->
     if is_surely_convex(forward, backward, deepest) {
         return None;
     }
-    // First guess of the brackets: `reach` exceeds the distance between the inflections
-    // `ln(c1 / 2)` and `-ln(c2 / 2)`; `convex_end` moves further away if necessary.
+    // First guess for the brackets: `reach` exceeds the distance between the inflections `ln(c1 /
+    // 2)` and `-ln(c2 / 2)`; `convex_end` moves further away if necessary.
     let reach = 1.0 + (forward.inflection() + backward.inflection()).abs();
     let left = convex_end(forward, backward, deepest - reach, deepest);
     let right = convex_end(forward, backward, deepest + reach, deepest);
@@ -52,8 +51,8 @@ pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) ->
     })
 }
 
-/// Returns whether the quartic of [`concave_interval`], divided by `z^2`, is positive at `u` by
-/// more than its rounding error.
+/// Returns whether [`concave_interval`]'s quartic, divided by `z^2`, is positive at `u` by more
+/// than its rounding error.
 fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bool {
     let z = u.exp();
     let parts = [
@@ -67,9 +66,9 @@ fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bo
     least > 0.0
 }
 
-/// Returns the positive `z` at which the quartic of [`concave_interval`] is minimal: the root of
-/// `8 R1 z^3 - 3 R1 c1 z^2 - R2 c2`, found by Newton's method from the right, where the cubic is
-/// convex and increasing.
+/// Returns the positive `z` at which [`concave_interval`]'s quartic is minimal: the root of `8 R1
+/// z^3 - 3 R1 c1 z^2 - R2 c2`, found by Newton's method from the right, where the cubic is convex
+/// and increasing.
 fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     let square = 3.0 * forward.centre / 8.0;
     let constant = backward.weight * backward.centre / (8.0 * forward.weight);
@@ -84,8 +83,8 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     z
 }
 
-/// Finds the end of the concave interval between `outside` and `inside` by bisection, and returns
-/// the convex side of the final bracket. Requires that the sum is not certainly convex at `inside`;
+/// Finds the concave interval's end between `outside` and `inside` by bisection, and returns the
+/// final bracket's convex side. Requires that the sum is not certainly convex at `inside`;
 /// `outside` is moved further away until the sum is certainly convex there.
 fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
     let mut convex = outside;

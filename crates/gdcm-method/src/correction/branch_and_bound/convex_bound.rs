@@ -1,4 +1,4 @@
-//! Lower bounds of a convex function of the scales, from its expansion at a single point.
+//! Lower bounds on a convex function of the scales, from its expansion at a single point.
 //!
 //! ```text
 //! tangent bound    the tangent plane at the point, minimised over a box
@@ -8,7 +8,7 @@
 use super::expansion::{Expansion, ScaleBox};
 
 /// Bounds a convex function over a box from below, by its tangent plane at `scales` (inside the
-/// box), less the rounding errors of the value, of every slope and of their sum.
+/// box), less the rounding errors in the value, in every slope and in their sum.
 pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>) -> f64 {
     let mut bound = at.value.value - at.value.error;
     for (index, scale) in scales.iter().enumerate() {
@@ -19,7 +19,7 @@ pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>
         bound -= down.max(up);
     }
     // Each of the n + 1 subtractions rounds a value between the function value and the bound; each
-    // product rounds four times, relative to the sum of the products.
+    // product rounds four times, relative to the products' sum.
     bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
 }
 

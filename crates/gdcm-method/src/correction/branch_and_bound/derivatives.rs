@@ -2,7 +2,7 @@
 
 use super::rounded::Rounded;
 
-/// Value, slope and curvature of a function at a point.
+/// A function's value, slope and curvature at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Derivatives {
     pub(crate) value: Rounded,
@@ -11,7 +11,7 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// Adds a function of `-u` to this function of `u`; each was evaluated at its own argument.
+    /// Adds a function of `-u`, evaluated at its own argument, to this function of `u`.
     pub(super) fn plus_mirrored(self, mirrored: Self) -> Self {
         let mut value = self.value;
         value.add(mirrored.value);
@@ -25,11 +25,11 @@ impl Derivatives {
     }
 }
 
-/// Minimum and maximum of a derivative over an interval, rounded outward.
+/// A derivative's minimum and maximum over an interval, rounded outward.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Range {
     pub(crate) least: f64,
     pub(crate) most: f64,
-    /// Sum of the magnitudes of the summands, to which their rounding errors are proportional.
+    /// Sum over the summands' magnitudes, to which their rounding errors are proportional.
     pub(crate) size: f64,
 }

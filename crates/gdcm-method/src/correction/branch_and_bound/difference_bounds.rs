@@ -1,26 +1,26 @@
-//! Parts of the box of scales, given by bounds on the difference between every two scales:
-//! `s_to - s_from <= bound(from, to)`.
+//! Parts of the scale box, given by bounds on the difference between every two scales: `s_to -
+//! s_from <= bound(from, to)`.
 
 use crate::correction::interval::Interval;
 
-/// Excess of a difference over its bound that is a rounding error.
+/// Excess over a bound that counts as a rounding error.
 const ROUNDING: f64 = 1e-13;
 
-/// Bounds on the differences of scales: `s_to - s_from <= bound(from, to)` for every two scales,
-/// the ground included.
+/// Bounds on scale differences: `s_to - s_from <= bound(from, to)` for every two scales, the ground
+/// included.
 ///
-/// As the lengths of edges of a graph, the bounds are shortest paths ("difference bound matrices"):
-/// each is the tightest bound implied by the others.
+/// As edge lengths in a graph, the bounds are shortest paths ("difference bound matrices"): each is
+/// the tightest bound implied by the others.
 #[derive(Clone, Debug)]
 pub(crate) struct DifferenceBounds {
-    /// Number of scales, including the ground.
+    /// Scale count, including the ground.
     count: usize,
     /// The bounds, count x count: `bound(from, to)` at `from * count + to`.
     bounds: Vec<f64>,
 }
 
 impl DifferenceBounds {
-    /// Creates the bounds of the box `lower <= s <= upper`; the ground is the last entry.
+    /// Creates the bounds for the box `lower <= s <= upper`; the ground is the last entry.
     pub(crate) fn from_box(lower: &[f64], upper: &[f64]) -> Self {
         let count = lower.len();
         let mut bounds = vec![0.0; count * count];
@@ -94,7 +94,7 @@ impl DifferenceBounds {
         count * count * size_of::<f64>()
     }
 
-    /// Writes the minimum and maximum of each scale, without the ground.
+    /// Writes each scale's minimum and maximum, without the ground.
     pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
         let ground = self.count - 1;
         for scale in 0..ground {

@@ -1,14 +1,13 @@
-//! Work of a search, counted instead of timed, so that the results are reproducible; and the request
+//! A search's work, counted instead of timed, so that the results are reproducible; and the request
 //! to stop it.
 
 use std::cell::Cell;
 
-/// Error of a search that was stopped by its caller.
+/// Error if the caller stopped the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SearchStopped;
 
-/// Counter for the work of a search, in evaluations of a term. At intervals it polls whether to
-/// stop.
+/// Counter for a search's work, in term evaluations. At intervals it polls whether to stop.
 pub(crate) struct Effort<'a> {
     stop: &'a dyn Fn() -> bool,
     work: Cell<u64>,

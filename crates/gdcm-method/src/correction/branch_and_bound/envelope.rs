@@ -1,4 +1,4 @@
-//! Convex envelope of an exponential `g(v) = R (e^v - c)^2` over an interval `low <= v <= high`: a
+//! Convex envelope for an exponential `g(v) = R (e^v - c)^2` over an interval `low <= v <= high`: a
 //! line on the left, where `g` is concave, the exponential itself on the right (McCormick 1976).
 //!
 //! ```text
@@ -11,10 +11,10 @@ use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// Maximum number of steps to the tangent; the work per term in `underestimator` allows for them.
+/// Maximum iterations for the tangent; the work per term in `underestimator` allows for them.
 const TANGENT_STEPS: usize = 14;
-/// Distance of the tangent below the function's left end, relative to the value there, at which it is
-/// close enough.
+/// Distance between the tangent and the function at the left end, relative to the value there, at
+/// which the tangent is close enough.
 const SUFFICIENT_CLOSENESS: f64 = 1e-9;
 
 /// Line that replaces the exponential below `until` in its convex envelope.
@@ -29,8 +29,8 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Finds the line in the envelope of an exponential over an interval: the tangent through the
-    /// left end, or the chord if there is no such tangent; `None` if the exponential is convex.
+    /// Finds the line in an exponential's envelope over an interval: the tangent through the left
+    /// end, or the chord if there is no such tangent; `None` if the exponential is convex.
     pub(super) fn of_envelope(function: &Exponential, over: Interval) -> Option<Self> {
         if function.is_zero() || over.low >= function.inflection() {
             return None;
@@ -45,8 +45,8 @@ impl Line {
     }
 
     /// Finds the tangent through the left end by Newton's method within a bracket. `start` and
-    /// `end` are the function at both ends of the interval. The iterate approaches from the right,
-    /// where every tangent lies below the function, so that an approximate tangent is sufficient.
+    /// `end` are the function at both interval ends. The iterate approaches from the right, where
+    /// every tangent lies below the function, so that an approximate tangent is sufficient.
     fn tangent(
         function: &Exponential,
         over: Interval,

@@ -1,11 +1,11 @@
-//! Second-order expansion of a function of the scales: value, gradient and Hessian, as Newton's
-//! method and the lower bounds need them.
+//! Second-order expansion in the scales: value, gradient and Hessian, as Newton's method and the
+//! lower bounds need them.
 
 use super::rounded::Rounded;
 use super::term::Term;
 
 /// Value, gradient and Hessian (row by row) with respect to the scales, with bounds on the rounding
-/// error of value and gradient.
+/// errors in value and gradient.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Expansion {
     pub(crate) value: Rounded,
@@ -15,7 +15,7 @@ pub(crate) struct Expansion {
 }
 
 impl Expansion {
-    /// Creates an expansion of zeros in `scales` scales.
+    /// Creates an expansion for `scales` scales with all values zero.
     pub(crate) fn zero(scales: usize) -> Self {
         Self {
             value: Rounded::default(),
@@ -33,8 +33,8 @@ impl Expansion {
         self.hessian.fill(0.0);
     }
 
-    /// Adds the slope `f'(u)` and the curvature `f''(u)` of a term in `u = s_to - s_from` to
-    /// gradient and Hessian; the value is added separately.
+    /// Adds a term's slope `f'(u)` and curvature `f''(u)`, with `u = s_to - s_from`, to gradient
+    /// and Hessian; the value is added separately.
     pub(crate) fn add_derivatives(&mut self, term: &Term, slope: Rounded, curvature: f64) {
         self.add_to_gradient(term.to, slope);
         self.add_to_gradient(term.from, -slope);
@@ -52,7 +52,7 @@ impl Expansion {
     }
 }
 
-/// Adds the curvature of a term in `s_to - s_from` to a Hessian, scales x scales, row by row.
+/// Adds a term's curvature in `s_to - s_from` to a Hessian, scales x scales, row by row.
 pub(super) fn add_curvature(hessian: &mut [f64], scales: usize, term: &Term, curvature: f64) {
     let from = term.from;
     let to = term.to;
@@ -62,7 +62,7 @@ pub(super) fn add_curvature(hessian: &mut [f64], scales: usize, term: &Term, cur
     hessian[from * scales + to] -= curvature;
 }
 
-/// Treatment of negative curvature.
+/// How negative curvature is treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Curvature {
     True,
@@ -70,16 +70,16 @@ pub(crate) enum Curvature {
     Magnitude,
 }
 
-/// A function of the scales that can be minimised by Newton's method.
+/// A function of the scales that Newton's method can minimise.
 pub(crate) trait Differentiable {
     /// Writes value, gradient and Hessian at `scales` to `into`.
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion);
 
-    /// Returns the work of an expansion, in the unit of [`super::effort::Effort`].
+    /// Returns the work per expansion, in term evaluations ([`super::effort::Effort`]).
     fn work(&self) -> u64;
 }
 
-/// The box `lower <= s <= upper` of the scales; the ground is the last entry.
+/// The box `lower <= s <= upper` for the scales; the ground is the last entry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScaleBox<'a> {
     pub(crate) lower: &'a [f64],

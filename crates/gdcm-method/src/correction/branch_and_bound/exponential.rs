@@ -1,12 +1,12 @@
-//! Exponential terms: all entries whose products depend on the same difference of scales, combined
-//! into a single square.
+//! Exponential terms: all entries whose products depend on the same scale difference, combined into
+//! a single square.
 //!
 //! ```text
 //! sum w (G - A e^v)^2 = R (e^v - c)^2 + least,     R = sum w A^2,   c = sum w G A / R
 //! ```
 //!
-//! The sum is over the entries with the delta gain `G`, the weight `w` and the product `A e^v` of
-//! the two channel gains. `v` is the difference of the scales of the input and the output.
+//! The sum is over the entries, with delta gain `G`, weight `w` and gain product `A e^v`. `v` is
+//! the input's scale less the output's.
 
 use super::derivatives::{Derivatives, Range};
 use super::rounded::Rounded;
@@ -21,7 +21,7 @@ pub(crate) struct Exponential {
     pub(super) weight: f64,
     /// `c`.
     pub(super) centre: f64,
-    /// Bound on the relative rounding error of `weight` and `centre`.
+    /// Bound on the relative rounding error in `weight` and `centre`.
     rounding: f64,
 }
 
@@ -34,15 +34,15 @@ pub(crate) struct ProductEntry {
     gain: f64,
     /// `A`.
     product: f64,
-    /// Relative rounding error of `product`.
+    /// Relative rounding error in `product`.
     error: f64,
 }
 
 impl ProductEntry {
     /// Creates the entry `weight (gain - e^logarithm e^v)^2`.
     pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
-        // The absolute error of the logarithm is the relative error of the product; the exponential
-        // adds an epsilon.
+        // The logarithm's absolute error is the product's relative error; the exponential adds an
+        // epsilon.
         Self {
             weight,
             gain,
@@ -59,11 +59,11 @@ impl ProductEntry {
     }
 }
 
-/// A sum of [`ProductEntry`] values, as an exponential term plus a constant.
+/// A sum of [`ProductEntry`] values, written as an exponential term plus a constant.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CombinedEntries {
     pub(crate) exponential: Exponential,
-    /// Minimum of the combined entries.
+    /// The combined entries' minimum.
     pub(crate) least: Rounded,
 }
 
@@ -95,7 +95,7 @@ impl CombinedEntries {
             least.add(at_minimum.square());
             worst = worst.max(entry.error);
         }
-        // A sum of n positive terms has a relative error of at most n epsilon / 2. The centre is a
+        // A sum of n positive terms has at most the relative error n epsilon / 2. The centre is a
         // quotient of two such sums, in which the product appears three times.
         let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
         let exponential = Exponential {
@@ -118,8 +118,8 @@ impl Exponential {
         (0.5 * self.centre).ln()
     }
 
-    /// Returns a bound on the relative rounding error of `weight`, `centre` and `z = e^v`; the
-    /// terms are `rounding`, the difference `v`, the exponential and its reciprocal.
+    /// Returns a bound on the relative rounding error in `weight`, `centre` and `z = e^v`:
+    /// `rounding` plus the errors in the difference `v`, in the exponential and in its reciprocal.
     pub(super) fn relative_error(&self, v: f64) -> f64 {
         self.rounding + (v.abs() + 4.0) * f64::EPSILON
     }
@@ -140,8 +140,8 @@ impl Exponential {
         }
     }
 
-    /// Bounds the curvature over an interval of `v`: it is a parabola in `e^v`, minimal at
-    /// `centre / 4`. Only the lower bound is sharp.
+    /// Bounds the curvature over an interval in `v`: it is a parabola in `e^v`, minimal at `centre
+    /// / 4`. Only the lower bound is sharp.
     pub(crate) fn curvatures(&self, v: Interval) -> Range {
         let least = v.low.exp();
         let most = v.high.exp();
@@ -156,8 +156,8 @@ impl Exponential {
         }
     }
 
-    /// Bounds the slope over an interval of `v`: it is a parabola in `e^v`, minimal at
-    /// `centre / 2`.
+    /// Bounds the slope over an interval in `v`: it is a parabola in `e^v`, minimal at `centre /
+    /// 2`.
     pub(crate) fn slopes(&self, v: Interval) -> Range {
         let least = v.low.exp();
         let most = v.high.exp();

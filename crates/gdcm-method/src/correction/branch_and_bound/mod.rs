@@ -1,10 +1,9 @@
-//! Global minimum of the objective over the scales that the constrained products leave free, with a
-//! proof.
+//! Finds the objective's global minimum over the scales that the constrained products leave free,
+//! and proves it.
 //!
-//! Constraining `k_o k_i` fixes the logarithms of the gains in a connected component of channels up
-//! to a common offset, the *scale* `s_i` of component `i` (M8, proof). With the ground, a last
-//! scale that is always 0, the objective is a sum of functions, each of a single difference of
-//! scales:
+//! Constraining `k_o k_i` fixes the gain logarithms in a connected component `i` of channels up to
+//! a common offset, the *scale* `s_i` (M8, proof). With the ground, a last scale that is always 0,
+//! the objective is a sum of functions that each depend on a single scale difference:
 //!
 //! ```text
 //! F(s) = constant + sum over terms f(u),   u = s_j - s_i,   i < j

@@ -1,25 +1,24 @@
-//! Newton's method for a local minimum over the box `lower <= s <= upper` of the scales.
+//! Newton's method for a local minimum over the box `lower <= s <= upper`.
 //!
-//! With the gradient `g` and the Hessian `H` at the current point, the quadratic model of the
-//! function is `g' d + d' H d / 2`, where `d` is the step; `active_set` minimises it over the box.
+//! With the gradient `g` and the Hessian `H` at the current point, the function's quadratic model
+//! is `g' d + d' H d / 2`, where `d` is the step; `active_set` minimises it over the box.
 
 use super::active_set::QuadraticModel;
 use super::effort::Effort;
 use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 
-/// Maximum number of steps: about ten are typical; a flat start or an inflection requires a few
-/// tens.
+/// Maximum step count: about ten are typical; a flat start or an inflection requires a few tens.
 const STEPS: usize = 100;
-/// Predicted decrease, relative to the value, that is near the minimum.
+/// Predicted decrease, relative to the value, below which a point counts as near the minimum.
 const NEAR_MINIMUM: f64 = 1e-13;
-/// Number of steps near the minimum, which reach the rounding level of the slopes, even across the
-/// end of an envelope.
+/// Steps near the minimum: enough for the slopes to reach rounding level, even where an envelope
+/// changes from its line to the exponential.
 const STEPS_NEAR_MINIMUM: usize = 3;
-/// Share of the predicted decrease that a step must attain (Armijo).
+/// Minimum ratio between a step's actual and predicted decrease (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// Maximum number of trials with a halved step.
+/// Maximum number of times that a step is halved.
 const HALVINGS: usize = 40;
-/// Rounding level of the scales: a shorter step ends the descent.
+/// The scales' rounding level: a shorter step ends the descent.
 const LEAST_STEP: f64 = 1e-15;
 
 /// A projected Newton method.
@@ -34,12 +33,12 @@ const LEAST_STEP: f64 = 1e-15;
 /// soon as the model is. Clipping an unconstrained step instead would stall at corners.
 pub(crate) struct Newton<'a> {
     effort: &'a Effort<'a>,
-    /// Expansion of the function at the final point.
+    /// The function's expansion at the final point.
     pub(crate) reached: Expansion,
-    /// Expansion of the function at the point that is tried next.
+    /// The function's expansion at `next`.
     trial: Expansion,
     model: QuadraticModel,
-    /// The point that is tried next.
+    /// The point to be tried next.
     next: Vec<f64>,
 }
 
@@ -146,8 +145,8 @@ impl<'a> Newton<'a> {
         false
     }
 
-    /// Writes the point at a fraction of the step to `next`; a full step that ends on a bound is
-    /// placed exactly on it.
+    /// Writes the point that a fraction of the step reaches to `next`; a full step that ends on a
+    /// bound is placed exactly on it.
     fn place(&mut self, fraction: f64, bounds: ScaleBox<'_>, scales: &[f64]) {
         for (index, scale) in scales.iter().enumerate() {
             let step = self.model.step[index];
@@ -162,9 +161,9 @@ impl<'a> Newton<'a> {
     }
 }
 
-/// Step to the minimum of the quadratic model.
+/// Step to the quadratic model's minimum.
 struct ModelStep {
-    /// Predicted decrease of the model over the step.
+    /// The model's decrease over the step.
     decrease: f64,
     /// Whether the model uses the function's curvature, not its magnitude.
     has_true_curvature: bool,

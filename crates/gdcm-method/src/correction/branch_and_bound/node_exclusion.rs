@@ -7,9 +7,9 @@
 //!               definite: the region contains at most one minimum
 //! ```
 //!
-//! Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004. The scales of a *floating
-//! piece*, which no term connects with the ground, can be shifted together without a change of the
-//! objective: one of them, the *reference*, does not move in the tests.
+//! Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004. The scales in a *floating
+//! piece*, which no term connects with the ground, can be shifted together without changing the
+//! objective: one scale, the *reference*, does not move in the tests.
 
 use nalgebra::DMatrix;
 
@@ -20,13 +20,13 @@ use super::objective::Objective;
 use super::term::Term;
 use crate::correction::interval::Interval;
 
-/// Distance from the end of the box that is a rounding error.
+/// Distance from a box end that counts as a rounding error.
 const ROUNDING: f64 = 1e-12;
 
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
     pub(super) objective: &'a Objective,
-    /// Reference of each scale: the ground, or the first scale in its floating piece.
+    /// Reference for each scale: the ground, or the first scale in its floating piece.
     reference: Vec<usize>,
     /// For each scale, the scales relative to which it is bounded: the ground, or the other scales
     /// in its floating piece.
@@ -59,7 +59,7 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Returns the work of a test: the range of every slope, or the Hessian and its Cholesky
+    /// Returns the work per test: the range for every slope, or the Hessian and its Cholesky
     /// factorisation.
     pub(super) fn work(&self) -> u64 {
         let scales = self.objective.scales() as u64;
@@ -80,9 +80,9 @@ impl<'a> NodeExclusion<'a> {
         false
     }
 
-    /// Returns whether the region contains no local minimum other than `minimum`. Over the hull of
-    /// both, scales whose slope has a constant sign are on their bound at any local minimum, and
-    /// the objective must be convex in the other scales.
+    /// Returns whether the region contains no local minimum other than `minimum`. Over the hull
+    /// around both, scales whose slope has a constant sign are on their bound at any local minimum,
+    /// and the objective must be convex in the other scales.
     pub(super) fn has_only(&self, region: &DifferenceBounds, minimum: &[f64]) -> bool {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
@@ -98,7 +98,7 @@ impl<'a> NodeExclusion<'a> {
         self.is_convex_in(region, (0..self.objective.ground()).collect())
     }
 
-    /// Returns whether a bound stops the scale from moving downhill, given the sign of its slope.
+    /// Returns whether a bound stops the scale from moving downhill, given its slope's sign.
     fn is_stopped(&self, region: &DifferenceBounds, scale: usize, sign: i8) -> bool {
         self.bounded_by[scale].iter().any(|&other| {
             if sign > 0 {
@@ -115,8 +115,8 @@ impl<'a> NodeExclusion<'a> {
             >= self.objective.upper[to] - self.objective.lower[from] - ROUNDING
     }
 
-    /// Bounds the slope `dF/ds_i` in each scale over the region; `size` is the sum of the sizes of
-    /// the terms' slopes. A term's slope counts positive at its `to`, negative at its `from`.
+    /// Bounds the slope `dF/ds_i` in each scale over the region; `size` adds up the terms' slope
+    /// sizes. A term's slope counts positive at its `to`, negative at its `from`.
     fn slope_ranges(&self, region: &DifferenceBounds) -> Vec<Range> {
         let mut ranges = vec![Range::default(); self.objective.scales()];
         for term in &self.objective.terms {
@@ -134,7 +134,7 @@ impl<'a> NodeExclusion<'a> {
         ranges
     }
 
-    /// Builds the Hessian from the minimum curvature of every term over its range.
+    /// Builds the Hessian from every term's minimum curvature over its range.
     pub(super) fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> LeastHessian {
         let scales = self.objective.scales();
         let mut least = LeastHessian {
@@ -151,22 +151,22 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Returns whether the objective is convex in the `free` scales over the region: the Hessian
-    /// built from the minimum curvature of every term is positive definite, and the true Hessian
-    /// exceeds it by a positive semidefinite matrix.
+    /// built from every term's minimum curvature is positive definite, and the true Hessian exceeds
+    /// it by a positive semidefinite matrix.
     fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
-        // `retain`: the reference of a floating piece does not move.
+        // The reference in a floating piece does not move.
         free.retain(|&scale| self.reference[scale] != scale);
         free.is_empty() || least.reduced(&free).cholesky().is_some()
     }
 }
 
-/// The Hessian that consists of the minimum curvature of every term over a range.
+/// The Hessian built from every term's minimum curvature over a range.
 pub(super) struct LeastHessian {
     /// Scales x scales, row by row.
     entries: Vec<f64>,
-    /// For each diagonal entry, the sum of the sizes of its curvatures, to which its rounding error
-    /// is proportional.
+    /// For each diagonal entry, the summed sizes of its curvatures, to which its rounding error is
+    /// proportional.
     sizes: Vec<f64>,
 }
 
@@ -185,7 +185,7 @@ impl LeastHessian {
     }
 }
 
-/// Adds a term's slope range, and widens the sum by the rounding error of both ends.
+/// Adds a term's slope range, and widens the sum by the rounding error at both ends.
 fn add_range(sum: &mut Range, slope: Range) {
     sum.least += slope.least;
     sum.most += slope.most;
@@ -195,7 +195,7 @@ fn add_range(sum: &mut Range, slope: Range) {
     sum.most += rounding;
 }
 
-/// Returns the sign of a slope that is constant over its range, -1 or 1; 0 if the sign may change.
+/// Returns a slope's sign if it is constant over its range, -1 or 1; 0 if the sign may change.
 fn sign(slope: &Range) -> i8 {
     i8::from(slope.least > 0.0) - i8::from(slope.most < 0.0)
 }

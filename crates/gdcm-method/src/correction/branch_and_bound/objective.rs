@@ -6,34 +6,34 @@ use super::rounded::Rounded;
 use super::term::Term;
 use crate::correction::connected_pieces::connected_pieces;
 
-/// The objective `constant + sum(terms)` over the box of scales.
+/// The objective `constant + sum(terms)` over a box.
 ///
 /// Scale `n - 1` is the *ground*: it is 0, so that a term that contains the ground depends on a
 /// single scale.
 #[derive(Clone, Debug)]
 pub(crate) struct Objective {
-    /// Lower bound of each scale; the ground is the last entry.
+    /// Lower bound on each scale; the ground is the last entry.
     pub(crate) lower: Vec<f64>,
-    /// Upper bound of each scale; the ground is the last entry.
+    /// Upper bound on each scale; the ground is the last entry.
     pub(crate) upper: Vec<f64>,
     /// At most one term for each pair of scales.
     pub(crate) terms: Vec<Term>,
-    /// Part of the objective that does not depend on the scales.
+    /// Part that does not depend on the scales.
     pub(crate) constant: Rounded,
 }
 
 impl Objective {
-    /// Returns the number of scales, including the ground.
+    /// Returns the scale count, including the ground.
     pub(crate) fn scales(&self) -> usize {
         self.lower.len()
     }
 
-    /// Returns the index of the ground, the scale that is always 0.
+    /// Returns the ground's index; the ground is the scale that is always 0.
     pub(crate) fn ground(&self) -> usize {
         self.lower.len() - 1
     }
 
-    /// Returns the whole box of scales.
+    /// Returns the whole box.
     pub(crate) fn bounds(&self) -> ScaleBox<'_> {
         ScaleBox {
             lower: &self.lower,
@@ -73,8 +73,8 @@ impl Objective {
     /// as far as the box allows.
     ///
     /// `shift(piece, scales)` returns the amount without regard to the box. The fit does not depend
-    /// on the shift, so that it is determined by the deviations of the output gains (or delays)
-    /// from neutral (M8, M9).
+    /// on the shift, so that the output gains' (or delays') deviations from neutral determine it
+    /// (M8, M9).
     pub(crate) fn shift_floating_pieces(
         &self,
         scales: &mut [f64],

@@ -1,4 +1,4 @@
-//! The open nodes of the search, stored in limited memory.
+//! The search's open nodes, stored in limited memory.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -10,7 +10,7 @@ pub(super) struct Node {
     /// Lower bound on the objective over this part.
     pub(super) bound: f64,
     pub(super) region: DifferenceBounds,
-    /// Starting point for the minimisation of the underestimator.
+    /// Starting point for minimising the underestimator.
     pub(super) start: Vec<f64>,
 }
 
@@ -38,9 +38,9 @@ impl Ord for Node {
 /// The open nodes, lowest bound first.
 pub(super) struct OpenNodes {
     heap: BinaryHeap<Node>,
-    /// Maximum number of nodes in memory.
+    /// Maximum node count in memory.
     most: usize,
-    /// Minimum bound of the nodes rejected for lack of memory.
+    /// Minimum bound over the nodes rejected for lack of memory.
     refused: f64,
 }
 
@@ -48,7 +48,7 @@ impl OpenNodes {
     /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; at
     /// least one node is always stored.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // `32`: the overhead of two allocations. `3 *`: the heap doubles its memory when it grows.
+        // `32`: overhead for two allocations. `3 *`: the heap doubles its memory when it grows.
         let node_bytes = DifferenceBounds::bytes(scales)
             + scales * size_of::<f64>()
             + 32

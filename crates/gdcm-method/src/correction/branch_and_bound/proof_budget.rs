@@ -1,22 +1,22 @@
-//! Budget of the branch-and-bound search, and the limit that ends it before a proof.
+//! Budget for the branch-and-bound search, and the limit that ends it before a proof.
 
-/// Budget of the search for a proof. It is counted instead of timed, so that results are
+/// Budget for proving the minimum. It is counted instead of timed, so that results are
 /// reproducible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProofBudget {
-    /// Maximum total work, in evaluations of a term of the objective (20 to 30 ns on a core). A
+    /// Maximum total work, in evaluations of a term in the objective (20 to 30 ns on a core). A
     /// step in progress is completed.
     pub work: u64,
-    /// Maximum work after the proof, spent on finding every other local minimum within 1 % of the
-    /// best.
+    /// Maximum work after the proof, spent on finding every other local minimum within 1 % above
+    /// the best.
     pub listing: u64,
     /// Maximum memory for the open nodes \[bytes\].
     pub bytes: usize,
 }
 
 impl Default for ProofBudget {
-    /// Returns a budget of about two seconds on one core and 64 MB, far more than a condition with
-    /// constrained on-axis responses needs, and of at most a few milliseconds for the other minima.
+    /// Returns about two seconds on one core and 64 MB, far more than a condition with constrained
+    /// on-axis responses needs, and at most a few milliseconds for the other minima.
     fn default() -> Self {
         Self {
             work: 80_000_000,

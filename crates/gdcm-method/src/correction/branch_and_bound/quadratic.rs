@@ -1,31 +1,31 @@
-//! Quadratic terms: all entries of a least-squares objective that share the same difference `u` of
-//! scales, combined into a single square.
+//! Quadratic terms: all entries in a least-squares objective that share the same scale difference
+//! `u`, combined into a single square.
 //!
 //! ```text
 //! sum w (u_e - u)^2 = W (u - c)^2 + sum w (u_e - c)^2,     W = sum w,   c = sum w u_e / W
 //! ```
 //!
-//! The sum is over the entries with the weight `w` and the *target difference* `u_e`, the
-//! difference of scales at which the entry meets its delta.
+//! The sum is over the entries, with weight `w` and *target difference* `u_e`, the scale difference
+//! at which the entry meets its delta.
 
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};
 
-/// An entry of a least-squares objective: `weight (delta - offset - (s_input - s_output))^2`.
+/// An entry in a least-squares objective: `weight (delta - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
     /// Index of the output's scale.
     pub(crate) output: usize,
-    /// Index of the input's scale; the ground, for the deviation of an output from neutral.
+    /// Index of the input's scale; the ground, if the entry is an output's deviation from neutral.
     pub(crate) input: usize,
     pub(crate) weight: f64,
     /// Target: delta gain or delta delay; in a quadratic term, converted to the coordinate.
     pub(crate) delta: f64,
-    /// Value of the entry, the sum of its two coordinates, if both scales are 0.
+    /// The entry's value, its two coordinates added up, if both scales are 0.
     pub(crate) offset: Rounded,
 }
 
-/// The difference of scales `s_to - s_from`, `from <= to`, at which an entry meets its target.
+/// Scale difference `s_to - s_from`, `from <= to`, at which an entry meets its target.
 #[derive(Clone, Copy)]
 struct TargetDifference {
     from: usize,
@@ -68,9 +68,9 @@ struct SquareGroup {
     weight: f64,
     /// `sum weight difference`.
     moment: f64,
-    /// Maximum magnitude of the differences.
+    /// Maximum magnitude among the differences.
     size: f64,
-    /// Maximum error of the differences.
+    /// Maximum error among the differences.
     error: f64,
 }
 
@@ -83,8 +83,8 @@ impl SquareGroup {
         self.error = self.error.max(difference.error);
     }
 
-    /// Returns the difference of scales at the group's minimum. It is a quotient of sums; its error
-    /// bound includes the maximum error of an entry.
+    /// Returns the scale difference at the group's minimum. It is a quotient of sums; its error
+    /// bound includes the maximum error over the entries.
     fn centre(&self) -> Rounded {
         Rounded {
             value: self.moment / self.weight,
@@ -102,9 +102,9 @@ impl SquareGroup {
 }
 
 /// Combines the entries into one quadratic term for each pair of scales that share an entry. The
-/// constant is the sum of the squared residuals at the minima of the terms.
+/// constant is the sum of the squared residuals at the terms' minima.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
-    // The group of the scales `from < to` is at `from * scales + to`.
+    // The group for the scales `from < to` is at `from * scales + to`.
     let mut groups = vec![SquareGroup::default(); scales * scales];
     for entry in entries {
         let target = entry.target_difference();

@@ -1,4 +1,4 @@
-//! The branch-and-bound search for the global minimum and for the other minima within 1 % of it.
+//! Branch-and-bound search for the global minimum and for the other minima within 1 % above it.
 
 use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
@@ -18,17 +18,17 @@ const AIM: f64 = 2e-10;
 /// Minima up to this factor above the best are listed.
 const NEAR: f64 = 1.01;
 
-/// Loss of a node's bound, because Newton's method ended early, that is accepted: as a share of the
-/// desired gap or, if the node will be branched anyway, of the distance of the bound from its goal.
+/// How much of a node's bound may be lost by ending Newton's method early: relative to the desired
+/// gap or, if the node will be branched anyway, to the distance between the bound and its goal.
 const ACCEPTED_LOSS: f64 = 0.05;
-/// Difference of scales up to which two minima are duplicates.
+/// Maximum difference between the scales of two minima that count as duplicates.
 const SAME_MINIMUM: f64 = 1e-6;
-/// Share of a term's range between each end and the point at which the range is split.
+/// Minimum distance between the split point and either end, relative to a term's range.
 const SPLIT_MARGIN: f64 = 0.15;
-/// Width of a term's range up to which it is not split.
+/// Minimum range width for splitting a term's range.
 const LEAST_SPLIT_WIDTH: f64 = 1e-11;
 
-/// A local minimum of the objective.
+/// A local minimum.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
     pub(crate) scales: Vec<f64>,
@@ -39,7 +39,7 @@ pub(crate) struct Minimum {
 /// Result of a search.
 #[derive(Clone, Debug)]
 pub(crate) struct Minima {
-    /// Distinct local minima within 1 % of the best, best first.
+    /// Distinct local minima within 1 % above the best, best first.
     pub(crate) minima: Vec<Minimum>,
     /// Lower bound on the objective over the whole box.
     pub(crate) lower_bound: f64,
@@ -48,14 +48,14 @@ pub(crate) struct Minima {
     /// Limit that ended the search; `None` if the gap is a proof.
     pub(crate) limit: Option<Limit>,
     pub(crate) nodes: usize,
-    /// Whether the list is complete: no other local minimum lies within 1 % of the best.
+    /// Whether the list is complete: no other local minimum lies within 1 % above the best.
     pub(crate) all_minima: bool,
 }
 
 /// Finds the global minimum of `objective` over its box, with a rigorous lower bound, by the
 /// algorithm in [`super`].
 ///
-/// Newton's method begins at `start`. `floor` is the rounding level of the objective: the gap is
+/// Newton's method begins at `start`. `floor` is the objective's rounding level: the gap is
 /// relative to the larger of the best value and `floor`.
 ///
 /// # Errors
@@ -82,23 +82,22 @@ struct Search<'a> {
     newton: Newton<'a>,
     /// Distinct local minima, in the order in which they were found.
     minima: Vec<Minimum>,
-    /// Value of the best minimum.
+    /// Objective at the best minimum.
     best: f64,
     open: OpenNodes,
-    /// Minimum bound of the closed nodes.
+    /// Minimum bound over the closed nodes.
     closed: f64,
     nodes: usize,
     /// Work spent until the best minimum was proven; `None` before the proof.
     proven_at: Option<u64>,
     /// Whether every closed node was shown to contain no local minimum other than those found.
     all_minima: bool,
-    /// Memory for the lower bound of each scale in a part of the box.
+    /// Scratch memory: lower bound on each scale in a part of the box.
     lower: Vec<f64>,
-    /// Memory for the upper bound of each scale in a part of the box.
+    /// Scratch memory: upper bound on each scale in a part of the box.
     upper: Vec<f64>,
-    /// Curvature of underestimators outside their node. It is well above the curvature of the
-    /// objective at the best minimum, so that the bound of a node next to a minimum is attained at
-    /// the edge of that node.
+    /// Underestimators' curvature outside their node. It is well above the objective's curvature at
+    /// the best minimum, so that next to a minimum a node's bound is attained at the node's edge.
     outer_curvature: f64,
 }
 
@@ -166,7 +165,7 @@ impl<'a> Search<'a> {
         is_listing_spent || spent >= self.budget.work || self.open.is_full()
     }
 
-    /// Returns the divisor of the relative gap.
+    /// Returns the relative gap's denominator.
     fn denominator(&self) -> f64 {
         self.best.max(self.floor)
     }
@@ -239,7 +238,7 @@ impl<'a> Search<'a> {
     }
 
     /// Line 5: returns the largest lower bound found by Newton's method on the underestimator.
-    /// Moves `start` to the last point, near the minimum of the underestimator.
+    /// Moves `start` to the last point, near the underestimator's minimum.
     ///
     /// `goal` is the bound above which the node need not be branched.
     fn lower_bound(
@@ -309,8 +308,8 @@ impl<'a> Search<'a> {
         self.best = self.best.min(value);
     }
 
-    /// Returns whether two minima are duplicates: equal up to 1e-6, or so close that the curvature
-    /// of the terms at `known` raises the objective between them by at most the desired gap.
+    /// Returns whether two minima are duplicates: equal up to 1e-6, or so close that the terms'
+    /// curvature at `known` raises the objective between them by at most the desired gap.
     fn are_duplicates(&self, known: &[f64], found: &[f64]) -> bool {
         let mut longest = 0.0_f64;
         let mut rise = 0.0;
@@ -335,8 +334,8 @@ impl<'a> Search<'a> {
     }
 
     /// Line 8: bounds a node with the gradient and the Hessian at the best minimum; `None` if the
-    /// objective is not convex over the hull of node and minimum. `exact` states that every term is
-    /// convex over the node.
+    /// objective is not convex over the hull around node and minimum. `exact` states that every
+    /// term is convex over the node.
     fn convex_bound(&mut self, region: &DifferenceBounds, exact: bool) -> Option<f64> {
         let best = self
             .minima
@@ -377,9 +376,9 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// Line 9: branches at the term that loses most of the node's bound. If nothing is lost or the
-    /// best minimum is already proven, separates convex from concave parts; where this is not
-    /// possible either, splits the range of the term whose slope varies most.
+    /// Line 9: branches at the term whose envelope loses most of the node's bound. If nothing is
+    /// lost or the best minimum is already proven, separates convex from concave parts; where this
+    /// is not possible either, splits the range for the term whose slope varies most.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -419,7 +418,7 @@ impl<'a> Search<'a> {
         self.close(bound);
     }
 
-    /// Splits the region at the end of each concave interval. The part on the far side from `start`
+    /// Splits the region at each concave interval's end. The part on the far side from `start`
     /// becomes a node; the rest remains a single node.
     fn split_concave(
         &mut self,
@@ -458,7 +457,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Line 10: returns the lower bound, and the minima within 1 % of the best.
+    /// Line 10: returns the lower bound, and the minima within 1 % above the best.
     fn into_minima(mut self) -> Minima {
         let left = self.open.least_bound();
         let cutoff = self.cutoff();

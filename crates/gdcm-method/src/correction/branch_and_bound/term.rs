@@ -1,4 +1,4 @@
-//! Terms of the objective: functions of a difference `u` of scales, with bounds on their rounding
+//! Terms in the objective: functions of a scale difference `u`, with bounds on their rounding
 //! errors.
 //!
 //! ```text
@@ -6,8 +6,8 @@
 //! f(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2       gains compared as ratios
 //! ```
 //!
-//! `R1` and `c1` are the weight and the centre of the `forward` exponential, `R2` and `c2` those of
-//! the `backward` exponential, which is a function of `-u`.
+//! `R1` and `c1` are the `forward` exponential's weight and centre, `R2` and `c2` those of the
+//! `backward` exponential, which is a function of `-u`.
 
 use super::concave_interval::concave_interval;
 use super::derivatives::{Derivatives, Range};
@@ -15,7 +15,7 @@ use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// A term of the objective: a function of `u = s_to - s_from`.
+/// A term in the objective: a function of `u = s_to - s_from`.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     /// Index of the subtracted scale.
@@ -39,14 +39,14 @@ pub(crate) struct TermSum {
     pub(crate) constant: Rounded,
 }
 
-/// A function of a difference of scales.
+/// A term's function of `u`.
 #[derive(Clone, Debug)]
 pub(crate) enum Function {
     /// `weight (u - centre)^2`: gains compared in dB, and delays.
     Quadratic {
         weight: f64,
         centre: Rounded,
-        /// Relative error of the weight.
+        /// Relative error in the weight.
         relative: f64,
     },
     /// `forward` in `u` plus `backward` in `-u`: gains compared as ratios.
@@ -113,7 +113,7 @@ impl Function {
         }
     }
 
-    /// Returns the end of the concave interval that is nearest to `u`; `None` if `u` is inside the
+    /// Returns the concave interval's end that is nearest to `u`; `None` if `u` is inside the
     /// concave interval, or if the end is outside the open interval `within`.
     pub(crate) fn concave_end(&self, u: f64, within: Interval) -> Option<f64> {
         let Function::Exponential {

@@ -1,4 +1,4 @@
-//! A convex underestimator of the objective over a node, a part of the box of scales.
+//! Convex underestimator for the objective over a node, a part of the scale box.
 //!
 //! ```text
 //! F(s) = constant + sum over terms f(s_to - s_from)  >=  constant + sum over terms e(s_to - s_from)
@@ -23,7 +23,7 @@ struct EnvelopeLines {
     backward: Option<Line>,
 }
 
-/// Underestimator of a term over the range of its difference.
+/// Underestimator for a term over the range of its difference.
 ///
 /// Newton's method respects only the node's box, and may leave this range. Outside it, the
 /// underestimator continues along its tangent and bends upwards
@@ -60,7 +60,7 @@ impl TermUnderestimator {
         self.range.nearest(term.difference(scales))
     }
 
-    /// Evaluates the underestimator of `function` at `u`, which is within the range.
+    /// Evaluates the underestimator for `function` at `u`, which is within the range.
     fn inside(&self, function: &Function, u: f64) -> Derivatives {
         match (function, &self.lines) {
             (
@@ -78,14 +78,14 @@ impl TermUnderestimator {
     }
 }
 
-/// End of the concave interval of a term.
+/// End of a term's concave interval.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConcaveEnd {
     pub(super) from: usize,
     pub(super) to: usize,
     /// Difference `s_to - s_from` at the end.
     pub(super) at: f64,
-    /// Distance of the end from the current difference.
+    /// Distance between the end and the current difference.
     distance: f64,
 }
 
@@ -95,25 +95,25 @@ struct RankedTerm<'a> {
     rank: f64,
 }
 
-/// Returns the term with the highest rank; the last of equally ranked terms.
+/// Returns the term with the highest rank; the last one if several rank equally.
 fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm<'a>> {
     terms.max_by(|a, b| a.rank.total_cmp(&b.rank))
 }
 
-/// Convex function of the scales that does not exceed the objective anywhere in the node.
+/// Convex function that does not exceed the objective anywhere in the node.
 pub(crate) struct Underestimator<'a> {
     objective: &'a Objective,
     per_term: Vec<TermUnderestimator>,
-    /// Curvature of every term's underestimator outside the range of the term's difference.
+    /// Every term underestimator's curvature outside its range.
     outer_curvature: f64,
 }
 
 impl<'a> Underestimator<'a> {
-    /// Work of the construction per term: up to fourteen steps to a tangent.
+    /// Work per term for building the underestimator: up to fourteen iterations for a tangent.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
-    /// Creates the underestimator of `objective` over `region`, with `outer_curvature` outside the
-    /// ranges of the differences.
+    /// Creates the underestimator for `objective` over `region`, with `outer_curvature` outside the
+    /// terms' ranges.
     pub(crate) fn new(
         objective: &'a Objective,
         region: &DifferenceBounds,
@@ -166,8 +166,8 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Finds the terms that are not convex over the node but convex at `scales`, each with the end
-    /// of its concave interval, the furthest end first. The parts beyond the ends are easily
+    /// Finds the terms that are not convex over the node but convex at `scales`, each with its
+    /// concave interval's end, the furthest end first. The parts beyond the ends are easily
     /// bounded, and the rest is convex in these terms.
     pub(super) fn concave_ends(&self, scales: &[f64]) -> Vec<ConcaveEnd> {
         let mut ends = Vec::new();
@@ -200,9 +200,9 @@ impl<'a> Underestimator<'a> {
         highest(variations).map(|widest| widest.term)
     }
 
-    /// Evaluates the underestimator of a term. Outside its range, at the distance `x` from the
-    /// nearer end, the value is `e + e' x + outer_curvature x^2 / 2`, with the value `e` and the
-    /// slope `e'` at that end.
+    /// Evaluates a term's underestimator. Outside its range, at the distance `x` from the nearer
+    /// end, the value is `e + e' x + outer_curvature x^2 / 2`, with the value `e` and the slope
+    /// `e'` at that end.
     fn evaluate(
         &self,
         term: &Term,
@@ -238,7 +238,7 @@ impl Differentiable for Underestimator<'_> {
         for (term, underestimator) in self.objective.terms.iter().zip(&self.per_term) {
             let at = self.evaluate(term, underestimator, scales);
             into.value.add(at.value);
-            // `max(0.0)`: the curvature is negative only by the rounding of the interval's ends.
+            // `max(0.0)`: the curvature is negative only because the interval's ends are rounded.
             into.add_derivatives(term, at.slope, at.curvature.max(0.0));
         }
     }

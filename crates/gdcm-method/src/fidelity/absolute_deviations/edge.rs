@@ -1,5 +1,4 @@
-//! Edges that leave a vertex: which of them lead to an equal or a smaller sum of deviations, and where
-//! they end.
+//! Edges that leave a vertex: which ones do not increase the sum of deviations, and where they end.
 //!
 //! ```text
 //! 1  slope of the sum along each edge                                                    (EdgeRates)
@@ -16,7 +15,7 @@ const FLAT: f64 = 1e-10;
 
 /// Destinations along a vertex's edges.
 pub(super) enum Neighbours {
-    /// End vertex of an edge along which the deviations decrease.
+    /// End vertex of the steepest edge along which the deviations decrease.
     Better(Vertex),
     /// End vertices of the edges along which the deviations do not change.
     Equal(Vec<Vertex>),
@@ -43,9 +42,9 @@ impl Vertex {
         Neighbours::Equal(equal)
     }
 
-    /// Returns the edges of this vertex. Each releases a constraint of the basis: a row in either
-    /// direction, a weight only upwards. Column `leaving` of the inverse basis matrix changes the
-    /// left-hand side of that constraint at rate 1, and no other in the basis.
+    /// Returns this vertex's edges. Each releases a constraint in the basis: a row in either
+    /// direction, a weight only upwards. Along column `leaving` in the inverse basis matrix, that
+    /// constraint's left-hand side changes at rate 1, and no other in the basis changes.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -87,8 +86,8 @@ impl Vertex {
 
     /// Returns the vertex along an edge at which the summed deviations stop falling.
     ///
-    /// Each row whose deviation changes sign along the edge raises the slope of the sum by twice
-    /// its rate of change; the sum stops falling where the slope is no longer negative.
+    /// Each row whose deviation changes sign along the edge raises the sum's slope by twice the
+    /// row's rate of change; the sum stops falling where the slope is no longer negative.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
         let mut crossings = Vec::new();
         for (constraint, deviation) in deviations.iter().enumerate() {
@@ -123,7 +122,7 @@ struct Edge {
     /// The released constraint's position in the vertex's basis.
     leaving: usize,
     direction: Vec<f64>,
-    /// Rate of change of the summed deviations along the edge.
+    /// Rate at which the summed deviations change along the edge.
     slope: f64,
     /// Maximum possible magnitude of `slope`.
     scale: f64,
@@ -139,12 +138,13 @@ impl Edge {
     }
 }
 
-/// Rates of change of the summed deviations along a direction and against it: a row whose deviation
-/// is zero adds `|change|` in both, another row adds its change times the sign of its deviation.
+/// Rates at which the summed deviations change along a direction and against it: a row whose
+/// deviation is zero adds `|change|` in both, another row adds its change times the sign of its
+/// deviation.
 struct EdgeRates {
     along: f64,
     against: f64,
-    /// Maximum possible magnitude of the rates.
+    /// Maximum possible magnitude for the rates.
     scale: f64,
 }
 
@@ -171,12 +171,12 @@ impl EdgeRates {
     }
 }
 
-/// Intersection of an edge and a constraint.
+/// Where an edge crosses a constraint.
 struct Crossing {
     constraint: usize,
     /// Distance along the edge.
     step: f64,
-    /// Half the change of the edge's slope at this intersection.
+    /// Half the change in the edge's slope at this crossing.
     change: f64,
 }
 
@@ -190,8 +190,8 @@ impl Crossing {
 }
 
 /// Returns the constraint at the first crossing along an edge at which the slope has risen by at
-/// least `rise`, the sum of twice the changes up to there: a weighted median, found by bisection
-/// rather than by sorting.
+/// least `rise` (the slope rises by twice `change` at each crossing): a weighted median, found by
+/// bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
     // `candidates` contains the crossing; the slope has risen by `risen` before them.
     let mut candidates = crossings.as_mut_slice();

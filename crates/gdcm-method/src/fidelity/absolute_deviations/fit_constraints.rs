@@ -1,16 +1,16 @@
-//! The constraints of a fit, their deviations, and the sums of the deviations.
+//! Constraints in a fit, their deviations, and the sums over the deviations.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Deviations and weights below this count as zero; the right-hand sides are scaled to at most 1.
 pub(super) const ZERO: f64 = 1e-11;
 
-/// The constraints of a fit: `x_i w = y_i` (the rows), then `w_k = 0` (the weights), counted in
+/// The constraints in a fit: `x_i w = y_i` (the rows), then `w_k = 0` (the weights), counted in
 /// this order.
 pub(super) struct Fit<'a> {
     /// The rows `x_i`, row-major.
     x: Vec<f64>,
-    /// Number of weights.
+    /// Weight count.
     pub(super) unknowns: usize,
     pub(super) y: &'a [f64],
 }
@@ -25,7 +25,7 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// Returns the number of constraints.
+    /// Returns the constraint count.
     pub(super) fn count(&self) -> usize {
         self.y.len() + self.unknowns
     }
@@ -56,8 +56,8 @@ impl<'a> Fit<'a> {
         constraint >= self.y.len()
     }
 
-    /// Returns the coefficients of these constraints, a matrix row each: from `x` for a row, from
-    /// the identity for a weight.
+    /// Returns these constraints' coefficients, one matrix row each: from `x` for a row, from the
+    /// identity for a weight.
     pub(super) fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),

@@ -1,12 +1,12 @@
-//! The least-absolute-deviations fit as a linear program (step 4 of `absolute_deviations`).
+//! Solves the least-absolute-deviations fit as a linear program (step 4 in `absolute_deviations`).
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
 use super::FitError;
 
-/// Step 4: solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`,
-/// `w >= 0`. Columns: the weights `w`, then a `t` for each row. Rows: the three groups of
-/// inequalities in this order.
+/// Step 4: solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >=
+/// 0`. Columns: the weights `w`, then a `t` for each row. Rows: the three inequality groups in this
+/// order.
 pub(super) fn solve_linear_program(
     x: &[Vec<f64>],
     y: &[f64],
@@ -56,7 +56,7 @@ pub(super) fn solve_linear_program(
     }
 }
 
-/// Entries of a sparse matrix.
+/// Entries in a sparse matrix: places and values.
 #[derive(Default)]
 struct Triplets {
     rows: Vec<usize>,

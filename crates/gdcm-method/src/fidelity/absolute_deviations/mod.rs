@@ -1,9 +1,9 @@
 //! Linear least-absolute-deviations fits with non-negative weights, `min sum_i |x_i w - y_i|` over
-//! `w >= 0`, by a search over the vertices of the fit and the edges between them.
+//! `w >= 0`, by a search over the fit's vertices and the edges between them.
 //!
 //! With `n` unknowns `w_k`, the *constraints* are `x_i w = y_i` (the rows) and `w_k = 0`. `n`
 //! independent constraints, a *basis*, meet in a *vertex*; some vertex attains the minimum. An
-//! *edge* leaves a vertex in the direction in which all constraints of its basis but one remain
+//! *edge* leaves a vertex in a direction in which all but one of its basis's constraints remain
 //! satisfied; the sum is convex and piecewise linear along it.
 //!
 //! | file | content |
@@ -85,11 +85,11 @@ fn best_vertex(
     start: Vertex,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vertex, FitError> {
-    /// Maximum number of compared vertices, to limit the run time: far more than there are equally
-    /// good ones with few unknowns.
+    /// Limit on the compared vertices, to limit the run time: with few unknowns there are far fewer
+    /// equally good vertices.
     const MOST_VERTICES: usize = 300;
     let mut best = start.clone();
-    // Equally good vertices; the edges of those before `next` have been followed.
+    // Equally good vertices; the edges from those before `next` have been followed.
     let mut equal = vec![start];
     let mut next = 0;
     while next < equal.len() && equal.len() < MOST_VERTICES {

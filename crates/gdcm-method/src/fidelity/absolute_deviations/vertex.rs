@@ -1,10 +1,11 @@
-//! Vertices of a fit: the points in which as many independent constraints meet as there are unknowns.
+//! Vertices in a fit: points in which as many independent constraints meet as there are unknowns.
 
 use nalgebra::DVector;
 
 use super::fit_constraints::{Fit, ZERO};
 
-/// Smallest singular value of independent constraints, whose coefficients are of order 1.
+/// Minimum singular value above which constraints count as independent; their coefficients are
+/// around 1.
 const INDEPENDENT: f64 = 1e-6;
 
 /// A vertex: its weights, and the constraints that define it.
@@ -17,7 +18,7 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    /// Returns the vertex of the constraints that `weights` satisfies best; `None` if these
+    /// Returns the vertex defined by the constraints that `weights` satisfies best; `None` if these
     /// constraints define no vertex, or a vertex with a negative weight.
     pub(super) fn nearest(fit: &Fit<'_>, weights: &[f64]) -> Option<Self> {
         let deviations: Vec<f64> = (0..fit.count())
@@ -47,8 +48,8 @@ impl Vertex {
         }
     }
 
-    /// Returns the intersection of the constraints in a basis; `None` if they do not intersect in a
-    /// point, or at a negative weight.
+    /// Returns the point in which the constraints in a basis intersect; `None` if there is no such
+    /// point, or if a weight is negative there.
     pub(super) fn from_basis(fit: &Fit<'_>, basis: Vec<usize>) -> Option<Self> {
         let matrix = fit.matrix(&basis);
         if !matrix.is_square() {

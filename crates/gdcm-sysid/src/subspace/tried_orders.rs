@@ -35,8 +35,8 @@ pub(crate) const SPACING: f64 = 1.2;
 /// (M14.13).
 pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
 
-/// Counts a model's parameters at this order, without those that only change the state basis: `n (m
-/// + l) + m l`.
+/// Counts a model's parameters at this order, without those that only change the state basis:
+/// `n (m + l) + m l`.
 pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
     order * (inputs + outputs) + inputs * outputs
 }

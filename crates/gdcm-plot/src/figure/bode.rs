@@ -185,7 +185,7 @@ pub(super) fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band
     Band {
         range: options.in_unit(band.min(), band.max()),
         color: BAND,
-        key: "band of comparison".to_owned(),
+        key: "comparison band".to_owned(),
     }
 }
 

@@ -36,7 +36,7 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
         "corrected",
         "scheduled",
         "rejected",
-        "band of comparison",
+        "comparison band",
         "95 % band",
     ];
     assert_eq!(legend(&figure), expected);

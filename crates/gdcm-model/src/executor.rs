@@ -30,9 +30,8 @@ struct Piece<S, T> {
     result: Option<T>,
 }
 
-/// Applies a function to each argument on `executor`, and returns the results in the order of the
-/// arguments, whatever the executor does. Tasks that it does not run are completed on the caller's
-/// thread.
+/// Applies a function to each argument on `executor`, and returns the results in argument order,
+/// whatever the executor does. Tasks that it does not run are completed on the caller's thread.
 pub fn each<S: Send, T: Send>(
     executor: &dyn Executor,
     arguments: impl IntoIterator<Item = S>,

@@ -11,8 +11,7 @@
 use std::path::Path;
 
 /// Escapes control characters and invisible characters. A name with a line end, an escape sequence
-/// or a change of writing direction could garble a message or a terminal, or be mistaken for
-/// another name.
+/// or a direction change could garble a message or a terminal, or be mistaken for another name.
 pub fn sanitized(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -48,10 +47,9 @@ pub fn quoted(text: &str) -> String {
 
 /// Shortens a message, and each of its words, by replacing the middle with an ellipsis.
 pub fn shortened_message(text: &str) -> String {
-    /// Maximum length \[characters\]: longer than any message of the program with sixty column
-    /// names.
+    /// Maximum length \[characters\]: longer than any program message with sixty column names.
     const LONGEST: usize = 2000;
-    /// Length of what remains at each end \[characters\].
+    /// Number of characters that remain at each end.
     const KEPT: usize = 900;
     let words: Vec<String> = text.split(' ').map(shortened_name).collect();
     without_middle(&words.join(" "), LONGEST, KEPT)
@@ -61,12 +59,12 @@ pub fn shortened_message(text: &str) -> String {
 pub fn shortened_name(text: &str) -> String {
     /// Maximum length \[characters\]: longer than most file paths.
     const LONGEST: usize = 400;
-    /// Length of what remains at each end \[characters\].
+    /// Number of characters that remain at each end.
     const KEPT: usize = 40;
     without_middle(text, LONGEST, KEPT)
 }
 
-/// Replaces the middle of a text of more than `longest` characters with an ellipsis; `kept`
+/// If a text has more than `longest` characters, replaces its middle with an ellipsis; `kept`
 /// characters remain at each end.
 fn without_middle(text: &str, longest: usize, kept: usize) -> String {
     let letters = text.chars().count();

@@ -1,4 +1,4 @@
-//! Conversion of numbers to text: the formats shared by messages, files, plots and the window.
+//! Converts numbers to text: the formats shared by messages, files, plots and the window.
 //!
 //! Text for messages, files and tables in a terminal uses a hyphen as minus sign; text in plots,
 //! windows and sentences uses a true minus sign.
@@ -25,7 +25,7 @@
 /// The true minus sign, which is as wide as a plus sign.
 const MINUS: char = '\u{2212}';
 
-/// Sign of a missing value in tables and lists.
+/// Mark for a missing value in tables and lists.
 pub const NO_VALUE: &str = "–";
 
 /// Formats a number for a message: the shortest text that parses to the same number. A very large
@@ -57,7 +57,7 @@ pub fn six_digits(value: f64) -> String {
     number(rounded)
 }
 
-/// Removes the sign of a formatted zero: "0.0" for "-0.0"; any other text is unchanged.
+/// Removes the sign from a formatted zero: "0.0" for "-0.0"; any other text is unchanged.
 pub fn without_sign_of_zero(text: &str) -> &str {
     let Some(digits) = text.strip_prefix(['-', MINUS]) else {
         return text;
@@ -67,7 +67,7 @@ pub fn without_sign_of_zero(text: &str) -> &str {
 }
 
 /// Formats a value with the given number of decimals. A nonzero value that is smaller than one unit
-/// of the last decimal is given two significant digits instead.
+/// in the last decimal gets two significant digits instead.
 pub fn telling(value: f64, decimals: usize) -> String {
     /// Maximum number of decimals; beyond it, the exponent form is shorter.
     const MOST: i32 = 6;
@@ -85,7 +85,7 @@ pub fn telling(value: f64, decimals: usize) -> String {
 /// Formats two values with the given number of decimals, or with as many more as needed to
 /// distinguish them; equal values keep the given number.
 pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
-    /// Maximum number of decimals: all that an `f64` near 1 has.
+    /// Maximum number of decimals: as many as an `f64` near 1 has.
     const MOST: usize = 15;
     let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
     let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
@@ -138,7 +138,7 @@ pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
 
 /// Formats a real number, or a number and its complex conjugate: "−2.54 ± j1.26". The j comes
 /// before the imaginary part, because "−2.54 ± 1.26j" reads like a value with its error. Each part
-/// has the decimals of [`telling`].
+/// has as many decimals as [`telling`] gives it.
 pub fn conjugate_pair(re: f64, im: f64, decimals: usize) -> String {
     let real = telling(re, decimals);
     let real = with_minus_sign(without_sign_of_zero(&real));

@@ -1,4 +1,4 @@
-//! Progress and cancellation of long computations.
+//! Progress and cancellation for long computations.
 //!
 //! A computation reports to a [`Progress`], which its caller provides. If it consists of several
 //! parts, [`Shares`] adds up their shares of the whole, and a [`Portion`] is the [`Progress`] of a
@@ -8,8 +8,8 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::dataset::StateSpace;
 
-/// Receives the progress of a computation, and can cancel it. Its methods may be called from
-/// several threads.
+/// Receives a computation's progress, and can cancel it. Its methods may be called from several
+/// threads.
 pub trait Progress: Sync {
     /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
@@ -37,12 +37,12 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Error of a computation that was cancelled.
+/// Error from a computation that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]
 pub struct Cancelled;
 
-/// Progress of a computation that is split into shares, which may be completed in any order; the
+/// Progress for a computation that is split into shares, which may be completed in any order; the
 /// reported total never decreases.
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
@@ -51,7 +51,7 @@ pub struct Shares<'a> {
 }
 
 impl<'a> Shares<'a> {
-    /// Creates the progress of a computation that has just begun.
+    /// Creates the progress for a computation that has just begun.
     pub fn new(progress: &'a dyn Progress) -> Self {
         Self {
             progress,
@@ -59,7 +59,7 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// Returns the receiver of the progress.
+    /// Returns the progress receiver.
     pub fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
@@ -103,7 +103,7 @@ pub struct Portion<'a> {
     whole: &'a Shares<'a>,
     /// Share of the whole that this part amounts to, 0 to 1.
     share: f64,
-    /// Name of the step under which the part is reported.
+    /// Step name under which the part is reported.
     name: &'static str,
     /// Share reported so far, 0 to `share`.
     reported: Mutex<f64>,

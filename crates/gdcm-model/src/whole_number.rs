@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error, Unexpected, Visitor};
 /// Integer types that can be deserialised from a whole number. All are read through `i64`, so that a
 /// larger number is rejected.
 pub trait WholeNumber: TryFrom<i64> {
-    /// Description of the expected value, for error messages.
+    /// Expected value in words, for error messages.
     const EXPECTED: &'static str;
 }
 

@@ -1,12 +1,11 @@
-//! Execution of an analysis: executor, progress and cancellation.
+//! Executes an analysis: executor, progress and cancellation.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 
-/// Runs the pieces of work of an analysis, checks for cancellation between them, and reports
-/// progress.
+/// Runs an analysis's pieces of work, checks for cancellation between them, and reports progress.
 pub struct Execution<'a> {
     executor: &'a dyn Executor,
     progress: &'a dyn Progress,
@@ -15,7 +14,7 @@ pub struct Execution<'a> {
 }
 
 impl<'a> Execution<'a> {
-    /// Creates the execution of an analysis with `total` steps.
+    /// Creates the execution for an analysis with `total` steps.
     pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
         Self {
             executor,

@@ -1,4 +1,4 @@
-//! Draft of the dataset, assembled from the models with a condition and a role: its channels and
+//! Dataset draft, assembled from the models with a condition and a role: its channels and
 //! conditions. Their models are built in `assembled_models.rs`, their flight records in
 //! `assembled_records.rs`.
 
@@ -15,7 +15,7 @@ use crate::dataset::{Channel, ConditionId};
 use crate::names::{ChannelRule, RowRole};
 use crate::number_format::number;
 
-/// Builds the draft of a dataset. Models that are left out, or that have no condition or role, are
+/// Builds a dataset draft. Models that are left out, or that have no condition or role, are
 /// skipped.
 pub(super) fn dataset_draft(rules: &Rules, parts: &[Part]) -> DatasetDraft {
     let mut conditions = Vec::new();
@@ -42,7 +42,7 @@ fn dataset_channels(rules: &[ChannelRule]) -> Vec<Channel> {
         .collect()
 }
 
-/// Builds the draft of a condition from its models.
+/// Builds a condition's draft from its models.
 fn condition_draft(id: i64, parts: &[&Part], rules: &Rules) -> ConditionDraft {
     let mut physics = Vec::new();
     let mut identified = Vec::new();
@@ -70,7 +70,7 @@ fn condition_draft(id: i64, parts: &[&Part], rules: &Rules) -> ConditionDraft {
     }
 }
 
-/// Returns the flight state of a condition; each value is taken from the first model that gives it.
+/// Returns a condition's flight state; each value is taken from the first model that gives it.
 fn flight_state(id: i64, parts: &[&Part]) -> FlightState {
     let mut rows = parts.iter().map(|part| &part.row);
     let airspeed_kt = rows.clone().find_map(|row| row.airspeed_kt);
@@ -87,7 +87,7 @@ fn flight_state(id: i64, parts: &[&Part]) -> FlightState {
     state
 }
 
-/// Returns the name of a condition: "45 kt, high altitude, low weight", "60 kt, 2000 ft, 6600 kg".
+/// Returns a condition's name: "45 kt, high altitude, low weight", "60 kt, 2000 ft, 6600 kg".
 fn condition_name(state: &FlightState) -> String {
     let mut name = format!("{} kt", number(state.airspeed_kt));
     if let Some(altitude) = &state.altitude {

@@ -1,4 +1,4 @@
-//! Models of the dataset's draft, converted to the dataset's channels and units, with notes on the
+//! Models in the dataset draft, converted to the dataset's channels and units, with notes on the
 //! conversions.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,8 +13,8 @@ use crate::dataset::physics_parameter::MovedParameters;
 use crate::names::RowRole;
 use crate::number_format::number;
 
-/// Builds a physics model, or a run with a moved parameter. Coordinates that are perturbed only in other models of the bundle get a
-/// zero offset.
+/// Builds a physics model, or a run with a moved parameter. Coordinates that are perturbed only in
+/// the bundle's other models get a zero offset.
 pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let mut offsets = BTreeMap::new();
     for coordinate in coordinates {
@@ -65,8 +65,8 @@ pub(super) fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraf
     models
 }
 
-/// Returns the origin of an identified model. Only a measured response keeps a stated order: the
-/// order of a model with matrices is its state count.
+/// Returns an identified model's origin. Only a measured response keeps a stated order: with
+/// matrices, the order is the state count.
 fn identified_origin(part: &Part) -> Origin {
     let order = match &part.found.draft.origin {
         Origin::Identified { order, .. } if part.found.response().is_some() => *order,
@@ -105,8 +105,8 @@ fn converted_model(part: &Part) -> ModelDraft {
     model
 }
 
-/// Returns the existing note of the model's provenance, then the notes on its channels, sample time
-/// and unit conversions.
+/// Returns the existing note from the model's provenance, then the notes on its channels, sample
+/// time and unit conversions.
 fn conversion_notes(part: &Part) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(source) = &part.found.draft.source {

@@ -1,4 +1,4 @@
-//! Flight records of a condition, collected from the files of its models.
+//! A condition's flight records, collected from its models' files.
 
 use super::part::Part;
 use crate::dataset::condition::ConditionRecord;

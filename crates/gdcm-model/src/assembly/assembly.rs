@@ -52,7 +52,7 @@ impl Assembly {
         }
     }
 
-    /// Returns the assembly of the same models under other rules.
+    /// Assembles the same models under other rules.
     pub fn with_rules(&self, rules: Rules) -> Self {
         let models = self.parts.iter().map(|part| part.found.clone()).collect();
         Self::new(models, rules)
@@ -73,7 +73,7 @@ impl Assembly {
         &self.problems
     }
 
-    /// Returns the dataset, or `None` while there are problems. Relative file names of models and
+    /// Returns the dataset, or `None` while there are problems. Relative file names for models and
     /// flight records are prefixed with `folder`, the path from the dataset's folder to the files.
     pub fn dataset(&self, folder: &str) -> Option<Dataset> {
         if !self.problems.is_empty() {

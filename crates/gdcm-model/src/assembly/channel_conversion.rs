@@ -1,4 +1,4 @@
-//! Conversion of a model to the dataset's channels, order and units.
+//! Converts a model to the dataset's channels, order and units.
 
 use nalgebra::DMatrix;
 
@@ -6,14 +6,14 @@ use super::channel_match::ChannelUse;
 use crate::dataset::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::state_space::Timing;
 
-/// File channels of a model, one entry per dataset channel; `None` if the model lacks the channel.
+/// A model's file channels, one entry per dataset channel; `None` if the model lacks the channel.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelUses<'u> {
     pub inputs: &'u [Option<ChannelUse>],
     pub outputs: &'u [Option<ChannelUse>],
 }
 
-/// Whether the values of a table are multiplied by the unit factors of the channels.
+/// Whether table values are multiplied by the channels' unit factors.
 #[derive(Clone, Copy, PartialEq)]
 enum Scaling {
     Converted,
@@ -21,7 +21,7 @@ enum Scaling {
 }
 
 /// Converts a model to the dataset's channels: `H'_oi = f_o H_oi / f_i` with the unit factors `f`
-/// of output `o` and input `i`. Values whose factors are 1 are copied bit for bit; a missing
+/// for output `o` and input `i`. Values whose factors are 1 are copied bit for bit; a missing
 /// channel gives a zero response.
 pub(super) fn convert_model(model: &ModelDraft, uses: ChannelUses<'_>) -> ModelDraft {
     let [a, b, c, d] = &model.matrices;
@@ -50,7 +50,7 @@ pub(super) fn convert_model(model: &ModelDraft, uses: ChannelUses<'_>) -> ModelD
 
 fn convert_response(response: &ResponseDraft, uses: ChannelUses<'_>) -> ResponseDraft {
     let is_complete = uses.inputs.iter().chain(uses.outputs).all(Option::is_some);
-    // The values of an unmeasured response are zero; its empty valid band excludes them.
+    // An unmeasured response has zero values; its empty valid band excludes them.
     let valid_bands = if is_complete {
         response.valid_bands.clone()
     } else {
@@ -69,8 +69,8 @@ fn convert_response(response: &ResponseDraft, uses: ChannelUses<'_>) -> Response
     }
 }
 
-/// Returns the valid bands of a response \[rad/s\]; without valid bands, the band from 0 to the
-/// last frequency for each response.
+/// Returns a response's valid bands \[rad/s\]; without valid bands, the band from 0 to the last
+/// frequency for each response.
 pub(super) fn bands_or_full_range(response: &ResponseDraft) -> ResponseArray {
     if let Some(bands) = &response.valid_bands {
         return bands.clone();
@@ -97,7 +97,7 @@ fn convert_timing(timing: &Timing, uses: ChannelUses<'_>) -> Timing {
     }
 }
 
-/// Returns the delays \[s\] of the dataset's channels; zero for a missing channel.
+/// Returns the delays for the dataset's channels \[s\]; zero for a missing channel.
 fn pick_delays(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
     let mut picked = Vec::with_capacity(uses.len());
     for used in uses {
@@ -152,7 +152,7 @@ fn pick_table(array: &ResponseArray, uses: ChannelUses<'_>, scaling: Scaling) ->
                 (Some(output), Some(input))
                     if output.index < output_count && input.index < input_count =>
                 {
-                    // The last index runs fastest: `count` values of each response.
+                    // The last index runs fastest: `count` values for each response.
                     let start = (output.index * input_count + input.index) * count;
                     let known = &array.values[start..start + count];
                     match scaling {

@@ -1,4 +1,4 @@
-//! Matching of file channels to dataset channels, and the factors between them.
+//! Matches file channels to dataset channels, and determines the factors between them.
 
 use super::channel_note::ChannelNote;
 use super::declarations::ModelDeclarations;
@@ -14,16 +14,15 @@ use crate::units::physical_unit::conversion_factor;
 /// A file channel matched to a dataset channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelUse {
-    /// Index of the channel in the file.
+    /// The channel's index in the file.
     pub index: usize,
     /// Dataset units per file unit; negative if the file has the opposite sign.
     pub factor: f64,
-    /// Description of the conversion ("rad/s → deg/s") or of an assumed unit; `None` if neither
-    /// applies.
+    /// The conversion ("rad/s → deg/s") or an assumed unit, in words; `None` if neither applies.
     pub words: Option<String>,
 }
 
-/// The matched inputs or outputs of a model, in the dataset's order.
+/// A model's matched inputs or outputs, in the dataset's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelMatch {
     /// One entry per dataset channel; `None` if the model lacks the channel.
@@ -36,7 +35,7 @@ pub struct ChannelMatch {
     pub by_position: bool,
 }
 
-/// Inputs for matching one side, the inputs or the outputs, of a model.
+/// Data for matching one side of a model, its inputs or its outputs.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelMatcher<'a> {
     pub side: ChannelSide,
@@ -50,7 +49,7 @@ pub(super) struct ChannelMatcher<'a> {
 }
 
 impl ChannelMatcher<'_> {
-    /// Matches the channels of one side.
+    /// Matches the channels on one side.
     ///
     /// 1. If the file names no channel, match by position; the counts must agree.
     /// 2. Find the file channel for each dataset channel.
@@ -151,7 +150,7 @@ impl ChannelMatcher<'_> {
         Vec::new()
     }
 
-    /// Lists the names of file channels; "none" if they have no names.
+    /// Lists file channel names; "none" if they have no names.
     fn list_names(&self, indices: &[usize]) -> String {
         let names: Vec<&str> = indices
             .iter()
@@ -290,7 +289,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the problem of a measured response without any dataset channel on this side.
+    /// Returns the problem that a measured response has no dataset channel on this side.
     fn unmatched(&self) -> ProblemKind {
         let found: Vec<&str> = self
             .labels

@@ -1,8 +1,8 @@
-//! Notes on the channels of a file.
+//! Notes on a file's channels.
 
 use crate::dataset::channel::ChannelSide;
 
-/// Note on the channels of a file, for the engineer to review.
+/// Note on a file's channels, for the engineer to review.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelNote {
     /// The rules declare another unit than the file.
@@ -13,7 +13,7 @@ pub enum ChannelNote {
         /// Unit in the file.
         found: String,
     },
-    /// Channels of the file match no channel of the dataset.
+    /// File channels match no dataset channel.
     #[error("{side}s in the file but not in the dataset: {}", names.join(", "))]
     NotInDataset {
         side: ChannelSide,

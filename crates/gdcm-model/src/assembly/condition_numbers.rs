@@ -1,4 +1,4 @@
-//! Numbers of conditions that neither files nor names give: by flight point, or by folder.
+//! Assigns condition numbers that neither files nor names give: by flight point, or by folder.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::found_model::{FoundModel, path_without_extension};
 use super::row::Row;
 
-/// Numbers the conditions: one per flight point if any file holds models at several airspeeds,
+/// Numbers the conditions: one per flight point if any file contains models at several airspeeds,
 /// otherwise one per folder in alphabetical order.
 pub(super) fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     let files: BTreeSet<&str> = models.iter().map(FoundModel::file).collect();
@@ -29,7 +29,7 @@ fn number_folders(models: &[FoundModel], rows: &mut [Row]) {
     }
 }
 
-/// Returns the folder of a model's file; empty if the path has no folder.
+/// Returns the folder that contains a model's file; empty if the path has no folder.
 fn folder(model: &FoundModel) -> String {
     match path_without_extension(model.file()).rsplit_once('/') {
         Some((folder, _)) => folder.to_owned(),
@@ -62,7 +62,7 @@ fn flight_point(row: &Row) -> Option<[f64; 3]> {
     ])
 }
 
-/// Returns whether a file holds models at several airspeeds, and thus several conditions.
+/// Returns whether a file contains models at several airspeeds, and thus several conditions.
 pub(super) fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
     let mut airspeeds = models
         .iter()

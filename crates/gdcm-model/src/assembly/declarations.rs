@@ -11,7 +11,7 @@ use super::file_scope::FileScope;
 use super::found_model::FoundModel;
 use crate::names::RowRole;
 
-/// A factor between units without a fixed ratio, such as inches of stick travel and percent.
+/// A factor between units without a fixed ratio, such as stick travel in inches and in percent.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct UnitRule {
     pub channel: String,
@@ -20,10 +20,10 @@ pub struct UnitRule {
     pub factor: f64,
 }
 
-/// Sign factors of channels, 1 or -1, by dataset name.
+/// Channel sign factors, 1 or -1, by dataset name.
 pub type Signs = BTreeMap<String, f64>;
 
-/// Units, factors and signs of channels, by dataset name; they override the files.
+/// Channel units, factors and signs, by dataset name; they override the files.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default)]
 pub struct ChannelDeclarations {
@@ -39,7 +39,7 @@ pub struct ChannelDeclarations {
 
 impl ChannelDeclarations {
     /// Adds the declarations in `other`, which override existing ones. A unit replaces an earlier
-    /// factor of the same channel, and a factor an earlier unit.
+    /// factor for the same channel, and a factor an earlier unit.
     pub fn override_by(&mut self, other: &Self) {
         for (channel, unit) in &other.units {
             self.factors.remove(channel);
@@ -79,8 +79,7 @@ pub struct ScopedDeclarations {
 }
 
 /// Returns the declarations that apply to a model, in ascending precedence: from wide to narrow
-/// scopes, and in the order of declaration within equal scopes. Later entries override earlier
-/// ones.
+/// scopes, and in declaration order within equal scopes. Later entries override earlier ones.
 pub(super) fn applicable_declarations<'d>(
     declarations: &'d [ScopedDeclarations],
     found: &FoundModel,
@@ -94,12 +93,12 @@ pub(super) fn applicable_declarations<'d>(
     applicable
 }
 
-/// All units, factors and signs declared for the channels of a single model.
+/// All units, factors and signs declared for a single model's channels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelDeclarations<'r> {
     /// Factors between units without a fixed ratio.
     pub conversions: &'r [UnitRule],
-    /// Merged declarations of all scopes that include the model.
+    /// Merged declarations from all scopes that include the model.
     pub channels: ChannelDeclarations,
 }
 

@@ -18,7 +18,7 @@ pub enum FileScope {
     Physics,
     /// `identified`: identified models and measured responses.
     Identified,
-    /// One file, one model of a file (`file#variable`), or a pattern: `flight_*`, `c03/*`.
+    /// One file, one model in a file (`file#variable`), or a pattern: `flight_*`, `c03/*`.
     Files(String),
 }
 

@@ -6,7 +6,7 @@ use crate::dataset::condition::ConditionRecord;
 use crate::dataset::dataset_draft::{ModelDraft, ResponseDraft};
 use crate::number_format::counted;
 
-/// Name and unit of a channel in a file; `None` if the file does not give them.
+/// A channel's name and unit in a file; `None` if the file does not give them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelLabel {
     pub name: Option<String>,
@@ -49,12 +49,12 @@ pub struct FoundModel {
     pub inputs: Vec<ChannelLabel>,
     pub outputs: Vec<ChannelLabel>,
     pub facts: Facts,
-    /// Notes on how the model was recognised, and on skipped parts of the file.
+    /// Notes on how the model was recognised, and on skipped parts in the file.
     pub notes: Vec<String>,
 }
 
 impl FoundModel {
-    /// Returns the path of the source file; empty if the model has no source file.
+    /// Returns the source file's path; empty if the model has no source file.
     pub fn file(&self) -> &str {
         self.draft
             .source
@@ -63,8 +63,7 @@ impl FoundModel {
             .unwrap_or_default()
     }
 
-    /// Returns the name of the variable in the file; empty if the file holds a single unnamed
-    /// model.
+    /// Returns the variable's name in the file; empty if the file contains a single unnamed model.
     pub fn variable(&self) -> &str {
         self.draft
             .source
@@ -106,7 +105,7 @@ impl FoundModel {
     }
 }
 
-/// Returns the path with forward slashes and without its extension; of "x.mat.gz", both extensions
+/// Returns the path with forward slashes and without its extension; for "x.mat.gz", both extensions
 /// are removed.
 pub(super) fn path_without_extension(file: &str) -> String {
     let file = file.replace('\\', "/");

@@ -1,11 +1,11 @@
-//! Channel names of a single measured response, completed from its variable name or file name.
+//! Completes a single measured response's channel names from its variable name or file name.
 
 use super::found_model::{ChannelLabel, FoundModel, path_without_extension};
 use crate::names::response_name::ResponseNameError;
 use crate::names::{KnownChannels, ResponseName};
 
 impl FoundModel {
-    /// Returns the channel names. Missing names of a single measured response are taken from the
+    /// Returns the channel names. For a single measured response, missing names are taken from the
     /// variable name, or else from the file name, as far as these contain `known` channel names.
     pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
         let mut named = NamedLabels {
@@ -44,7 +44,7 @@ impl FoundModel {
     }
 }
 
-/// Channel names of a model, completed from its variable or file name.
+/// A model's channel names, completed from its variable or file name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedLabels {
     /// Inputs and outputs.
@@ -54,7 +54,7 @@ pub struct NamedLabels {
     pub ambiguous: Option<AmbiguousName>,
 }
 
-/// A variable or file name from which the channels of a response cannot be determined.
+/// A variable or file name from which a response's channels cannot be determined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmbiguousName {
     pub name: String,

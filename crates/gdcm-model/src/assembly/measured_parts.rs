@@ -1,5 +1,5 @@
-//! Joining of measured responses from several files into a single model. A measured model consists
-//! of one or more parts ([`Part`]), which have the same name and together give its responses.
+//! Joins measured responses from several files into a single model. A measured model consists of
+//! one or more parts ([`Part`]), which have the same name and together give its responses.
 
 use std::ops::Range;
 
@@ -9,10 +9,10 @@ use super::rules::Rules;
 use crate::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::model::Provenance;
 
-/// Valid band of an unmeasured response \[rad/s\]: an empty band.
+/// Valid band for an unmeasured response \[rad/s\]: an empty band.
 const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
 
-/// Adds those responses of a part that the measured model lacks, and extends its provenance.
+/// Adds a part's responses that the measured model lacks, and extends the model's provenance.
 pub(super) fn join_part(model: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     let Some(joined) = &mut model.response else {
         return;
@@ -35,7 +35,7 @@ fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
     let new_bands = bands_or_full_range(response);
     let mut bands = bands_or_full_range(joined);
     // `place` numbers the responses row by row: output times input count plus input. Each has two
-    // ends of a band, and `count` values.
+    // band ends, and `count` values.
     for place in 0..joined.re.shape[0] * joined.re.shape[1] {
         let band = 2 * place..2 * place + 2;
         let is_new = new_bands.values[band.clone()] != NOT_MEASURED;
@@ -100,7 +100,7 @@ pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     }
 }
 
-/// Appends to the note of a provenance, separated by a semicolon.
+/// Appends to a provenance's note, separated by a semicolon.
 fn append_note(source: &mut Provenance, text: &str) {
     source.note = Some(match source.note.take() {
         Some(note) => format!("{note}; {text}"),

@@ -1,4 +1,4 @@
-//! Assembly of many model files into one dataset: roles, channel matches and units.
+//! Assembles many model files into one dataset: roles, channel matches and units.
 //!
 //! ```text
 //! files -> found models (in gdcm-io)

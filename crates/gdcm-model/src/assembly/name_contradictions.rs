@@ -14,8 +14,8 @@ const AIRSPEED_TOLERANCE_KT: f64 = 1.0;
 const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Compares the values in a file with the rounded values in its name and folder names. If a file
-/// holds models at several airspeeds, only trim offsets are compared, because the other values in
-/// the names cannot apply to all its models.
+/// contains models at several airspeeds, only trim offsets are compared, because the other values
+/// in the names cannot apply to all its models.
 pub(super) fn name_contradictions(
     model: &FoundModel,
     models: &[FoundModel],
@@ -56,9 +56,9 @@ pub(super) fn name_contradictions(
     contradictions
 }
 
-/// A quantity as given by a file, and as given by the name of the file.
+/// A quantity as given by a file, and as given by the file's name.
 struct Comparison {
-    /// Key of the quantity in the rules.
+    /// The quantity's key in the rules.
     field: String,
     of_file: Option<f64>,
     of_name: Option<f64>,

@@ -1,9 +1,9 @@
-//! Agreement between the names of channels in files and those of dataset channels.
+//! Agreement between channel names in files and in the dataset.
 
 use crate::names::channel_alias::same_channel;
 use crate::names::{ChannelRule, SignedName};
 
-/// Agreement between a name in a file and the name or an alias of a dataset channel.
+/// Agreement between a name in a file and a dataset channel's name or alias.
 #[derive(Clone, Copy)]
 pub(super) enum Likeness {
     /// Same as the channel's name.

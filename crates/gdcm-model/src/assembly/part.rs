@@ -1,4 +1,4 @@
-//! A part of the dataset: a model with its place in the dataset and its channels matched.
+//! A dataset part: a model with its place in the dataset and its channels matched.
 
 use super::channel_match::{ChannelMatch, ChannelMatcher};
 use super::found_model::{ChannelLabel, FoundModel};
@@ -14,7 +14,7 @@ use crate::names::KnownChannels;
 pub struct Part {
     pub found: FoundModel,
     pub row: Row,
-    /// Labels of inputs and outputs, with names from the rules, the file, or the file's name.
+    /// Input and output labels, with names from the rules, the file, or the file's name.
     pub labels: [Vec<ChannelLabel>; 2],
     pub inputs: ChannelMatch,
     pub outputs: ChannelMatch,
@@ -110,7 +110,7 @@ fn rename_labels(labels: &mut [ChannelLabel], names: Option<&[String]>) {
     }
 }
 
-/// Returns the problem if the count of names in the rules differs from the model's channel count.
+/// Returns the problem if the name count in the rules differs from the model's channel count.
 fn name_count_problem(
     matcher: &ChannelMatcher<'_>,
     names: Option<&[String]>,

@@ -1,4 +1,4 @@
-//! Patterns for paths of files, with the wildcards `*` and `?`; not the patterns that read values from
+//! Patterns for file paths, with the wildcards `*` and `?`; not the patterns that read values from
 //! names (`names/name_pattern.rs`).
 
 /// Returns whether a pattern matches a file or one of its parent folders. `*` matches any
@@ -15,7 +15,7 @@ pub(super) fn matches_path(pattern: &str, file: &str) -> bool {
         .all(|part| names.next().is_some_and(|name| matches_name(part, name)))
 }
 
-/// Position of a star in the pattern, and of the first letter of the name that it does not cover
+/// Position of a star in the pattern, and of the first letter in the name that it does not cover
 /// yet.
 struct Star {
     in_pattern: usize,

@@ -10,7 +10,7 @@ use crate::dataset::channel::ChannelSide;
 pub struct PositionCaution {
     /// Inputs, outputs or both.
     pub sides: Vec<ChannelSide>,
-    /// Indices of the models in [`Assembly::parts`].
+    /// Model indices in [`Assembly::parts`].
     pub parts: Vec<usize>,
 }
 
@@ -42,7 +42,7 @@ impl Assembly {
         cautions
     }
 
-    /// Describes a caution: which channels were assumed, and up to three of the model files.
+    /// Describes a caution: which channels were assumed, and up to three model files.
     pub fn caution_words(&self, caution: &PositionCaution) -> String {
         const MOST_FILES: usize = 3;
         let mut files: Vec<String> = Vec::new();

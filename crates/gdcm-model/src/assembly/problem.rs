@@ -48,7 +48,7 @@ pub enum ProblemKind {
     )]
     Sign {
         channel: String,
-        /// Name of the channel in the file.
+        /// Channel name in the file.
         found: String,
     },
     /// Model that looks discrete-time but has no sample time.
@@ -128,7 +128,7 @@ pub enum ProblemKind {
         side: ChannelSide,
         /// Number of names in the rules.
         given: usize,
-        /// Number of channels of the model.
+        /// The model's channel count.
         found: usize,
     },
     #[error("choose its condition")]
@@ -145,7 +145,7 @@ pub enum ProblemKind {
         first: String,
         second: String,
     },
-    /// The values in a file contradict its name or the names of its folders.
+    /// The values in a file contradict its name or its folders' names.
     #[error(
         "its {field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{field}\" \
          under \"models\" in the rules)", number(*of_file), number(*of_name)
@@ -166,10 +166,10 @@ pub enum ProblemKind {
         bundle: &'static str,
         name: String,
     },
-    /// Measured data given the role of a physics model, which needs matrices.
+    /// Measured data with the role of a physics model, which needs matrices.
     #[error("a {} model needs matrices; this is measured data", .0.word())]
     MeasuredPhysics(RowRole),
-    /// Measured parts of one model with different frequency grids.
+    /// One model's measured parts have different frequency grids.
     #[error(
         "measured responses of one model must be at the same frequencies; {first} has {first_grid} and {second} has {second_grid}. Estimate \
          them at the same frequencies, or rename one to make it a separate model"
@@ -180,12 +180,12 @@ pub enum ProblemKind {
         second: String,
         second_grid: GridSpan,
     },
-    /// Fault found by the final check of the dataset.
+    /// Fault found in the final dataset check.
     #[error("{0}")]
     Dataset(String),
 }
 
-/// Size and range of a frequency grid.
+/// Frequency grid size and range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridSpan {
     pub count: usize,
@@ -274,7 +274,7 @@ impl ProblemKind {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Question {
     pub channel: String,
-    /// Name of the option: "--sign".
+    /// Option name: "--sign".
     option: &'static str,
     /// Example or placeholder for the option's value: "-1", "UNIT".
     value: &'static str,
@@ -283,7 +283,7 @@ pub(super) struct Question {
 /// A missing or contradictory fact, and the model to which it belongs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// Model index; `None` for a problem of the whole dataset.
+    /// Model index; `None` for a problem with the whole dataset.
     pub part: Option<usize>,
     pub kind: ProblemKind,
     /// Models to which the option's value applies; `None` if no command-line option settles the
@@ -292,7 +292,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Creates a problem of the whole dataset.
+    /// Creates a problem with the whole dataset.
     pub fn in_dataset(kind: ProblemKind) -> Self {
         Self {
             part: None,
@@ -301,7 +301,7 @@ impl Problem {
         }
     }
 
-    /// Creates a problem of the model with index `part`.
+    /// Creates a problem with the model at index `part`.
     pub fn in_part(part: usize, kind: ProblemKind) -> Self {
         Self {
             part: Some(part),
@@ -310,9 +310,9 @@ impl Problem {
         }
     }
 
-    /// Returns the option of `gdcm assemble` that settles the problem in all models of its scope:
-    /// "--sign NZ=-1:identified". The value is quoted if a shell requires it; `None` if no option
-    /// applies.
+    /// Returns the option of `gdcm assemble` that settles the problem in all models within its
+    /// scope: "--sign NZ=-1:identified". The value is quoted if a shell requires it; `None` if no
+    /// option applies.
     pub fn option(&self) -> Option<String> {
         let question = self.kind.question()?;
         let scope = self.scope.as_ref()?;

@@ -1,14 +1,14 @@
-//! Descriptions of the problems of an assembly, one line for each distinct problem.
+//! Describes an assembly's problems, one line for each distinct problem.
 
 use super::assembly::Assembly;
 use super::problem::Problem;
 
-/// A description of a problem, with the model to which it belongs.
+/// A problem in words, with the model to which it belongs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProblemLine {
-    /// Index of the first model with the problem; `None` for a problem of the whole dataset.
+    /// Index of the first model with the problem; `None` for a problem with the whole dataset.
     pub part: Option<usize>,
-    /// Stable code of the problem.
+    /// The problem's stable code.
     pub code: &'static str,
     pub text: String,
 }
@@ -29,7 +29,7 @@ impl Assembly {
     }
 
     /// Lists the problems. A problem shared by several models appears once, with its first model
-    /// and the count of other models.
+    /// and how many others share it.
     pub fn problem_lines(&self) -> Vec<ProblemLine> {
         let mut distinct: Vec<SharedProblem<'_>> = Vec::new();
         for problem in self.problems() {
@@ -62,7 +62,7 @@ impl Assembly {
     }
 }
 
-/// A problem and the count of other models with the same problem.
+/// A problem and how many other models share it.
 struct SharedProblem<'p> {
     first: &'p Problem,
     others: usize,

@@ -10,8 +10,7 @@ use super::rules::Rules;
 use crate::names::RowRole;
 use crate::number_format::number;
 
-/// Returns a problem for each missing list of channels, and for each dataset channel without a
-/// unit.
+/// Returns a problem for each missing channel list, and for each dataset channel without a unit.
 pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (side, channels) in [("inputs", &rules.inputs), ("outputs", &rules.outputs)] {
@@ -28,8 +27,7 @@ pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
     problems
 }
 
-/// Finds the problems of a model: trim offsets, contradictions with its name, missing facts,
-/// channels.
+/// Finds a model's problems: trim offsets, contradictions with its name, missing facts, channels.
 pub(super) fn part_problems(part: &Part, rules: &Rules) -> Vec<ProblemKind> {
     let rule = rules.rows.get(&part.found.key());
     let mut problems = Vec::new();
@@ -54,7 +52,7 @@ pub(super) fn part_problems(part: &Part, rules: &Rules) -> Vec<ProblemKind> {
     problems
 }
 
-/// Finds missing facts of a row, and a role or a sample time that its model contradicts.
+/// Finds missing facts in a row, and a role or a sample time that its model contradicts.
 fn row_problems(part: &Part) -> Vec<ProblemKind> {
     let mut problems = Vec::new();
     if part.row.condition.is_none() {
@@ -81,13 +79,13 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
 fn sample_time_problem(part: &Part) -> Option<ProblemKind> {
     /// Real part above which a pole is regarded as near 1.
     const NEAR: f64 = 0.5;
-    /// Maximum magnitude of a pole; above 1 to admit unstable modes.
+    /// Maximum pole magnitude; above 1 to admit unstable modes.
     const OUTSIDE: f64 = 1.05;
     let a = part.found.draft.matrices[0].as_ref()?;
     if !a.is_square() || a.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
-    // Test the trace first, which is cheap: as the sum of the poles, it is positive for such poles
+    // Test the trace first, which is cheap: it is the sum of the poles, positive for poles near 1
     // and negative for a damped continuous-time model.
     if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
         return None;
@@ -105,7 +103,7 @@ fn sample_time_problem(part: &Part) -> Option<ProblemKind> {
     }
 }
 
-/// Finds the problems of a condition; `parts` has at least one model.
+/// Finds a condition's problems; `parts` has at least one model.
 pub(super) fn condition_problems(
     condition: i64,
     parts: &[IndexedPart<'_>],
@@ -137,7 +135,7 @@ pub(super) fn condition_problems(
 /// A field of a flight condition.
 struct ConditionField {
     name: &'static str,
-    /// Formats the field of a row; `None` if the row has no value.
+    /// Formats the field in a row; `None` if the row has no value.
     text: fn(&Row) -> Option<String>,
 }
 
@@ -226,7 +224,7 @@ fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Ve
     problems
 }
 
-/// Returns the first response that a part of a measured model shares with an earlier part.
+/// Returns the first response that a measured model's part shares with an earlier part.
 fn duplicate_response(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<ProblemKind> {
     for (output, output_rule) in rules.outputs.iter().enumerate() {
         for (input, input_rule) in rules.inputs.iter().enumerate() {
@@ -247,7 +245,7 @@ fn duplicate_response(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<P
     None
 }
 
-/// Returns whether a part contains a response, given by the indices of its dataset channels.
+/// Returns whether a part contains a response, given by its dataset channel indices.
 fn measures(part: &Part, output: usize, input: usize) -> bool {
     let has_output = part.outputs.uses.get(output).is_some_and(Option::is_some);
     let has_input = part.inputs.uses.get(input).is_some_and(Option::is_some);

@@ -1,5 +1,5 @@
-//! Proposal of each model's place in the dataset (condition, role, name and trim), from the file,
-//! its name and the rules.
+//! Proposes each model's place in the dataset (condition, role, name and trim), from the file, its
+//! name and the rules.
 
 use std::collections::BTreeSet;
 
@@ -36,7 +36,7 @@ pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
     rows
 }
 
-/// Proposes a row from the contents and the name of a file; the contents take precedence.
+/// Proposes a row from a file's contents and name; the contents take precedence.
 fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row {
     let facts = &model.facts;
     let offsets = trim_offsets(&model.draft.origin);
@@ -85,7 +85,7 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     if row.role.is_none() {
         row.role = implied_role(model, &row);
     }
-    // A run is no member of the bundle, even at the nominal trim.
+    // A run does not belong to the bundle, even at the nominal trim.
     if row.parameter.is_some() && row.role == Some(RowRole::Nominal) {
         row.role = Some(RowRole::Perturbed);
     }
@@ -95,8 +95,8 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     row
 }
 
-/// Returns the role of a physics model stated in its file; `None` if the file does not state it.
-/// The origin "perturbed" is also the default, and counts only in a file of this program.
+/// Returns a physics model's role as stated in its file; `None` if the file does not state it. The
+/// origin "perturbed" is also the default, and counts only in this program's own files.
 fn file_role(model: &FoundModel) -> Option<RowRole> {
     match &model.draft.origin {
         Origin::Nominal { .. } => Some(RowRole::Nominal),
@@ -119,8 +119,8 @@ fn implied_role(model: &FoundModel, row: &Row) -> Option<RowRole> {
     None
 }
 
-/// Returns the default name of a model: "measured" for a part of a measured model; otherwise the
-/// name in the file, the variable if the file has several models, or the file name.
+/// Returns a model's default name: "measured" for a part of a measured model; otherwise the name in
+/// the file, the variable if the file has several models, or the file name.
 fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: &str) -> String {
     let is_part =
         model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();

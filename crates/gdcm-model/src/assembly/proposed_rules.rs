@@ -34,7 +34,7 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     }
 }
 
-/// Returns the dataset's name for a channel under any of its aliases.
+/// Returns the dataset's name for a channel given by any alias.
 fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
     let channel = channels
         .iter()
@@ -139,7 +139,7 @@ fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<Cha
     channels
 }
 
-/// The units of a channel, each with the files that use it.
+/// A channel's units, each with the files that use it.
 #[derive(Default)]
 struct UnitCounts<'m> {
     units: Vec<UnitFiles<'m>>,
@@ -165,8 +165,8 @@ impl<'m> UnitCounts<'m> {
         });
     }
 
-    /// Returns the unit that is used by most files, or the first of equally frequent units; empty
-    /// if no file gives a unit.
+    /// Returns the unit that most files use, the first if several are equally frequent; empty if no
+    /// file gives a unit.
     fn most_used(&self) -> String {
         let most = self.units.iter().map(|unit| unit.files.len()).max();
         for unit in &self.units {

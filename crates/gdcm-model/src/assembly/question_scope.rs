@@ -1,5 +1,6 @@
-//! Scope of each question about a channel: all models, the models with a role, or a single file. The
-//! scope is part of the command-line option that answers the question ("--sign NZ=-1:identified").
+//! Finds the scope for each question about a channel: all models, the models with a role, or a
+//! single file. The scope is part of the command-line option that answers the question ("--sign
+//! NZ=-1:identified").
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,12 +11,12 @@ use super::problem::{Problem, Question};
 use super::rules::Rules;
 use crate::names::ChannelRule;
 
-/// Sets the scope of each problem that an option for a channel can settle.
+/// Sets the scope for each problem that a channel option can settle.
 ///
 /// The scope is the widest one (all models, or the models with a role) in which every model with
 /// the channel has the same problem. If there is none, the scope is the model itself.
 pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
-    // Indices of the models that raise each question.
+    // For each question, the indices of the models that raise it.
     let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
     for problem in problems.iter() {
         if let (Some(part), Some(question)) = (problem.part, problem.kind.question()) {
@@ -74,7 +75,7 @@ fn scopes_asking(
     scopes
 }
 
-/// Returns the scope of a model's role; `None` without a role.
+/// Returns the scope for a model's role; `None` without a role.
 fn role_scope(part: &Part) -> Option<FileScope> {
     part.row.role.map(FileScope::of_role)
 }

@@ -1,4 +1,4 @@
-//! The place of a model in the dataset, shown as a row of the table of models.
+//! A model's place in the dataset, shown as a row in the model table.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::dataset::physics_parameter::ParameterChange;
 use crate::names::RowRole;
 use crate::number_format::number;
 
-/// The place of a model in the dataset; `None` for an unknown value.
+/// A model's place in the dataset; `None` for an unknown value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     pub left_out: bool,
@@ -23,17 +23,17 @@ pub struct Row {
     pub method: Option<String>,
     /// Trim offsets by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
-    /// Named parameter moved in a run of the physics model (M18.1).
+    /// Named parameter moved in a physics run (M18.1).
     pub parameter: Option<ParameterChange>,
     /// Parts of the model name that look like a trim offset but match no pattern.
     pub unread: Vec<String>,
     pub contradictions: Vec<NameContradiction>,
 }
 
-/// A value in a file that contradicts the names of file and folders.
+/// A value in a file that contradicts the file and folder names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NameContradiction {
-    /// Key of the quantity in the rules: "airspeed_kt", or "perturbation, roll_deg" for a trim
+    /// The quantity's key in the rules: "airspeed_kt", or "perturbation, roll_deg" for a trim
     /// offset.
     pub field: String,
     pub of_file: f64,

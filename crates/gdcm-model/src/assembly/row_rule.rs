@@ -41,7 +41,7 @@ pub struct RowRule {
     /// Trim offsets by coordinate; they replace all proposed offsets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub perturbation: Option<BTreeMap<String, f64>>,
-    /// Named parameter moved in a run of the physics model (M18.1).
+    /// Named parameter moved in a physics run (M18.1).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parameter: Option<ParameterChange>,
     /// Input names in the file's order; for a file without names, or with wrong names.
@@ -98,7 +98,7 @@ impl RowRule {
         override_with(&mut row.mass_kg, &self.mass_kg);
         override_with(&mut row.method, &self.method);
         override_with(&mut row.parameter, &self.parameter);
-        // A run is no member of the bundle, whatever was proposed.
+        // A run does not belong to the bundle, whatever was proposed.
         if self.parameter.is_some() && self.role.is_none() {
             row.role = Some(RowRole::Perturbed);
         }

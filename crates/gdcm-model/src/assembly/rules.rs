@@ -28,13 +28,13 @@ pub struct Rules {
     pub inputs: Vec<ChannelRule>,
     /// Outputs in the dataset's order.
     pub outputs: Vec<ChannelRule>,
-    /// On-axis responses: names of output and input.
+    /// On-axis responses: output name and input name.
     pub on_axis: Vec<(String, String)>,
-    /// Lower and upper end of the comparison band \[rad/s\].
+    /// Comparison band, lower and upper end \[rad/s\].
     pub band: (f64, f64),
-    /// Named parameters of the physics model, with the changes that are plausible (M18.1).
+    /// Named physics model parameters, with the changes that are plausible (M18.1).
     pub parameters: Vec<PhysicsParameter>,
-    /// Patterns for the names of folders, files and variables; earlier patterns take precedence.
+    /// Patterns for folder, file and variable names; earlier patterns take precedence.
     pub patterns: Vec<NamePattern>,
     /// Factors between units without a fixed ratio.
     pub units: Vec<UnitRule>,
@@ -62,7 +62,7 @@ impl Default for Rules {
             inputs: Vec::new(),
             outputs: Vec::new(),
             on_axis: Vec::new(),
-            // Usual comparison band for rigid-body responses of helicopters.
+            // Usual comparison band for helicopter rigid-body responses.
             band: (0.5, 12.0),
             parameters: Vec::new(),
             patterns: standard_patterns().to_vec(),
@@ -124,7 +124,7 @@ impl Rules {
         }
     }
 
-    /// Marks the responses of a channel that are on-axis by convention.
+    /// Marks a channel's responses that are on-axis by convention.
     fn mark_standard_on_axis(&mut self, side: ChannelSide, name: &str) {
         for other in side.pick(&self.outputs, &self.inputs) {
             let [output, input] = match side {
@@ -138,8 +138,8 @@ impl Rules {
         }
     }
 
-    /// Returns the units, factors and signs that apply to the channels of a model. Declarations for
-    /// a file override those for a folder, then those for a role, then those for all models.
+    /// Returns the units, factors and signs that apply to a model's channels. Declarations for a
+    /// file override those for a folder, then those for a role, then those for all models.
     pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> ModelDeclarations<'_> {
         let mut declarations = vec![signs_in_scope(FileScope::All, &self.signs)];
         for (role, signs) in &self.role_signs {

@@ -1,4 +1,4 @@
-//! Synthetic models for the tests of the assembly.
+//! Synthetic models for assembly tests.
 
 use nalgebra::DMatrix;
 
@@ -7,8 +7,8 @@ use crate::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use crate::dataset::model::{Origin, Provenance};
 use crate::dataset::state_space::Timing;
 
-/// Creates a measured response from one input at 1 and 5 rad/s; `values` holds two real values per
-/// output.
+/// Creates a measured response from one input at 1 and 5 rad/s; `values` contains two real values
+/// per output.
 pub fn measured_model(values: &[f64]) -> ModelDraft {
     let shape = [values.len() / 2, 1, 2];
     let response = ResponseDraft {

@@ -1,8 +1,8 @@
-//! Correction of a channel in a single flight record.
+//! Corrects a channel in a single flight record.
 
 use serde::{Deserialize, Serialize};
 
-/// Correction of a channel in a record that is inconsistent with the other records (M14.16).
+/// Correction to a channel in a record that is inconsistent with the other records (M14.16).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {

@@ -22,13 +22,13 @@ pub struct Condition {
     flight_state: FlightState,
     /// Physics models, then identified models: indexed by [`BundleKind`].
     bundles: [Vec<Model>; 2],
-    /// Index of the nominal model among the physics models.
+    /// The nominal model's index among the physics models.
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Physics models with moved parameters, which are no members of the bundle.
+    /// Physics models with moved parameters, which do not belong to the bundle.
     moved: Vec<MovedModel>,
-    /// For each bundle, the indices of its models, sorted by name for binary search: linear look-ups
-    /// would be slow for thousands of models.
+    /// For each bundle, its model indices, sorted by name for binary search: linear look-ups would
+    /// be slow for thousands of models.
     by_name: [Vec<usize>; 2],
 }
 
@@ -53,7 +53,7 @@ pub enum ConditionError {
     #[error("the physics bundle: expected exactly one nominal model, found {found}{names}")]
     Nominal {
         found: usize,
-        /// Names of the nominal models in parentheses; empty if there is none.
+        /// Nominal model names in parentheses; empty if there is none.
         names: String,
     },
     #[error("records: duplicate name \"{name}\" (records {first} and {second}); names must differ")]
@@ -64,7 +64,7 @@ pub enum ConditionError {
         /// Second record, counted from 1.
         second: usize,
     },
-    /// A record with an invalid sample time, or with an invalid interval of time.
+    /// A record with an invalid sample time or time interval.
     #[error("record \"{name}\" (number {position}), {field}: expected {expected}, found {}", number(*value))]
     Record {
         name: String,
@@ -102,8 +102,8 @@ impl Condition {
     /// Creates a condition without flight records from its models in file order.
     ///
     /// # Errors
-    /// [`ConditionError`] for an invalid value, an empty physics bundle, a duplicate name, or a
-    /// number of nominal models other than one.
+    /// [`ConditionError`] for an invalid value, an empty physics bundle, a duplicate name, or if
+    /// there is not exactly one nominal model.
     pub fn new(
         flight_state: FlightState,
         physics: Vec<Model>,
@@ -183,11 +183,11 @@ impl Condition {
     /// records.
     ///
     /// A record replaces the existing record with the same name, or else the one with the same
-    /// samples of the same file; otherwise it is appended. If a part of a record is added, the
+    /// samples from the same file; otherwise it is appended. If a part of a record is added, the
     /// whole record is marked unused, so that no sample counts twice.
     ///
     /// # Errors
-    /// The errors of [`Condition::new`] and [`Condition::with_records`].
+    /// As for [`Condition::new`] and [`Condition::with_records`].
     pub fn with_identified(
         &self,
         models: Vec<Model>,
@@ -216,7 +216,7 @@ impl Condition {
     /// Returns the condition with other physics models.
     ///
     /// # Errors
-    /// The errors of [`Condition::new`] and [`Condition::with_moved_models`].
+    /// As for [`Condition::new`] and [`Condition::with_moved_models`].
     pub fn with_physics(&self, models: Vec<Model>) -> Result<Self, ConditionError> {
         Self::new(self.flight_state.clone(), models, self.bundles[1].clone())?
             .with_records(self.records.clone())?
@@ -248,7 +248,7 @@ impl Condition {
         !self.bundle(BundleKind::Identified).is_empty()
     }
 
-    /// Returns the index of the named model in its bundle; `None` if there is no such model.
+    /// Returns the named model's index in its bundle; `None` if there is no such model.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
         let order = &self.by_name[kind as usize];
@@ -263,7 +263,7 @@ impl Condition {
         Some(&self.bundle(kind)[self.position(kind, name)?])
     }
 
-    /// Returns the size of the numbers of all models in memory \[bytes\].
+    /// Returns the memory that all models' numbers take \[bytes\].
     pub fn model_bytes(&self) -> usize {
         let mut bytes = 0;
         for kind in BundleKind::BOTH {
@@ -277,13 +277,13 @@ impl Condition {
         bytes
     }
 
-    /// Returns the index of the nominal model in the physics bundle.
+    /// Returns the nominal model's index in the physics bundle.
     pub fn nominal(&self) -> usize {
         self.nominal
     }
 }
 
-/// Returns the model indices in ascending order of names.
+/// Returns the model indices, sorted by name.
 fn indices_by_name(models: &[Model]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by(|a, b| models[*a].name.cmp(&models[*b].name));

@@ -1,4 +1,4 @@
-//! A flight record of a condition, as listed in a dataset: its file, its manoeuvre and its use.
+//! A condition's flight record, as listed in a dataset: its file, its manoeuvre and its use.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ pub struct ConditionRecord {
     pub name: String,
     /// Path relative to the dataset's file.
     pub file: String,
-    /// Name of the record or variable in the file; `None` if the file holds a single record.
+    /// Record or variable name in the file; `None` if the file contains a single record.
     pub variable: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
@@ -25,7 +25,7 @@ pub struct ConditionRecord {
     /// Intervals in use: first and last time \[s\] on the record's time axis; empty if the whole
     /// record is used.
     pub used_s: Vec<[f64; 2]>,
-    /// Interval of the file that forms this record: first and last time \[s\] on the file's time
+    /// Interval in the file that forms this record: first and last time \[s\] on the file's time
     /// axis; `None` for the whole file.
     pub part_s: Option<[f64; 2]>,
     /// Channel corrections specific to this record, by channel name.
@@ -63,8 +63,8 @@ impl ConditionRecord {
         Ok(())
     }
 
-    /// Returns whether both entries refer to the same record of the same file. Of the paths, only
-    /// the file names are compared, because the folders may be relative to different places.
+    /// Returns whether both entries refer to the same record in the same file. Only the file names
+    /// in the paths are compared, because the folders may be relative to different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let contents_differ = match (&self.sha256, &other.sha256) {
             (Some(a), Some(b)) => a != b,
@@ -135,7 +135,7 @@ impl RecordKind {
         Self::Other,
     ];
 
-    /// Returns the keyword of the manoeuvre in files and tables.
+    /// Returns the manoeuvre's keyword in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Sweep => "sweep",

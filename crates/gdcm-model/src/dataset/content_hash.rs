@@ -1,4 +1,4 @@
-//! Hash over the dynamics of a model.
+//! Hash over a model's dynamics.
 
 use sha2::{Digest, Sha256};
 
@@ -22,13 +22,13 @@ impl ContentHash {
         Self(hash.finalize().into())
     }
 
-    /// Returns the 32 bytes of the hash.
+    /// Returns the hash's 32 bytes.
     pub fn bytes(&self) -> &[u8; 32] {
         &self.0
     }
 }
 
-/// Adds the count of values, then the values, to a hash.
+/// Adds the value count, then the values, to a hash.
 pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
     hash.update((numbers.len() as u64).to_le_bytes());
     let bytes: Vec<u8> = numbers
@@ -44,8 +44,8 @@ fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
         hash.update((matrix.nrows() as u64).to_le_bytes());
         add_numbers(hash, matrix.as_slice());
     }
-    // A plain timing adds nothing to the hash, so that hashes from before the introduction of
-    // timing remain valid.
+    // A plain timing adds nothing to the hash, so that hashes from before timing was introduced
+    // remain valid.
     if !model.timing().is_plain() {
         let Timing {
             sample_time_s,

@@ -45,7 +45,7 @@ pub enum DatasetError {
     },
     #[error("on_axis: expected a {} x {} table, found {} x {}", expected.0, expected.1, found.0, found.1)]
     OnAxisShape {
-        /// Outputs and inputs of the dataset.
+        /// The dataset's outputs and inputs.
         expected: (usize, usize),
         /// Rows and columns.
         found: (usize, usize),
@@ -58,7 +58,7 @@ pub enum DatasetError {
         condition: ConditionId,
         model: String,
         expected: (usize, usize),
-        /// Outputs and inputs of the model.
+        /// The model's outputs and inputs.
         found: (usize, usize),
     },
     #[error(transparent)]
@@ -79,7 +79,7 @@ impl DatasetError {
     }
 }
 
-/// Description of a dataset, without its conditions.
+/// A dataset's description, without its conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DatasetHeader {
     pub name: String,
@@ -91,7 +91,7 @@ pub struct DatasetHeader {
     pub on_axis: PairTable<bool>,
     /// Default band in which models are compared.
     pub band: Band,
-    /// Named parameters of the physics model (M18.1).
+    /// Named physics model parameters (M18.1).
     pub parameters: Vec<PhysicsParameter>,
 }
 
@@ -100,7 +100,7 @@ impl Dataset {
     ///
     /// # Errors
     /// [`DatasetError`] for an empty list, a duplicate channel name or condition identifier, or a
-    /// wrong number of channels in a model or in `on_axis`, or an invalid parameter.
+    /// wrong channel count in a model or in `on_axis`, or an invalid parameter.
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;
         check_channels("outputs", &header.outputs)?;
@@ -117,7 +117,7 @@ impl Dataset {
         })
     }
 
-    /// Returns a copy of the description, without the conditions.
+    /// Copies the description, without the conditions.
     pub fn header(&self) -> DatasetHeader {
         self.header.clone()
     }
@@ -152,13 +152,13 @@ impl Dataset {
         self.header.band
     }
 
-    /// Returns the named parameters of the physics model, as declared in the dataset (M18.1). Runs may
+    /// Returns the named physics model parameters, as declared in the dataset (M18.1). Runs may
     /// move parameters that are not declared.
     pub fn parameters(&self) -> &[PhysicsParameter] {
         &self.header.parameters
     }
 
-    /// Returns the minimum and the maximum airspeed \[kt\] of the conditions.
+    /// Returns the minimum and the maximum airspeed over the conditions \[kt\].
     pub fn airspeed_range_kt(&self) -> (f64, f64) {
         let mut slowest = f64::INFINITY;
         let mut fastest = f64::NEG_INFINITY;
@@ -237,8 +237,8 @@ impl Dataset {
         )
     }
 
-    /// Returns the names of all channels: inputs, then outputs. The names of a single response come
-    /// in the other order ([`Self::channel_names`]).
+    /// Returns all channel names: inputs, then outputs. A single response's names come in the other
+    /// order ([`Self::channel_names`]).
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
         (
             channel_names(&self.header.inputs),
@@ -246,7 +246,7 @@ impl Dataset {
         )
     }
 
-    /// Returns the channel names of a response: output, then input.
+    /// Returns a response's channel names: output, then input.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
         (
             self.header.outputs[pair.output].name.clone(),
@@ -262,7 +262,7 @@ impl Dataset {
         })
     }
 
-    /// Returns the responses that enter the objective of a model: the on-axis responses, or all
+    /// Returns the responses that enter a model's objective: the on-axis responses, or all
     /// responses if none is on-axis (M5, M7).
     pub fn measuring_pairs(&self) -> PairTable<bool> {
         if self.header.on_axis.marked().next().is_some() {

@@ -1,5 +1,5 @@
-//! A dataset before its checks, as filled by the reader of any file format; `draft_checks.rs` turns
-//! it into a dataset.
+//! A dataset before its checks, as filled by any format's reader; `draft_checks.rs` turns it into a
+//! dataset.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -20,11 +20,11 @@ pub struct DatasetDraft {
     pub description: String,
     pub inputs: Vec<Channel>,
     pub outputs: Vec<Channel>,
-    /// On-axis responses: names of output and input.
+    /// On-axis responses: output name and input name.
     pub on_axis: Vec<(String, String)>,
-    /// Lower and upper end of the default band \[rad/s\].
+    /// Default band, lower and upper end \[rad/s\].
     pub band: (f64, f64),
-    /// Named parameters of the physics model.
+    /// Named physics model parameters.
     pub parameters: Vec<PhysicsParameter>,
     pub conditions: Vec<ConditionDraft>,
 }
@@ -51,9 +51,9 @@ pub struct ModelDraft {
     pub source: Option<Provenance>,
     /// State names, for display only; empty if unknown.
     pub states: Vec<String>,
-    /// Standard deviation of the response, if the file gives it.
+    /// Standard deviation of the response over frequency, if the file gives it.
     pub bands: Option<BandsDraft>,
-    /// Named parameters moved in a physics model; `None` for a member of a bundle.
+    /// Named parameters moved in a physics model; `None` for a model in a bundle.
     pub moved: Option<MovedParameters>,
 }
 
@@ -66,8 +66,8 @@ pub struct ResponseDraft {
     pub im: ResponseArray,
     /// Coherence (0 to 1); `None` if the file does not give it.
     pub coherence: Option<ResponseArray>,
-    /// First and last trusted frequency of each response \[rad/s\]; `None` if the file does not
-    /// give them.
+    /// Each response's first and last trusted frequency \[rad/s\]; `None` if the file does not give
+    /// them.
     pub valid_bands: Option<ResponseArray>,
     pub estimate: Estimate,
 }
@@ -77,9 +77,9 @@ pub struct ResponseDraft {
 pub struct BandsDraft {
     /// Frequencies \[rad/s\].
     pub omega: Vec<f64>,
-    /// Standard deviation of the magnitude \[dB\].
+    /// Standard deviation in magnitude \[dB\].
     pub sd_db: ResponseArray,
-    /// Standard deviation of the phase \[deg\].
+    /// Standard deviation in phase \[deg\].
     pub sd_deg: ResponseArray,
 }
 
@@ -147,7 +147,7 @@ impl ResponseDraft {
 }
 
 impl ResponseArray {
-    /// Converts a table in which every response has the same number of values.
+    /// Converts a table with the same value count in every response.
     fn from_table<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
         let mut length = 0;
         let mut values = Vec::new();

@@ -1,5 +1,4 @@
-//! Checks of a dataset draft; all faults are collected. Models are checked in
-//! `model_draft_checks.rs`.
+//! Checks a dataset draft and collects all faults. Models are checked in `model_draft_checks.rs`.
 
 use super::band::Band;
 use super::channel::Channel;
@@ -15,7 +14,7 @@ use super::model_id::BundleKind;
 use super::pair_table::{Pair, PairTable};
 use super::physics_parameter::{MovedModel, check_parameters};
 
-/// Maximum number of collected faults; a file of the wrong kind has a fault in every model.
+/// Maximum number of collected faults; a wrong kind of file has a fault in every model.
 const MOST_FAULTS: usize = 1000;
 
 impl DatasetDraft {
@@ -27,14 +26,13 @@ impl DatasetDraft {
         self.check_all().map_err(|mut faults| faults.swap_remove(0))
     }
 
-    /// Returns every fault with its location, in the order of the draft; empty for a valid dataset.
-    /// A fault can hide another: duplicate names, for example, are found only once all models are
-    /// valid.
+    /// Returns every fault with its location, in draft order; empty for a valid dataset. A fault
+    /// can hide another: duplicate names, for example, are found only once all models are valid.
     pub fn faults(self) -> Vec<DraftError> {
         self.check_all().err().unwrap_or_default()
     }
 
-    /// Runs all checks. The list of faults is never empty.
+    /// Runs all checks. The fault list is never empty.
     fn check_all(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
         let mut checker = Checker::new(self.outputs.len(), self.inputs.len());
         let lists = [
@@ -62,7 +60,7 @@ impl DatasetDraft {
             }
             conditions.extend(checker.condition(index + 1, draft));
         }
-        // A fault of a condition alone leaves both values in place.
+        // A fault in a condition alone leaves both values in place.
         let (Some(band), Some(on_axis), true) = (band, on_axis, checker.faults.is_empty()) else {
             return Err(checker.faults);
         };
@@ -96,7 +94,7 @@ impl Dataset {
     }
 }
 
-/// Returns the table of on-axis responses, given by the names of output and input.
+/// Returns the on-axis table for responses given by output and input names.
 fn on_axis_table(
     outputs: &[Channel],
     inputs: &[Channel],
@@ -143,7 +141,7 @@ fn find_channel(kind: &'static str, channels: &[Channel], name: &str) -> Result<
         })
 }
 
-/// Builder of the models, which also collects the warnings, and the faults found so far.
+/// Model builder, which also collects the warnings, and the faults found so far.
 struct Checker {
     models: ModelBuilder,
     faults: Vec<DraftError>,
@@ -194,7 +192,7 @@ impl Checker {
         self.keep_fault(condition)
     }
 
-    /// Checks the models of a kind, and returns the valid ones.
+    /// Checks a bundle's models, and returns the valid ones.
     fn bundle(
         &mut self,
         condition: &Location,
@@ -228,10 +226,10 @@ impl Checker {
     }
 }
 
-/// The valid models of a list in the draft.
+/// The valid models from a list in the draft.
 #[derive(Default)]
 struct BuiltModels {
-    /// Members of the bundle.
+    /// Models in the bundle.
     members: Vec<Model>,
     /// Models with moved parameters.
     moved: Vec<MovedModel>,

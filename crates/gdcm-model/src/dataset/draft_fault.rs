@@ -14,7 +14,7 @@ use crate::number_format::counted;
 pub enum DraftFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany { most: usize, found: usize },
-    /// A table or matrix whose shape contradicts the number of channels or states.
+    /// A table or matrix whose shape contradicts the channel count or state count.
     #[error("expected {expected}, found {found}")]
     Shape { expected: String, found: String },
     #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]
@@ -94,7 +94,7 @@ impl DraftError {
     }
 }
 
-/// An unusual but harmless property of a dataset draft, with its place.
+/// An unusual but harmless property in a dataset draft, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     pub place: Location,
@@ -104,10 +104,10 @@ pub struct Warning {
 /// An unusual but harmless property of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DraftOddity {
-    /// The order stated by the identification differs from the number of states.
+    /// The order stated by the identification differs from the state count.
     #[error("the stated order is {stated}, but the matrices have {}", counted(*states, "state"))]
     Order { stated: usize, states: usize },
-    /// The number of state names differs from the number of states.
+    /// The number of state names differs from the state count.
     #[error(
         "{} for {}; the names are ignored",
         counted(*names, "state name"),

@@ -1,9 +1,9 @@
-//! Dynamics of a model.
+//! A model's dynamics.
 
 use super::measured_response::MeasuredResponse;
 use super::state_space::StateSpace;
 
-/// Dynamics of a model: matrices or measured data.
+/// A model's dynamics: matrices or measured data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dynamics {
     StateSpace(StateSpace),
@@ -22,7 +22,7 @@ impl Dynamics {
         }
     }
 
-    /// Returns the size of the numbers in memory \[bytes\].
+    /// Returns the memory that the numbers take \[bytes\].
     pub fn bytes(&self) -> usize {
         const REAL: usize = size_of::<f64>();
         match self {

@@ -1,9 +1,9 @@
-//! Identification and flight state of a condition.
+//! A condition's name and flight state.
 
 use super::model_id::ConditionId;
 use crate::number_format::number;
 
-/// Identification and flight state of a condition: name, airspeed, altitude, weight.
+/// A condition's identifier, name, airspeed, altitude and weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightState {
     pub id: ConditionId,

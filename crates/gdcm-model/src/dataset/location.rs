@@ -5,22 +5,22 @@ use std::fmt;
 use super::model_id::BundleKind;
 use crate::message_text::quoted;
 
-/// The place of a condition in a dataset file.
+/// A condition's place in a dataset file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConditionPlace {
     /// Position, counted from 1.
     pub position: usize,
-    /// Identifier of the condition; `None` if it cannot be read.
+    /// Condition identifier; `None` if it cannot be read.
     pub id: Option<i64>,
 }
 
-/// The place of a model in a dataset file.
+/// A model's place in a dataset file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelPlace {
     pub bundle: BundleKind,
     /// Position in the bundle, counted from 1.
     pub position: usize,
-    /// Name of the model; `None` if it cannot be read.
+    /// Model name; `None` if it cannot be read.
     pub name: Option<String>,
 }
 
@@ -34,7 +34,7 @@ pub struct Location {
 }
 
 impl Location {
-    /// Creates the location of an entry of the dataset: "on-axis pair 3".
+    /// Creates the location of a dataset entry: "on-axis pair 3".
     pub fn entry(words: impl Into<String>) -> Self {
         Self {
             entry: words.into(),
@@ -42,7 +42,7 @@ impl Location {
         }
     }
 
-    /// Creates the location of a condition; `position` counts from 1.
+    /// Creates a condition's location; `position` counts from 1.
     pub fn condition(position: usize, id: i64) -> Self {
         Self {
             condition: Some(ConditionPlace {
@@ -53,7 +53,7 @@ impl Location {
         }
     }
 
-    /// Returns the location of a model in this condition; `position` counts from 1.
+    /// Returns a model's location in this condition; `position` counts from 1.
     pub fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
         let model = Some(ModelPlace {
             bundle,
@@ -67,7 +67,7 @@ impl Location {
         }
     }
 
-    /// Returns the location of an entry in this condition or model: "matrix D".
+    /// Returns an entry's location in this condition or model: "matrix D".
     pub fn at(&self, words: impl Into<String>) -> Self {
         Self {
             entry: words.into(),
@@ -75,8 +75,8 @@ impl Location {
         }
     }
 
-    /// Returns the location followed by a colon and a space, as the beginning of a message; empty
-    /// for the whole file.
+    /// Returns the location followed by a colon and a space, to begin a message; empty for the
+    /// whole file.
     pub fn before(&self) -> String {
         let place = self.to_string();
         if place.is_empty() {

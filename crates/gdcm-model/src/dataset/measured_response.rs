@@ -27,7 +27,7 @@ pub struct MeasuredResponse {
 pub struct Estimate {
     /// Number of independent averages.
     pub averages: Option<f64>,
-    /// Length of an averaging window \[s\].
+    /// Averaging window length \[s\].
     pub window_s: Option<f64>,
 }
 
@@ -50,9 +50,9 @@ pub enum MeasuredResponseError {
         output: usize,
         /// Input, counted from 1.
         input: usize,
-        /// Number of frequencies.
+        /// Frequency count.
         expected: usize,
-        /// Number of values.
+        /// Value count.
         found: usize,
     },
     /// Valid band that starts below zero, or ends before it starts.
@@ -88,7 +88,7 @@ pub enum MeasuredResponseError {
         input: usize,
         /// Entry, counted from 1.
         entry: usize,
-        /// Description of the permitted values.
+        /// Permitted values, in words.
         expected: &'static str,
         value: f64,
     },
@@ -144,7 +144,7 @@ impl MeasuredResponse {
         })
     }
 
-    /// Returns the response with valid bands: first and last trusted frequency of each response
+    /// Returns the measurement with valid bands: each response's first and last trusted frequency
     /// \[rad/s\] (M4a).
     ///
     /// # Errors
@@ -192,19 +192,19 @@ impl MeasuredResponse {
         &self.omega
     }
 
-    /// Returns the complex values of each response, one per frequency.
+    /// Returns each response's complex values, one per frequency.
     pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.values
     }
 
-    /// Returns the coherence (0 to 1) of each response, one value per frequency; `None` if the file
-    /// does not give it.
+    /// Returns each response's coherence (0 to 1), one value per frequency; `None` if the file does
+    /// not give it.
     pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
         self.coherence.as_ref()
     }
 
-    /// Returns the first and last trusted frequency of each response \[rad/s\]; `None` if the file
-    /// does not give them.
+    /// Returns each response's first and last trusted frequency \[rad/s\]; `None` if the file does
+    /// not give them.
     pub fn valid_bands(&self) -> Option<&PairTable<[f64; 2]>> {
         self.valid_bands.as_ref()
     }

@@ -1,4 +1,4 @@
-//! A model of a bundle: its dynamics, and their origin and source.
+//! A model in a bundle: its dynamics, and their origin and source.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ pub use super::uncertainty_bands::ModelBands;
 use super::dynamics::Dynamics;
 use super::state_space::StateSpace;
 
-/// Origin of a model: linearised at a trim, or identified.
+/// A model's origin: linearised at a trim, or identified.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// Physics model linearised at the condition's trim.
@@ -62,7 +62,7 @@ impl Model {
         }
     }
 
-    /// Returns the name of a state; if it has no name, its index counted from 1: "q", "state 5".
+    /// Returns a state's name; if it has no name, its index counted from 1: "q", "state 5".
     pub fn state_name(&self, state: usize) -> String {
         self.states
             .get(state)
@@ -104,8 +104,8 @@ impl Model {
             hash.update(coordinate.as_bytes());
             hash.update(offset.to_le_bytes());
         }
-        // Absent bands add nothing to the hash, so that fingerprints from before the introduction
-        // of bands remain valid.
+        // Absent bands add nothing to the hash, so that fingerprints from before bands were
+        // introduced remain valid.
         if let Some(bands) = &self.bands {
             bands.add_to(&mut hash);
         }
@@ -115,8 +115,8 @@ impl Model {
             .collect()
     }
 
-    /// Returns the state count of a state-space model. For measured data, returns the order stated
-    /// by the identification, if any.
+    /// Returns a state-space model's state count. For measured data, returns the order stated by
+    /// the identification, if any.
     pub fn order(&self) -> Option<usize> {
         match (&self.dynamics, &self.origin) {
             (Dynamics::StateSpace(model), _) => Some(model.order()),

@@ -1,4 +1,4 @@
-//! Checks of a model draft: its matrices or measured response against the dataset's channels.
+//! Checks a model draft: its matrices or measured response against the dataset's channels.
 //!
 //! 1. A model has either matrices or a measured response; only an identified model can be measured.
 //! 2. Their shapes, and the shapes of the uncertainty bands, agree with the channel counts.
@@ -18,7 +18,7 @@ use super::model_id::BundleKind;
 use super::pair_table::{Pair, PairTable};
 use super::state_space::{StateSpace, Timing};
 
-/// Builder of checked models for a dataset with given channel counts.
+/// Builder that checks models for a dataset with given channel counts.
 pub(super) struct ModelBuilder {
     outputs: usize,
     inputs: usize,
@@ -27,7 +27,7 @@ pub(super) struct ModelBuilder {
 }
 
 impl ModelBuilder {
-    /// Starts without warnings; models must have these numbers of channels.
+    /// Starts without warnings; models must have these channel counts.
     pub fn new(outputs: usize, inputs: usize) -> Self {
         Self {
             outputs,
@@ -143,7 +143,7 @@ impl ModelBuilder {
         let mut b = required_matrix(place, 'B', b)?;
         let mut c = required_matrix(place, 'C', c)?;
         let d = required_matrix(place, 'D', d)?;
-        // Check D first, so that a wrong shape of D is not reported as a fault of B or C.
+        // Check D first, so that a wrong shape in D is not reported as a fault in B or C.
         if d.shape() != (p, m) {
             let fault = DraftFault::Shape {
                 expected: format!("{p} x {m} (outputs x inputs)"),
@@ -194,7 +194,7 @@ impl ModelBuilder {
             .map_err(|error| DraftError::new(place.at("measured response"), error))
     }
 
-    /// Builds the uncertainty bands of the response.
+    /// Builds the response's uncertainty bands.
     fn bands(&self, place: &Location, draft: &BandsDraft) -> Result<ModelBands, DraftError> {
         let depth = TableDepth::frequencies(&draft.omega);
         let sd_db = self.table(place, &draft.sd_db, "bands, sd_db", depth)?;
@@ -203,7 +203,7 @@ impl ModelBuilder {
             .map_err(|error| DraftError::new(place.at("bands"), error))
     }
 
-    /// Checks the shape of a table, and splits it into one list of values per response.
+    /// Checks a table's shape, and splits it into one value list per response.
     fn table(
         &self,
         place: &Location,
@@ -228,7 +228,7 @@ impl ModelBuilder {
             self.outputs,
             self.inputs,
             |Pair { output, input }| {
-                // The last index runs fastest: `count` values of each response.
+                // The last index runs fastest: `count` values for each response.
                 let start = (output * self.inputs + input) * count;
                 array.values[start..start + count].to_vec()
             },
@@ -236,11 +236,11 @@ impl ModelBuilder {
     }
 }
 
-/// Required length of a table of frequency data along its third index.
+/// Required length along the third index, in a table over frequency.
 #[derive(Clone, Copy)]
 struct TableDepth {
     count: usize,
-    /// Meaning of the third index, for messages: "frequencies".
+    /// Quantity counted by the third index, for messages: "frequencies".
     meaning: &'static str,
 }
 

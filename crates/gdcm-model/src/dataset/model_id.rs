@@ -1,4 +1,4 @@
-//! Identifiers of conditions, bundles and models in a dataset.
+//! Identifiers for conditions, bundles and models in a dataset.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::whole_number::whole;
 
-/// A bundle of models in a flight condition.
+/// A model bundle in a flight condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum BundleKind {
     /// The physics models: one nominal, the others at perturbed trims.
@@ -37,7 +37,7 @@ impl fmt::Display for BundleKind {
     }
 }
 
-/// Identifier of a flight condition in its dataset.
+/// A flight condition's identifier in its dataset.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
@@ -49,7 +49,7 @@ impl fmt::Display for ConditionId {
     }
 }
 
-/// Identifier of a model in a dataset, unaffected when other models are added, removed, replaced or
+/// A model's identifier in a dataset, unaffected when other models are added, removed, replaced or
 /// reordered.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ModelId {
@@ -59,7 +59,7 @@ pub struct ModelId {
 }
 
 impl ModelId {
-    /// Creates the identifier of the model called `name` in a bundle of a condition.
+    /// Creates the identifier for the model called `name` in a condition's bundle.
     pub fn new(condition: ConditionId, bundle: BundleKind, name: impl Into<String>) -> Self {
         Self {
             condition,

@@ -1,4 +1,4 @@
-//! Responses of a dataset, and tables with an entry per response.
+//! A dataset's responses, and tables with an entry per response.
 
 use std::ops::{Index, IndexMut};
 
@@ -60,7 +60,7 @@ impl<T> PairTable<T> {
         pair.output * inputs + pair.input
     }
 
-    /// Returns the entry of a response; `None` where the table has no such response.
+    /// Returns a response's entry; `None` where the table has no such response.
     pub fn get(&self, pair: Pair) -> Option<&T> {
         if pair.output < self.outputs && pair.input < self.inputs {
             Some(&self[pair])
@@ -90,7 +90,7 @@ impl<T> PairTable<T> {
     }
 }
 
-/// Iterates over the responses of a table, row by row.
+/// Iterates over the responses in a table, row by row.
 fn pairs(outputs: usize, inputs: usize) -> impl Iterator<Item = Pair> {
     (0..outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
 }
@@ -116,8 +116,8 @@ impl PairTable<bool> {
 }
 
 impl<T> PairTable<Vec<T>> {
-    /// Returns the numbers of outputs, inputs and frequencies of a table of curves: `expected`
-    /// frequencies if every curve has them, otherwise the length of the first curve that differs.
+    /// Returns output, input and frequency count for a table of curves: `expected` frequencies if
+    /// every curve has them, otherwise the length of the first curve that differs.
     pub fn curve_shape(&self, expected: usize) -> [usize; 3] {
         let other = self
             .iter()

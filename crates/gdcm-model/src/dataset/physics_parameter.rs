@@ -1,18 +1,18 @@
-//! Named parameters of the physics model, and models with such parameters moved (M18.1).
+//! Named physics model parameters, and models with such parameters moved (M18.1).
 
 use serde::{Deserialize, Serialize};
 
 use super::model::Model;
 use crate::number_format::number;
 
-/// A named parameter of the physics model, such as the roll inertia.
+/// A named physics model parameter, such as the roll inertia.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhysicsParameter {
     /// Name, unique in the dataset ("Ixx", "swashplate_phase").
     pub name: String,
-    /// Unit of its changes ("%", "deg", "1").
+    /// Unit for its changes ("%", "deg", "1").
     pub unit: String,
-    /// Standard deviation of the changes that the engineer considers possible, in the unit; `None`
+    /// Standard deviation of the changes that the engineer considers plausible, in the unit; `None`
     /// if the dataset does not state it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plausible_sd: Option<f64>,
@@ -21,30 +21,30 @@ pub struct PhysicsParameter {
     pub description: String,
 }
 
-/// The change of a named parameter from its nominal value.
+/// A named parameter's change from its nominal value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterChange {
-    /// Name of the parameter.
+    /// Parameter name.
     pub name: String,
     /// Change, in `unit`; not zero.
     pub delta: f64,
     pub unit: String,
 }
 
-/// Parameters moved in a physics model, and the purpose of the model.
+/// Parameters moved in a physics model, and the model's purpose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MovedParameters {
     /// A run: a single parameter is moved, to learn its effect on the matrices.
     Run(ParameterChange),
-    /// A rerun: parameters are moved together, to check the family of models at proposed values
+    /// A rerun: parameters are moved together, to check the model family at proposed values
     /// (M18.6).
     Rerun(Vec<ParameterChange>),
 }
 
 /// A physics model linearised with named parameters moved.
 ///
-/// It belongs to a condition, but is no member of a bundle: it takes no part in representatives,
-/// outliers, bounds and error bars (M18.1).
+/// It belongs to a condition, but to no bundle: it takes no part in representatives, outliers,
+/// bounds and error bars (M18.1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovedModel {
     /// The model; its name differs from those of the condition's physics models.
@@ -108,7 +108,8 @@ impl MovedParameters {
         }
     }
 
-    /// Checks that there are changes, of different parameters with names, finite and not zero.
+    /// Checks that there are changes, that each moves a different named parameter, and that all are
+    /// finite and nonzero.
     ///
     /// # Errors
     /// The first [`ParameterError`].
@@ -131,7 +132,7 @@ impl MovedParameters {
 }
 
 impl MovedModel {
-    /// Returns the change of a run; `None` for a rerun.
+    /// Returns a run's change; `None` for a rerun.
     pub fn run(&self) -> Option<&ParameterChange> {
         match &self.moved {
             MovedParameters::Run(change) => Some(change),
@@ -140,7 +141,7 @@ impl MovedModel {
     }
 }
 
-/// Checks the parameters of a dataset: names that differ, positive plausible standard deviations.
+/// Checks a dataset's parameters: names that differ, positive plausible standard deviations.
 ///
 /// # Errors
 /// The first [`ParameterError`].

@@ -1,8 +1,8 @@
-//! Source of a model: file, variable, flight records, and the notes added when it was read.
+//! A model's source: file, variable, flight records, and the notes added when it was read.
 
 use super::channel::ChannelSide;
 
-/// Source of a model, as far as its author gives it.
+/// A model's source, as far as its author gives it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
     /// Path relative to the dataset's file.
@@ -15,9 +15,9 @@ pub struct Provenance {
     pub made: Option<String>,
     /// Notes added when the file was read.
     pub note: Option<String>,
-    /// Names of the flight records from which an identified model was estimated; empty if unknown.
+    /// Flight records from which an identified model was estimated, by name; empty if unknown.
     pub records: Vec<String>,
-    /// Unused variables of the file; listed only in the first model of each file.
+    /// Unused variables in the file; listed only in each file's first model.
     pub unused: Vec<String>,
     /// Sides (inputs, outputs) whose channels have no names in the file and were matched by
     /// position.

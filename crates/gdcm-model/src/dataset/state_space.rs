@@ -8,7 +8,7 @@ pub use super::timing::{GREATEST_CHANNEL_DELAY_S, Timing, TimingError};
 /// discrete-time, or with delayed channels, according to its [`Timing`] (M2a).
 ///
 /// Shapes are checked at construction: `A` n x n, `B` n x m, `C` p x n, `D` p x m, all entries
-/// finite. A model of order zero (`n = 0`) is the static gain `D`.
+/// finite. Without states (`n = 0`), the model is the static gain `D`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpace {
     a: DMatrix<f64>,
@@ -21,14 +21,14 @@ pub struct StateSpace {
 /// Error for matrices that do not form a state-space model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StateSpaceError {
-    /// A matrix whose shape contradicts the shapes of the other matrices.
+    /// A matrix whose shape contradicts the other matrices' shapes.
     #[error("matrix {matrix}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1)]
     Shape {
         /// `A`, `B`, `C` or `D`.
         matrix: char,
         /// Required rows and columns.
         expected: (usize, usize),
-        /// Rows and columns of the matrix.
+        /// Row count and column count.
         found: (usize, usize),
     },
     #[error("matrix {matrix}, row {row}, column {column}: expected a finite number, found {value}")]
@@ -57,8 +57,8 @@ impl StateSpaceError {
 }
 
 impl StateSpace {
-    /// Creates the continuous-time model (A, B, C, D). `A` determines the number of states; `D`
-    /// determines the numbers of outputs and inputs.
+    /// Creates the continuous-time model (A, B, C, D). `A` determines the state count; `D`
+    /// determines the output and input counts.
     pub fn new(
         a: DMatrix<f64>,
         b: DMatrix<f64>,

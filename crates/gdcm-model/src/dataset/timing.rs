@@ -1,18 +1,18 @@
-//! Sample time and channel delays of a model, which are not part of its matrices (M2a).
+//! A model's sample time and channel delays, which its matrices do not contain (M2a).
 
 use crate::number_format::{counted, number};
 
-/// Maximum delay of an input or output channel \[s\].
+/// Maximum delay in an input or output channel \[s\].
 pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 
-/// Sample time and channel delays of a model, which are not part of its matrices (M2a).
+/// A model's sample time and channel delays, which its matrices do not contain (M2a).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timing {
-    /// Sample time T \[s\] of a discrete-time model; `None` in continuous time.
+    /// Sample time T in discrete time \[s\]; `None` in continuous time.
     pub sample_time_s: Option<f64>,
-    /// Delay of each input \[s\]; `None` without delays.
+    /// Each input's delay \[s\]; `None` without delays.
     pub input_delays_s: Option<Vec<f64>>,
-    /// Delay of each output \[s\]; `None` without delays.
+    /// Each output's delay \[s\]; `None` without delays.
     pub output_delays_s: Option<Vec<f64>>,
 }
 
@@ -63,7 +63,7 @@ impl Timing {
         Some(std::f64::consts::PI / sample_time_s)
     }
 
-    /// Returns the delay of a response, output delay plus input delay \[s\].
+    /// Returns a response's delay, output delay plus input delay \[s\].
     pub fn delay_s(&self, output: usize, input: usize) -> f64 {
         channel_delay(self.output_delays_s.as_deref(), output)
             + channel_delay(self.input_delays_s.as_deref(), input)
@@ -85,7 +85,7 @@ impl Timing {
         parts.join(", ")
     }
 
-    /// Checks the timing of a model with `outputs` and `inputs`. Removes delays that are all zero,
+    /// Checks the timing for a model with `outputs` and `inputs`. Removes delays that are all zero,
     /// so that the model compares equal to one without delays.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
         if let Some(value) = self.sample_time_s
@@ -113,7 +113,7 @@ fn list(values: &[f64]) -> String {
     numbers.join(", ")
 }
 
-/// Checks the delays of the inputs or outputs; `None` if all are zero.
+/// Checks input or output delays; `None` if all are zero.
 fn checked_delays(
     list: &'static str,
     delays: Option<Vec<f64>>,

@@ -53,12 +53,12 @@ impl ModelBands {
         &self.omega
     }
 
-    /// Returns the standard deviation of the magnitude \[dB\] at each frequency.
+    /// Returns the standard deviation in magnitude \[dB\] at each frequency.
     pub fn sd_db(&self) -> &PairTable<Vec<f64>> {
         &self.sd_db
     }
 
-    /// Returns the standard deviation of the phase \[deg\] at each frequency.
+    /// Returns the standard deviation in phase \[deg\] at each frequency.
     pub fn sd_deg(&self) -> &PairTable<Vec<f64>> {
         &self.sd_deg
     }

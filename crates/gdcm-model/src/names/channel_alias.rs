@@ -1,4 +1,4 @@
-//! Channel aliases: the spellings of helicopter inputs and outputs in files.
+//! Channel aliases: spellings of helicopter inputs and outputs in files.
 
 /// Aliases, one row per channel, as folded by [`folded_name`]; the first name in a row is
 /// canonical. Each name appears once. "elevyoke1" and similar names are written by a flight
@@ -45,7 +45,7 @@ pub fn folded_name(name: &str) -> String {
     folded
 }
 
-/// Returns the canonical name of a channel, or the folded name if it has no row in [`ALIASES`].
+/// Returns a channel's canonical name, or the folded name if it has no row in [`ALIASES`].
 pub(super) fn canonical_name(name: &str) -> String {
     let folded = folded_name(name);
     let canonical = alias_row(&folded).and_then(|row| ALIASES[row].split(' ').next());

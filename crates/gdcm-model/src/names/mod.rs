@@ -1,4 +1,4 @@
-//! Names in files: channel aliases and signs, response names, patterns of file names.
+//! Names in files: channel aliases and signs, response names, file name patterns.
 
 pub mod channel_alias;
 pub mod channel_rule;

@@ -1,4 +1,4 @@
-//! Patterns for the names of folders, files and variables. The patterns used by default are in
+//! Patterns for folder, file and variable names. The patterns used by default are in
 //! `standard_patterns.rs`.
 
 use std::ops::Range;
@@ -10,9 +10,9 @@ use super::row_role::RowRole;
 use crate::dataset::physics_parameter::ParameterChange;
 use crate::message_text::{quoted, sanitized, shortened};
 
-/// Maximum length of a pattern \[bytes\].
+/// Maximum pattern length \[bytes\].
 const LONGEST_PATTERN: usize = 1000;
-/// Maximum memory of a compiled pattern \[bytes\].
+/// Maximum memory for a compiled pattern \[bytes\].
 const MOST_MEMORY: usize = 1 << 20;
 
 /// Permitted group names, apart from trim offsets.
@@ -34,11 +34,11 @@ const GROUPS: [&str; 14] = [
 ];
 /// Group name for a moved parameter.
 const PARAMETER: &str = "parameter";
-/// Group name for the signed change of a moved parameter.
+/// Group name for a moved parameter's signed change.
 const DELTA: &str = "delta";
-/// Group name for the unit of that change.
+/// Group name for that change's unit.
 const DELTA_UNIT: &str = "delta_unit";
-/// Prefix of group names for trim offsets.
+/// Prefix for the group names of trim offsets.
 const OFFSET: &str = "by_";
 
 /// A pattern for names: a regular expression whose named groups identify values.
@@ -61,7 +61,7 @@ pub enum PatternError {
     #[error("{} is not a valid regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
     Syntax {
         pattern: String,
-        /// Message of the regular-expression parser.
+        /// Message from the regular-expression parser.
         reason: String,
     },
     #[error(
@@ -116,13 +116,13 @@ impl NamePattern {
         Ok(Self { regex })
     }
 
-    /// Returns the text of the pattern.
+    /// Returns the pattern as text.
     pub fn as_str(&self) -> &str {
         self.regex.as_str()
     }
 
-    /// Fills the empty fields of `facts` with the values in a name; the first of several matches
-    /// applies.
+    /// Fills the empty fields in `facts` with the values in a name; if several parts match, the
+    /// first applies.
     pub fn read(&self, name: &str, facts: &mut NameFacts) {
         for found in self.regex.captures_iter(name) {
             for group in self.regex.capture_names().flatten() {
@@ -152,8 +152,8 @@ pub fn read_name(name: &str, patterns: &[NamePattern]) -> NameFacts {
     facts
 }
 
-/// Returns the last line of a parser message, which states the reason; the lines before it quote
-/// the pattern.
+/// Returns a parser message's last line, which states the reason; the lines before it quote the
+/// pattern.
 fn last_line(message: &str) -> String {
     message.lines().last().unwrap_or_default().trim().to_owned()
 }
@@ -162,8 +162,7 @@ fn is_known_group(name: &str) -> bool {
     name.starts_with(OFFSET) || GROUPS.contains(&name)
 }
 
-/// Returns the parts of a name that look like a trim offset ("dPHI+5") but are matched by no
-/// pattern.
+/// Returns those parts of a name that look like a trim offset ("dPHI+5") but match no pattern.
 pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
     // A word, a sign and a number.
     let Ok(offset) = Regex::new(r"[A-Za-z]+[_ ]?[+-]\d+(?:\.\d+)?") else {
@@ -217,7 +216,7 @@ fn put_if_empty(group: &str, text: &str, facts: &mut NameFacts) {
     }
 }
 
-/// Returns the change of a parameter in a match: a name and a signed number other than zero.
+/// Returns the parameter change in a match: a name and a signed number other than zero.
 fn parameter_change(found: &Captures<'_>) -> Option<ParameterChange> {
     let name = found.name(PARAMETER)?.as_str();
     let delta = parse_offset(found.name(DELTA)?.as_str())?;

@@ -25,7 +25,7 @@ pub enum KnownChannels<'r> {
     AliasTable,
 }
 
-/// Canonical names of the [`KnownChannels`], computed once for all words of a text.
+/// Canonical names of the [`KnownChannels`], computed once for all words in a text.
 enum KnownNames {
     Dataset {
         inputs: BTreeSet<String>,
@@ -63,7 +63,7 @@ impl KnownNames {
     }
 }
 
-/// Returns the canonical names of channels and their aliases, without sign marks.
+/// Returns the canonical forms of channel names and their aliases, without sign marks.
 fn canonical_names(rules: &[ChannelRule]) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for rule in rules {
@@ -92,16 +92,16 @@ impl Sides {
     }
 }
 
-/// A channel named by consecutive words of a text.
+/// A channel named by consecutive words in a text.
 pub(super) struct NamedChannel<'t> {
-    /// Indices of the words.
+    /// Word indices.
     pub(super) words: Range<usize>,
-    /// The words in the spelling of the text.
+    /// The words as spelt in the text.
     pub(super) text: &'t str,
     pub(super) sides: Sides,
 }
 
-/// A word and the index of its first byte in the text.
+/// A word and its first byte's index in the text.
 pub(super) struct Word<'t> {
     start: usize,
     pub(super) text: &'t str,
@@ -129,7 +129,8 @@ pub(super) fn split_words(text: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// Finds the known channels in a text from left to right; of several at the same word, the longest.
+/// Finds the known channels in a text from left to right; if several begin at the same word, the
+/// longest.
 pub(super) fn named_channels<'t>(
     text: &'t str,
     words: &[Word<'t>],

@@ -1,4 +1,4 @@
-//! Standard on-axis responses of a helicopter, by channel name.
+//! Standard on-axis responses for a helicopter, by channel name.
 
 use super::channel_alias::same_channel;
 

@@ -1,4 +1,4 @@
-//! Output and input of a response, read from the name of its file or variable: `frf_q_delta_lon`,
+//! Output and input of a response, read from its file or variable name: `frf_q_delta_lon`,
 //! `roll_rate per lat_cyclic run 2`. The channels in the name are found in `named_channel.rs`.
 
 pub use super::named_channel::KnownChannels;
@@ -24,13 +24,13 @@ pub enum ResponseNameError {
     Several {
         /// "output" or "input".
         side: &'static str,
-        /// Channels in the spelling of the text, separated by commas.
+        /// Channels as spelt in the text, separated by commas.
         found: String,
     },
     #[error("the word \"{word}\" next to {channel} may change its meaning")]
     OtherChannel {
         word: String,
-        /// Channel in the spelling of the text.
+        /// Channel as spelt in the text.
         channel: String,
     },
 }
@@ -57,8 +57,7 @@ impl ResponseName {
     ///    may belong to either.
     ///
     /// # Errors
-    /// The text names several outputs or inputs, or a word may change the meaning of a channel
-    /// name.
+    /// The text names several outputs or inputs, or a word may change what a channel name means.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
         let words = split_words(text);
         let named = named_channels(text, &words, known);
@@ -92,7 +91,7 @@ impl ResponseName {
     }
 }
 
-/// Returns an error if a word may change the meaning of a channel name: a modifier anywhere, or any
+/// Returns an error if a word may change what a channel name means: a modifier anywhere, or any
 /// unknown word between the names.
 fn reject_modifiers(
     words: &[Word<'_>],
@@ -218,7 +217,7 @@ const FILLERS: [&str; 44] = [
     "file",
 ];
 
-/// Words that change the meaning of an adjacent channel name: "q dot" is not q.
+/// Words that change what an adjacent channel name means: "q dot" is not q.
 const MODIFIERS: [&str; 23] = [
     "dot",
     "ddot",

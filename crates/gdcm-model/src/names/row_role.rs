@@ -1,8 +1,8 @@
-//! Role of a model in its condition: nominal, perturbed or identified.
+//! A model's role in its condition: nominal, perturbed or identified.
 
 use serde::{Deserialize, Serialize};
 
-/// Role of a model in its condition.
+/// A model's role in its condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RowRole {
@@ -17,7 +17,7 @@ pub enum RowRole {
 impl RowRole {
     pub const ALL: [Self; 3] = [Self::Nominal, Self::Perturbed, Self::Identified];
 
-    /// Returns the keyword of the role in files and tables.
+    /// Returns the role's keyword in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",

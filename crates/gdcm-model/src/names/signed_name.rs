@@ -76,8 +76,8 @@ fn begins_name(rest: &str) -> bool {
         .starts_with(|letter: char| letter.is_alphabetic() || letter == '#')
 }
 
-/// Separates a direction mark in brackets from the end of a name: "az (down)". A unit in brackets
-/// remains part of the name.
+/// Separates a direction mark in brackets from a name's end: "az (down)". A unit in brackets
+/// remains in the name.
 fn split_direction(text: &str) -> MarkedName<'_> {
     for (open, close) in [('(', ')'), ('[', ']'), ('{', '}')] {
         let inside = text.strip_suffix(close);
@@ -122,7 +122,7 @@ pub fn parse_direction(mark: &str) -> Option<f64> {
     }
 }
 
-/// Returns the factor, 1 or -1, that converts the sign of a file channel `label` to that of a
+/// Returns the factor, 1 or -1, that converts the sign of the file channel `label` to that of the
 /// dataset channel `channel`; `None` if the names do not determine it.
 ///
 /// 1. Equal names have the same sign.

@@ -1,4 +1,4 @@
-//! Patterns for the common names of folders, files and variables, used unless the rules give others.
+//! Patterns for common folder, file and variable names, used unless the rules give others.
 
 use std::sync::LazyLock;
 

@@ -1,10 +1,10 @@
-//! Balancing of a model: a diagonal similarity that removes the influence of state units.
+//! Balances a model: a diagonal similarity makes it independent of state units.
 
 use nalgebra::DMatrix;
 
-/// Balances A: for each state k, the norms of row k and column k then differ by less than a factor
-/// of two. The diagonal similarity `S` consists of powers of two, so that nothing is rounded:
-/// `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
+/// Balances A: for each state k, row k and column k then differ in norm by less than a factor of
+/// two. The diagonal similarity `S` contains only powers of two, so that nothing is rounded: `a <-
+/// S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
     let scales = balance_square(a);
     for (state, &scale) in scales.iter().enumerate() {
@@ -13,12 +13,12 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
     }
 }
 
-/// Balances A, `a <- S^-1 a S`, and returns the diagonal of `S`, powers of two.
+/// Balances A, `a <- S^-1 a S`, and returns the diagonal of `S`: powers of two.
 ///
-/// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
-/// algorithm 3). The number of sweeps is limited (the model remains similar after each sweep), and
-/// so is the scale, to prevent overflow in B and C; both limits take effect only for entries far
-/// beyond those of any aircraft.
+/// Parlett and Reinsch's balancing with 2-norms (James, Langou & Lowery, arXiv:1401.5766, algorithm
+/// 3). The sweep count is limited (the model remains similar after each sweep), and so is the
+/// scale, to prevent overflow in B and C; both limits take effect only for entries far beyond any
+/// aircraft's.
 pub fn balance_square(a: &mut DMatrix<f64>) -> Vec<f64> {
     /// Maximum number of sweeps; a helicopter model needs three to six.
     const MOST_SWEEPS: usize = 100;
@@ -45,7 +45,7 @@ pub fn balance_square(a: &mut DMatrix<f64>) -> Vec<f64> {
     scales
 }
 
-/// Returns the power of two that makes the norms of a column and its row most nearly equal; `None`
+/// Returns the power of two that makes a column's norm and its row's norm most nearly equal; `None`
 /// if it reduces the sum of their squares by less than 5 %.
 fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
     let column = a.column(state).norm_squared();

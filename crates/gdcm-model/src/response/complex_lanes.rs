@@ -106,7 +106,7 @@ impl<S: Simd> ComplexLanes<S> {
         simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re))
     }
 
-    /// Returns `chosen` in the lanes of `mask`, and `self` in the other lanes.
+    /// Returns `chosen` in the lanes where `mask` is set, and `self` in the other lanes.
     #[inline(always)]
     pub(super) fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
         Self {

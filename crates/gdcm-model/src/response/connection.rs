@@ -30,7 +30,7 @@ fn output_sees(model: &StateSpace, output: usize, marked: &[bool]) -> bool {
         .any(|(c, marked)| *marked && *c != 0.0)
 }
 
-/// Returns the states on a chain of nonzero entries from the input of a response to its output.
+/// Returns the states on a chain of nonzero entries from a response's input to its output.
 pub(super) fn connecting_states(model: &StateSpace, pair: Pair) -> Vec<usize> {
     let reached = reached_states(model, pair.input);
     let c = model.c().row(pair.output);

@@ -1,4 +1,4 @@
-//! Eigenvectors of a mode, with the state participation and the residues that follow from them.
+//! A mode's eigenvectors, with the state participation and the residues that follow from them.
 //!
 //! With `A = Q T Q^H`, T upper triangular with the eigenvalues `lambda_k` on its diagonal
 //! (`schur_form.rs`), for eigenvalue k:
@@ -19,7 +19,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::schur_form::SchurForm;
 
-/// Maximum displacement of a pole per unit change in the balanced A for which eigenvectors are
+/// Maximum pole displacement per unit change in the balanced A at which eigenvectors are
 /// meaningful. In floating point, a double pole with a single eigenvector has about 1e8, a well
 /// separated pole less than 1e3.
 const NEAR_DEFECTIVE: f64 = 1e6;
@@ -70,7 +70,7 @@ impl Eigenvectors {
         shares
     }
 
-    /// Returns the residue `(C v)_i |w B|` of each output (step 5).
+    /// Returns each output's residue `(C v)_i |w B|` (step 5).
     pub(super) fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let input_norm = (b.map(Complex::from).transpose() * &self.left).norm();
         (c.map(Complex::from) * &self.right)
@@ -89,6 +89,6 @@ impl Eigenvectors {
     moves it {movement:.0e} times as far, so that its state participation is meaningless"
 )]
 pub struct NearDefective {
-    /// Displacement of the pole per unit change in A.
+    /// Pole displacement per unit change in A.
     pub movement: f64,
 }

@@ -1,4 +1,5 @@
-//! Frequency response of a state-space model: its states are eliminated from the system matrix.
+//! Computes a state-space model's frequency response by eliminating the states from the system
+//! matrix.
 //!
 //! The model is `dx/dt = A x + B u`, `y = C x + D u` with `n` states, and H its response at a
 //! frequency. Step 1 is in `hessenberg_form.rs`, which explains the matrices; the other steps are
@@ -19,11 +20,11 @@
 //! ```
 //!
 //! If the model has fewer outputs than inputs, its dual (A', C', B', D') takes its place, whose
-//! response is H'. A negligible h_k is replaced by zero, which forces the interchange of step 4
+//! response is H'. A negligible h_k is replaced by zero, which forces the interchange in step 4
 //! (see `subdiagonal.rs`).
 //!
 //! Each frequency occupies a lane of a vector register. Hessenberg form: Laub, IEEE Trans.
-//! Automatic Control 26(2), 1981; tau is the pivot threshold of Duff, Erisman & Reid, "Direct
+//! Automatic Control 26(2), 1981; tau is the pivot threshold in Duff, Erisman & Reid, "Direct
 //! Methods for Sparse Matrices", 2nd ed. 2017, 5.2.
 
 use nalgebra::Complex;
@@ -69,7 +70,7 @@ pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyRe
     })
 }
 
-/// Evaluation of `H(s)` of a reduced model, compiled for an instruction set.
+/// Evaluates `H(s)` for a reduced model, compiled for an instruction set.
 pub(super) struct Elimination<'a> {
     pub(super) form: &'a HessenbergForm,
     /// Values of `s` \[rad/s\] at which to evaluate.
@@ -90,7 +91,7 @@ impl WithSimd for Elimination<'_> {
         let form = self.form;
         let [outputs, inputs] = form.model_shape();
         let mut curves = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(self.s.len()));
-        // The rows of a group: a register holds `S::F64_LANES` of its frequencies.
+        // The rows for a frequency group: a register contains `S::F64_LANES` of its frequencies.
         let mut vectors: Vec<ComplexRows<S>> = Vec::new();
         for _ in 0..GROUP / S::F64_LANES {
             vectors.push(ComplexRows {
@@ -108,16 +109,16 @@ impl WithSimd for Elimination<'_> {
     }
 }
 
-/// The values `s / alpha` of a group, real and imaginary parts separate.
+/// The values `s / alpha` for a group, real and imaginary parts separate.
 struct GroupShifts {
     re: [f64; GROUP],
     im: [f64; GROUP],
 }
 
 impl GroupShifts {
-    /// Scales the frequencies of a group; an incomplete group repeats its last frequency. A
-    /// frequency whose square could overflow becomes NaN, so that its response cannot be mistaken
-    /// for a valid value.
+    /// Scales a group's frequencies; an incomplete group repeats its last frequency. A frequency
+    /// whose square could overflow becomes NaN, so that its response cannot be mistaken for a valid
+    /// value.
     #[inline(always)]
     fn new(group: &[Complex<f64>], frequency_scale: f64) -> Self {
         let mut shifts = Self {
@@ -136,13 +137,13 @@ impl GroupShifts {
     }
 }
 
-/// Eliminates the states for a group: steps 2 to 6. `vectors` holds the rows of the group's
+/// Eliminates the states for a group: steps 2 to 6. `vectors` contains the rows for the group's
 /// frequencies, and afterwards their responses.
 ///
 /// The next row is real, and costs half as much as the active row. It is therefore used to clear a
 /// column unless the active row's entry is more than tau times as large in some lane. Multipliers
-/// within G are then at most tau, and since the rows of G enter unchanged, entries grow at most by
-/// the factor `n tau`.
+/// within G are then at most tau, and since G's rows enter unchanged, entries grow at most by the
+/// factor `n tau`.
 #[inline(always)]
 fn eliminate_group<S: Simd>(
     simd: S,
@@ -169,7 +170,7 @@ fn eliminate_group<S: Simd>(
     }
 }
 
-/// Appends the values of a group to the curves. A NaN frequency gives NaN, even for a model without
+/// Appends a group's values to the curves. A NaN frequency gives NaN, even for a model without
 /// states, whose response would otherwise be finite.
 #[inline(always)]
 fn append_group<S: Simd>(
@@ -181,7 +182,7 @@ fn append_group<S: Simd>(
     for output in 0..form.outputs {
         for input in 0..form.inputs {
             let curve = &mut curves[form.pair(input, output)];
-            // Row `input` of [L D'], past the columns of the states.
+            // Row `input` of [L D'], past the state columns.
             let place = input * form.width() + form.order + output;
             for (lane, s) in group.iter().enumerate() {
                 let value = &vectors[lane / S::F64_LANES].entries[place];
@@ -195,7 +196,7 @@ fn append_group<S: Simd>(
     }
 }
 
-/// The complex rows of a system matrix during elimination, for a vector of frequencies.
+/// A system matrix's complex rows during elimination, for a vector of frequencies.
 ///
 /// These are the *active* row `u`, initially the first row of `[G K]`, and the rows `w`, which are
 /// all rows of `[L D']` except the first. The first row of `[L D']` is zero in G's columns except
@@ -210,7 +211,7 @@ struct ComplexRows<S: Simd> {
 }
 
 impl<S: Simd> ComplexRows<S> {
-    /// Sets the rows to their values before elimination (step 2), reusing the memory of the
+    /// Sets the rows to their values before elimination (step 2), reusing the memory from the
     /// previous frequencies.
     #[inline(always)]
     fn start(&mut self, simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) {
@@ -226,7 +227,7 @@ impl<S: Simd> ComplexRows<S> {
     }
 
     /// Returns whether, in any lane, the active row's entry `u_k` is NaN or exceeds the pivot
-    /// threshold `tau |h_k|` (condition of step 4). Always true for a negligible `h_k`, whose
+    /// threshold `tau |h_k|` (the condition in step 4). Always true for a negligible `h_k`, whose
     /// threshold is NaN.
     #[inline(always)]
     fn needs_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
@@ -297,8 +298,8 @@ impl<S: Simd> ComplexRows<S> {
     }
 }
 
-/// Subtracts `multiplier (next row)` from a row, to the right of the cleared column; this takes
-/// most of the time. The first entry in the next row also contains `-shift`.
+/// Subtracts `multiplier (next row)` from a row, right of the cleared column; this takes most of
+/// the time. The first entry in the next row also contains `-shift`.
 #[inline(always)]
 fn subtract_next<S: Simd>(
     simd: S,

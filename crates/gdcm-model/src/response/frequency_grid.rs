@@ -1,4 +1,4 @@
-//! Grids of logarithmically spaced frequencies.
+//! Logarithmically spaced frequency grids.
 
 use crate::dataset::Band;
 

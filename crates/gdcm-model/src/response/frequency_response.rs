@@ -4,11 +4,10 @@ use nalgebra::Complex;
 
 use crate::dataset::{Pair, PairTable};
 
-/// Values `H(j omega)` of every response of a model on a grid of `N` frequencies: a p x m table of
-/// curves.
+/// A model's values `H(j omega)` on a grid of `N` frequencies: a p x m table of curves.
 ///
 /// A value is not finite if the response is undefined: at a pole on the imaginary axis, or outside
-/// the frequencies of measured data.
+/// the measured frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
     pub(super) curves: PairTable<Vec<Complex<f64>>>,
@@ -30,12 +29,12 @@ impl FrequencyResponse {
         self.curves.inputs()
     }
 
-    /// Returns the `N` complex values of a response.
+    /// Returns a response's `N` complex values.
     pub fn curve(&self, pair: Pair) -> &[Complex<f64>] {
         &self.curves[pair]
     }
 
-    /// Returns the complex values of every response, `[output, input]`.
+    /// Returns every response's complex values, `[output, input]`.
     pub fn curves(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.curves
     }

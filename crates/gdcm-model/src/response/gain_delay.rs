@@ -1,20 +1,19 @@
-//! Correction of a response by the gains, delays and lead filters of its two channels (eq. (12),
-//! M15.5).
+//! Corrects a response by the gains, delays and lead filters of its two channels (eq. (12), M15.5).
 
 use nalgebra::Complex;
 
 use super::lead_filter::LeadFilter;
 use crate::units::{db_to_ratio, ratio_to_db};
 
-/// Correction factor `k e^(-j omega tau) L_o L_i` of a response (eq. (12), M10), with optional lead
-/// filters of its output and its input (M15). The delay is exact, not a Padé approximation.
+/// A response's correction factor `k e^(-j omega tau) L_o L_i` (eq. (12), M10), with optional lead
+/// filters for its output and its input (M15). The delay is exact, not a Padé approximation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainDelay {
     /// `20 log10 k`.
     gain_db: f64,
     /// `tau`.
     delay_s: f64,
-    /// Lead filters of the output and the input.
+    /// Lead filters for the output and the input.
     leads: [Option<LeadFilter>; 2],
 }
 
@@ -36,7 +35,7 @@ impl GainDelay {
         }
     }
 
-    /// Returns the correction with its lead filters (of output and input) replaced.
+    /// Returns the correction with its lead filters (for output and input) replaced.
     pub fn with_leads(self, leads: [Option<LeadFilter>; 2]) -> Self {
         Self { leads, ..self }
     }

@@ -9,11 +9,11 @@ use super::householder_reduction::HouseholderReduction;
 use super::subdiagonal::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
-/// Minimum `alpha`, 2^-450 rad/s: the poles of a slower model are effectively zero at any frequency
-/// in use.
+/// Minimum `alpha`, 2^-450 rad/s: a slower model's poles are effectively zero at any frequency in
+/// use.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
-/// The system matrix of a model, prepared for state elimination. A prime denotes the transpose.
+/// A model's system matrix, prepared for state elimination. A prime denotes the transpose.
 ///
 /// ```text
 /// [ G - (s / alpha) I   K  ]
@@ -24,7 +24,7 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 /// except for the last entry; K has a column per output. Steps from the model `(A, B, C, D)`, with
 /// `H(s) = C (s I - A)^-1 B + D`:
 ///
-/// 1. Balance A by a diagonal similarity, which removes the influence of state units.
+/// 1. Balance A by a diagonal similarity, which makes the result independent of state units.
 /// 2. Divide A by alpha and B by another power of two, so that their largest entries are near 1;
 ///    scale C to preserve the response; swap the input with the largest column in B to the front.
 /// 3. Householder reflections make A Hessenberg and the first column in B a multiple of the first
@@ -32,16 +32,16 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 /// 4. Transpose the system matrix and reverse the states, which restores the Hessenberg form: A'
 ///    becomes G, B' becomes L, C' becomes K.
 ///
-/// The cost per frequency grows with the row count of L. A model with fewer outputs than inputs is
+/// The cost per frequency grows with L's row count. A model with fewer outputs than inputs is
 /// therefore stored as its dual `(A', C', B', D')`, whose response is the transpose and whose
 /// inputs are the model's outputs.
 #[derive(Clone, Debug)]
 pub(super) struct HessenbergForm {
-    /// Number of states, `n`.
+    /// State count `n`.
     pub order: usize,
-    /// Number of rows of L: inputs (of the dual if `dual`).
+    /// Row count of L: inputs (of the dual if `dual`).
     pub inputs: usize,
-    /// Number of columns of K: outputs (of the dual if `dual`).
+    /// Column count of K: outputs (of the dual if `dual`).
     pub outputs: usize,
     /// Whether this is the dual: L then has a row per output, K a column per input.
     dual: bool,
@@ -52,7 +52,7 @@ pub(super) struct HessenbergForm {
     pub frequency_scale: f64,
     /// The last entry of the first row of L; all its other entries are zero.
     pub gain: f64,
-    /// Subdiagonal entries of G, one for each column except the last.
+    /// G's subdiagonal entries, one for each column except the last.
     pub subdiagonals: Vec<Subdiagonal>,
     /// First row of `[G K]`, then all rows of `[L D']` except the first.
     pub complex_rows: Vec<f64>,
@@ -63,7 +63,7 @@ pub(super) struct HessenbergForm {
 }
 
 impl HessenbergForm {
-    /// Computes the reduced form of a model whose A is replaced by `a`. `arch` affects only the
+    /// Computes the reduced form for a model whose A is replaced by `a`. `arch` affects only the
     /// computing time: the result is the same bit for bit on every instruction set.
     pub fn new(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
         // Steps 1 and 2.
@@ -109,7 +109,7 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the output count and the input count of the model itself, also for a dual.
+    /// Returns the model's own output count and input count, also for a dual.
     pub fn model_shape(&self) -> [usize; 2] {
         if self.dual {
             [self.inputs, self.outputs]
@@ -118,8 +118,7 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the response of the model that corresponds to row `input` of L and column `output`
-    /// of K.
+    /// Returns the model's response that corresponds to row `input` in L and column `output` in K.
     pub fn pair(&self, input: usize, output: usize) -> Pair {
         let input = if input == 0 {
             self.first_input
@@ -135,7 +134,7 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the number of entries in a row of `[G K]`.
+    /// Returns the entry count in a row of `[G K]`.
     pub fn width(&self) -> usize {
         self.order + self.outputs
     }
@@ -188,8 +187,8 @@ impl ScaledSystem {
         }
     }
 
-    /// Swaps the first input with the input that has the largest column in B; returns the index of
-    /// the latter.
+    /// Swaps the first input with the input that has the largest column in B, and returns the
+    /// latter's index.
     fn swap_largest_input_first(&mut self) -> usize {
         let mut largest = 0;
         for input in 1..self.b.ncols() {
@@ -232,8 +231,8 @@ impl ScaledSystem {
 
 /// The reduced system matrix `[G K; L D']`: transposed, with the states in reversed order.
 struct ReversedSystem {
-    /// The matrix before transposition and reversal, with each row stored as a column: its index
-    /// order is therefore already that of the transposed matrix.
+    /// The matrix before transposition and reversal, with each row stored as a column: the
+    /// transposed matrix therefore already has the same index order.
     rows: DMatrix<f64>,
     order: usize,
     inputs: usize,
@@ -245,7 +244,7 @@ impl ReversedSystem {
         self.rows[(self.reversed(row), self.reversed(column))]
     }
 
-    /// Returns the index before the reversal of the states; inputs and outputs follow the states in
+    /// Returns the index before the states are reversed; inputs and outputs follow the states in
     /// the original order.
     fn reversed(&self, index: usize) -> usize {
         if index < self.order {

@@ -1,4 +1,4 @@
-//! Reduction of a system matrix to upper Hessenberg form by Householder reflections, compiled for an
+//! Reduces a system matrix to upper Hessenberg form by Householder reflections, compiled for an
 //! instruction set.
 
 use std::ops::Range;
@@ -26,7 +26,7 @@ const LANES: usize = 8;
 pub(super) struct HouseholderReduction<'a> {
     /// The matrix `[A B; C D]`, with each row stored as a column: `rows[(column, row)]`.
     pub(super) rows: &'a mut DMatrix<f64>,
-    /// Number of rows of A.
+    /// Row count of A.
     pub(super) states: usize,
 }
 
@@ -43,8 +43,8 @@ impl WithSimd for HouseholderReduction<'_> {
     }
 }
 
-/// Clears a column below row `first` by a reflection of the states from `first` on, applied from
-/// both sides. The column itself must not be one of these states.
+/// Clears a column below row `first` by reflecting the states from `first` on, from both sides. The
+/// column itself must not be one of these states.
 #[inline(always)]
 fn clear_column(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     let mut v = vec![0.0; rows.nrows()];
@@ -71,9 +71,9 @@ fn clear_column(rows: &mut DMatrix<f64>, states: usize, column: usize, first: us
     }
 }
 
-/// Applies the reflection `I - beta v v'` of the given states from both sides, with y, w and gamma
-/// as in [`HouseholderReduction`]: `y` has an entry per row of the matrix, `v` and `w` have an entry
-/// per column. Only the rows of these states change by `v w'`.
+/// Applies the reflection `I - beta v v'` to the given states from both sides, with y, w and gamma
+/// as in [`HouseholderReduction`]: `y` has an entry per matrix row, `v` and `w` have an entry per
+/// column. Only these states' rows change by `v w'`.
 #[inline(always)]
 fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) {
     let width = rows.nrows();
@@ -102,7 +102,7 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
     }
 }
 
-/// Returns the scalar product `left' right`, with a fixed order of summation.
+/// Returns the scalar product `left' right`, with a fixed summation order.
 #[inline(always)]
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     let mut sums = [0.0_f64; LANES];

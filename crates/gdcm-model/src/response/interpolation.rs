@@ -1,4 +1,4 @@
-//! Interpolation of curves between frequencies, linear on log omega.
+//! Interpolates curves between frequencies, linear on log omega.
 //!
 //! | function | beyond the ends |
 //! |---|---|
@@ -47,8 +47,8 @@ fn interpolate_curve(values: &[Complex<f64>], places: &[Option<Place>]) -> Vec<C
     interpolated
 }
 
-/// Interpolates the coherence of each response at each `omega` \[rad/s\], linear on log omega
-/// (M4a); NaN outside the measured frequencies. Returns `None` if the file gives no coherence.
+/// Interpolates each response's coherence at each `omega` \[rad/s\], linear on log omega (M4a); NaN
+/// outside the measured frequencies. Returns `None` if the file gives no coherence.
 pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     let coherence = response.coherence()?;
     let places = places(response.omega(), omega);
@@ -84,13 +84,13 @@ pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
 /// Position of a frequency in a list: between the entries `after - 1` and `after`.
 struct Place {
     after: usize,
-    /// Share of the way from `after - 1` to `after` on log omega, above 0 and up to 1; 1 if the
-    /// frequency equals entry `after`.
+    /// Share of the distance from `after - 1` to `after` on log omega, above 0 and up to 1; 1 if
+    /// the frequency equals entry `after`.
     fraction: f64,
 }
 
 impl Place {
-    /// Finds `omega` in a list of rising frequencies; `None` outside their range.
+    /// Finds `omega` in a rising frequency list; `None` outside its range.
     fn find(known: &[f64], omega: f64) -> Option<Self> {
         let after = known.partition_point(|&known| known < omega);
         if after == known.len() {
@@ -122,8 +122,8 @@ impl Place {
         low + self.fraction * (high - low)
     }
 
-    /// Interpolates magnitudes \[dB\]; minus infinity next to a value of minus infinity, for which
-    /// [`Place::value`] may be NaN.
+    /// Interpolates magnitudes \[dB\]; minus infinity next to a value that is minus infinity, for
+    /// which [`Place::value`] may be NaN.
     fn magnitude_db(&self, values: &[f64]) -> f64 {
         let is_beside_zero =
             self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);

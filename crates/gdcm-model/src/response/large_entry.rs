@@ -4,12 +4,12 @@ use nalgebra::DMatrix;
 
 use crate::dataset::StateSpace;
 
-/// Maximum magnitude of an entry accepted in computations. Products of three matrices, even in
-/// state units that differ by factors up to 2^100, then remain far below the largest `f64`. Entries
-/// of helicopter models are far smaller.
+/// Maximum entry magnitude accepted in computations. Products of three matrices, even in state
+/// units that differ by factors up to 2^100, then remain far below the largest `f64`. Entries in
+/// helicopter models are far smaller.
 pub const LARGEST_ENTRY: f64 = 1e75;
 
-/// An entry of a model's matrices beyond [`LARGEST_ENTRY`].
+/// An entry in a model's matrices beyond [`LARGEST_ENTRY`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "its matrix {matrix} has {value:e} in row {row}, column {column}; the limit for computations \

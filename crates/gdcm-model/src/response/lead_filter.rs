@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::units::ratio_to_db;
 
-/// Order of a lead filter (of both numerator and denominator).
+/// Lead filter order (numerator and denominator).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "f64", into = "usize")]
 pub enum LeadOrder {
@@ -115,8 +115,8 @@ impl LeadFilter {
     }
 
     /// Returns the phase `arg L(j omega)` \[rad\], continuous in `omega`, from 0 to less than pi.
-    /// Uses the argument of the numerator times the conjugate of the denominator, because a
-    /// difference of two arguments would cancel.
+    /// Computed from the argument of the numerator times the conjugate denominator, because a
+    /// difference between two arguments would cancel.
     pub fn phase(self, omega: f64) -> f64 {
         let x = self.zero_s * omega;
         let y = self.lag_s * omega;

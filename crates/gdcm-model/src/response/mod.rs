@@ -1,5 +1,4 @@
-//! Frequency responses: grid, evaluation of a model, magnitude and phase (M2, M3); poles and zeros
-//! of a model.
+//! Frequency responses: grid, model evaluation, magnitude and phase (M2, M3); poles and zeros.
 //!
 //! | question | file |
 //! |---|---|

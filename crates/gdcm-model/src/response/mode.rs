@@ -1,4 +1,4 @@
-//! Modes of a model: poles, natural frequency, damping, and state participation.
+//! A model's modes: poles, natural frequency, damping, and state participation.
 //!
 //! ```text
 //! 1  balance A; A = Q T Q^H, T triangular with the eigenvalues on its diagonal (schur_form.rs)
@@ -17,10 +17,10 @@ use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
 use crate::dataset::{Dynamics, StateSpace};
 
-/// Rounding error of an eigenvalue, relative to the number of states times the norm of A.
+/// Rounding error in an eigenvalue, relative to the state count times the norm of A.
 const ROUNDING_PER_STATE: f64 = 4.0 * f64::EPSILON;
 
-/// A pole of a model and its motion.
+/// A natural mode: a pole of the model, and the motion that belongs to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// Pole `lambda` \[rad/s\].
@@ -35,13 +35,13 @@ pub struct Mode {
     /// State participation (state index, share) in descending order, with the sum 1; or the reason
     /// why it is unavailable.
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
-    /// Residue of each output for all inputs together: its magnitude is the norm of the output's
-    /// row in the residue matrix, its phase is relative to the other outputs. `None` for a
+    /// Each output's residue for all inputs together: its magnitude is the norm of the output's row
+    /// in the residue matrix, its phase is relative to the other outputs. `None` for a
     /// near-defective pole.
     pub residues: Option<Vec<Complex<f64>>>,
 }
 
-/// Reason why the modes of a model are unavailable.
+/// Reason why a model's modes are unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ModesError {
     #[error("{0}")]
@@ -92,9 +92,9 @@ impl Mode {
     }
 }
 
-/// Computes the modes of a model, one per pole, in ascending `|lambda|`. In a conjugate pair the
-/// pole above the real axis comes first, and the other is its exact conjugate. A pole below the
-/// rounding error of the matrix is set to zero.
+/// Computes a model's modes, one per pole, in ascending `|lambda|`. In a conjugate pair the pole
+/// above the real axis comes first, and the other is its exact conjugate. A pole below the matrix's
+/// rounding error is set to zero.
 ///
 /// Discrete-time poles are given as `s = ln z / T`; poles at `z = 0`, which vanish within one
 /// sample, have no `s` and are omitted (M2a). Channel delays do not move poles.

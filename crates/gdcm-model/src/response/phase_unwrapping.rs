@@ -41,7 +41,7 @@ pub fn unwrap(angles: &mut [f64]) {
     }
 }
 
-/// Computes the phase difference of M3: `angles` (principal values of arg H_a conj H_b) are
+/// Computes the phase difference as in M3: `angles` (principal values of arg H_a conj H_b) are
 /// unwrapped, then shifted by the multiple of 2 pi that moves their median into (-pi, pi].
 /// `scratch` is overwritten.
 pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
@@ -63,8 +63,8 @@ pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     }
 }
 
-/// Returns the multiple of 2 pi \[rad\] to be added to `phase` so that the median of its difference
-/// from `reference` is closest to zero (M2).
+/// Returns the multiple of 2 pi \[rad\] to be added to `phase` so that its median difference from
+/// `reference` is closest to zero (M2).
 ///
 /// Frequencies at which either curve is not finite are ignored; returns zero if none remain.
 pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {

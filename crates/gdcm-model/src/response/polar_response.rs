@@ -1,5 +1,5 @@
-//! Magnitude and phase of responses, as compared with one another, and the responses that have none
-//! or are numerically zero.
+//! Magnitudes and phases for comparing responses; responses that have none, or are numerically
+//! zero.
 
 use nalgebra::Complex;
 
@@ -41,7 +41,7 @@ fn magnitude_db(value: &Complex<f64>) -> f64 {
     }
 }
 
-/// Magnitude and phase of every response of a model.
+/// Magnitude and phase for all responses of a model.
 ///
 /// An entry is `None` for a response that is zero or not finite at some frequency (structural zero,
 /// pole on the imaginary axis, measured data with too short a range): it has no G, D or J (M6).
@@ -51,7 +51,7 @@ pub struct PolarResponse {
 }
 
 impl PolarResponse {
-    /// Computes magnitude and phase of every response.
+    /// Computes magnitude and phase for every response.
     pub fn new(response: &FrequencyResponse) -> Self {
         Self {
             curves: response
@@ -60,7 +60,7 @@ impl PolarResponse {
         }
     }
 
-    /// Computes magnitude and phase of the marked responses only: a logarithm and an arc tangent
+    /// Computes magnitude and phase for the marked responses only: a logarithm and an arc tangent
     /// take longer than the response itself.
     pub fn from_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
         Self {
@@ -97,7 +97,7 @@ impl PolarResponse {
         })
     }
 
-    /// Removes the curves of the marked responses.
+    /// Removes the marked responses' curves.
     pub fn clear(&mut self, marked: &PairTable<bool>) {
         for pair in marked.marked() {
             self.curves[pair] = None;

@@ -2,9 +2,9 @@
 
 use nalgebra::Complex;
 
-/// Half-width of the interval of a pole, in standard deviations: on known aircraft it holds about
-/// nine of ten poles, where 2 hold eight (M14.22). The interval is approximate, because a pole of a
-/// low order may represent several true poles.
+/// Half-width of a pole's interval, in standard deviations: on known aircraft it contains about
+/// nine in ten poles, where 2 contain eight (M14.22). The interval is approximate, because in a
+/// low-order model a pole may represent several true poles.
 pub const POLE_INTERVAL: f64 = 3.0;
 
 /// An identified pole and its standard deviation.

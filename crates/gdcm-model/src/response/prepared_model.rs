@@ -1,4 +1,4 @@
-//! A model prepared for the evaluation of its frequency response on any grid.
+//! A model prepared for evaluating its frequency response on any grid.
 //!
 //! A discrete-time model is evaluated in a form that loses no digits for fast sampling (M2a):
 //!
@@ -30,11 +30,11 @@ use crate::dataset::{Dynamics, PairTable, StateSpace};
 #[derive(Clone, Debug)]
 pub struct PreparedModel {
     source: Source,
-    /// Delay of each response \[s\]; `None` for a model without delays.
+    /// Each response's delay \[s\]; `None` for a model without delays.
     delays_s: Option<PairTable<f64>>,
 }
 
-/// Origin of the response values.
+/// Where the response values come from.
 #[derive(Clone, Debug)]
 enum Source {
     StateSpace(PreparedStateSpace),
@@ -51,12 +51,12 @@ struct PreparedStateSpace {
     form: Box<HessenbergForm>,
     /// Sample time T \[s\]; `None` in continuous time.
     sample_time_s: Option<f64>,
-    /// Whether the input of each response can reach its output.
+    /// For each response, whether the input can reach the output.
     connected: PairTable<bool>,
 }
 
 impl PreparedModel {
-    /// Prepares a model, at the cost of a Hessenberg reduction for a state-space model.
+    /// Prepares a model; for a state-space model, this costs a Hessenberg reduction.
     pub fn new(dynamics: &Dynamics) -> Self {
         match dynamics {
             Dynamics::StateSpace(model) => {
@@ -121,8 +121,7 @@ impl PreparedModel {
 }
 
 impl FrequencyResponse {
-    /// Computes the response of a model on a single grid. For several grids, use a
-    /// [`PreparedModel`].
+    /// Computes a model's response on a single grid. For several grids, use a [`PreparedModel`].
     pub fn from_dynamics(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
         PreparedModel::new(dynamics).response(grid)
     }
@@ -176,7 +175,7 @@ pub fn evaluation_point(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> 
     Complex::from_polar(2.0 * (0.5 * angle).sin(), 0.5 * angle) * Complex::i()
 }
 
-/// Returns the delay of each response \[s\]; `None` for a model without delays.
+/// Returns each response's delay \[s\]; `None` for a model without delays.
 fn response_delays(model: &StateSpace) -> Option<PairTable<f64>> {
     let timing = model.timing();
     if timing.input_delays_s.is_none() && timing.output_delays_s.is_none() {

@@ -1,4 +1,4 @@
-//! Magnitude and phase of a response as plotted: unwrapped, aligned and corrected.
+//! A response's magnitude and phase as plotted: unwrapped, aligned and corrected.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::gain_delay::GainDelay;
 use super::phase_unwrapping::{nearest_turn_offset, unwrap, wrap};
 use crate::units::ratio_to_db;
 
-/// Magnitude and unwrapped phase of a response, for plots (M2).
+/// A response's magnitude and unwrapped phase, for plots (M2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseShape {
     /// Magnitude \[dB\] at each frequency; NaN where the value is zero or not finite.
@@ -64,7 +64,7 @@ impl ResponseShape {
         }
     }
 
-    /// Returns the shape after a correction of gain and delay (M10).
+    /// Returns the shape after a correction in gain and delay (M10).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase = radians(self.phase_deg.iter());
         Self {

@@ -4,8 +4,8 @@ use nalgebra::{Complex, DMatrix};
 
 use crate::dataset::StateSpace;
 
-/// Map from the eigenvalues of matrices to poles and zeros `s` \[rad/s\]: identity in continuous
-/// time, `s = ln z / T` in discrete time.
+/// Map from matrix eigenvalues to poles and zeros `s` \[rad/s\]: identity in continuous time, `s =
+/// ln z / T` in discrete time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SPlane {
     sample_time_s: Option<f64>,

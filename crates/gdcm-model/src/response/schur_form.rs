@@ -1,5 +1,5 @@
-//! Complex Schur form of a real matrix: its eigenvalues, and the triangular matrix from which its
-//! eigenvectors are computed.
+//! Complex Schur form of a real matrix: the eigenvalues, and a triangular matrix for computing the
+//! eigenvectors.
 //!
 //! ```text
 //! 1  A = Q T Q', T with 1 x 1 and 2 x 2 blocks on its diagonal: Francis' implicit double shifts
@@ -8,8 +8,8 @@
 //! 3     rotate its rows so that the block becomes triangular: first column (lambda - s, r) / norm
 //! ```
 //!
-//! On request, neighbouring eigenvalues are exchanged by rotations of their rows and columns, so
-//! that chosen eigenvalues come first ([`SchurForm::order_by`]).
+//! On request, neighbouring eigenvalues are exchanged by rotating their rows and columns, so that
+//! chosen eigenvalues come first ([`SchurForm::order_by`]).
 //!
 //! Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.4 to 7.6.
 
@@ -21,16 +21,17 @@ pub struct SchurForm {
     pub q: DMatrix<Complex<f64>>,
     /// Upper triangular matrix with the eigenvalues on its diagonal.
     pub t: DMatrix<Complex<f64>>,
-    /// Minimum magnitude of a difference of eigenvalues used as a divisor: their rounding error.
+    /// Minimum magnitude for a difference between eigenvalues used as a divisor: their rounding
+    /// error.
     least: f64,
 }
 
 impl SchurForm {
-    /// Computes the Schur form of a square matrix; `None` if the iteration does not converge.
+    /// Computes a square matrix's Schur form; `None` if the iteration does not converge.
     pub fn new(a: &DMatrix<f64>) -> Option<Self> {
         // Step 1.
         let (q, t) = quasi_triangular(a)?;
-        // First rows of the 2 x 2 blocks.
+        // First row in each 2 x 2 block.
         let blocks: Vec<usize> = (1..a.nrows())
             .filter(|&row| t[(row, row - 1)] != 0.0)
             .map(|row| row - 1)
@@ -54,17 +55,17 @@ impl SchurForm {
         Some(form)
     }
 
-    /// Returns the eigenvalues in the order of the diagonal; conjugate pairs are exact.
+    /// Returns the eigenvalues in diagonal order; conjugate pairs are exact.
     pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
     }
 
-    /// Returns the eigenvector of unit length for the eigenvalue at diagonal position `at`.
+    /// Returns the unit-length eigenvector for the eigenvalue at diagonal position `at`.
     pub fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
         (&self.q * self.right(at)).normalize()
     }
 
-    /// Returns the right eigenvector of T: the solution of `(T - t_kk) x = 0` with `x_k = 1`.
+    /// Returns the right eigenvector x of T from `(T - t_kk) x = 0` with `x_k = 1`.
     pub(super) fn right(&self, k: usize) -> DVector<Complex<f64>> {
         let mut x = self.unit(k);
         for row in (0..k).rev() {
@@ -76,7 +77,7 @@ impl SchurForm {
         x
     }
 
-    /// Returns the left eigenvector of T: the solution of `y (T - t_kk) = 0` with `y_k = 1`.
+    /// Returns the left eigenvector y of T from `y (T - t_kk) = 0` with `y_k = 1`.
     pub(super) fn left(&self, k: usize) -> DVector<Complex<f64>> {
         let mut y = self.unit(k);
         for column in k + 1..self.t.nrows() {
@@ -118,8 +119,8 @@ impl SchurForm {
         placed
     }
 
-    /// Exchanges the eigenvalues at diagonal positions `upper` and `upper + 1` by a rotation of
-    /// these two rows and columns.
+    /// Exchanges the eigenvalues at diagonal positions `upper` and `upper + 1` by rotating these
+    /// two rows and columns.
     fn exchange(&mut self, upper: usize) {
         let lower = upper + 1;
         let first = self.t[(upper, upper)];
@@ -179,7 +180,7 @@ impl SchurForm {
     }
 }
 
-/// Rotates the entries of a row in columns `first` and `first + 1`, with cosine `c` and sine `s`.
+/// Rotates a row's entries in columns `first` and `first + 1`, with cosine `c` and sine `s`.
 fn rotate_columns(
     matrix: &mut DMatrix<Complex<f64>>,
     row: usize,
@@ -203,7 +204,7 @@ struct Block {
 }
 
 impl Block {
-    /// Returns the eigenvalues; of a conjugate pair, the one with positive imaginary part comes
+    /// Returns the eigenvalues; in a conjugate pair, the one with positive imaginary part comes
     /// first.
     fn eigenvalues(self) -> [Complex<f64>; 2] {
         let Self { p, q, r, s } = self;
@@ -225,12 +226,12 @@ impl Block {
     }
 }
 
-/// Computes the real Schur form `A = Q T Q'` (step 1); returns Q and T. The iteration can stall, since a cyclic permutation
-/// is one of its fixed points; it is then repeated for a reflection of the matrix, which has the
-/// same eigenvalues.
+/// Computes the real Schur form `A = Q T Q'` (step 1); returns Q and T. The iteration can stall,
+/// since a cyclic permutation is one of its fixed points; it is then repeated for the reflected
+/// matrix, which has the same eigenvalues.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;
-    /// Maximum number of iterations per eigenvalue; three or four are typical.
+    /// Maximum iteration count per eigenvalue; three or four are typical.
     const ITERATIONS_PER_EIGENVALUE: usize = 60;
     let size = a.nrows();
     let most = ITERATIONS_PER_EIGENVALUE * (size + 1);

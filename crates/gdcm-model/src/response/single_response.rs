@@ -1,5 +1,5 @@
-//! A single response as a model of minimal order: balanced, without the states that the input does
-//! not control or the output does not observe.
+//! A single response as a minimal-order model: balanced, without the states that the input does not
+//! control or the output does not observe.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -18,7 +18,7 @@ pub(super) struct SingleResponse {
     pub(super) d: f64,
 }
 
-/// Share of |A| below which an entry is regarded as a rounding error of the reflections.
+/// Share of |A| below which an entry is regarded as a rounding error from the reflections.
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl SingleResponse {
@@ -42,8 +42,8 @@ impl SingleResponse {
     /// zero except for its first entry.
     ///
     /// Reflections align b with the first state, then each column of A with its subdiagonal; the
-    /// chain from the input ends at the first negligible subdiagonal entry (the staircase of Van
-    /// Dooren, IEEE Trans. Automatic Control 26(1), 1981, for one input).
+    /// chain from the input ends at the first negligible subdiagonal entry (Van Dooren's staircase,
+    /// IEEE Trans. Automatic Control 26(1), 1981, for one input).
     pub(super) fn controllable(mut self) -> Self {
         let size = self.a.nrows();
         let negligible = NEGLIGIBLE * self.a.norm();
@@ -64,8 +64,8 @@ impl SingleResponse {
         self
     }
 
-    /// Returns the transposed model, whose controllable states are the observable states of the
-    /// original.
+    /// Returns the transposed model, whose controllable states are the original's observable
+    /// states.
     pub(super) fn transposed(self) -> Self {
         Self {
             a: self.a.transpose(),

@@ -1,4 +1,4 @@
-//! Subdiagonal entries of a Hessenberg matrix, with the constants for their elimination
+//! Subdiagonal entries in a Hessenberg matrix, with the constants for eliminating them
 //! ([`super::elimination`]).
 
 /// Magnitude below which a subdiagonal entry is set to zero, which splits the model in two. Since
@@ -10,12 +10,12 @@ const NEGLIGIBLE: f64 = 1e-70;
 ///
 /// With tau = 1 the elimination is Gaussian elimination with partial pivoting. A larger tau uses
 /// real rows more often, which cost a half to a third as much as complex rows, and increases the
-/// rounding error by a factor of at most `n tau`: with the unit roundoff 1.1e-16 it is at most
-/// 3e-11, for any order. The models in `benches/responses.rs` have errors up to 7e-13, relative to
-/// their largest value.
+/// rounding error by at most a factor `n tau`: with the unit roundoff 1.1e-16 it is at most 3e-11,
+/// for any order. The models in `benches/responses.rs` have errors up to 7e-13, relative to their
+/// largest value.
 const PIVOT_THRESHOLD: f64 = (1_u32 << 18) as f64;
 
-/// Subdiagonal entry `h` in a column of G, with the constants for its elimination.
+/// Subdiagonal entry `h` in a column of G, with the constants for eliminating it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subdiagonal {
     /// `h`; zero if negligible.
@@ -32,7 +32,7 @@ pub(super) struct Subdiagonal {
 }
 
 impl Subdiagonal {
-    /// Creates the constants for a subdiagonal entry of a model with `order` states.
+    /// Creates the constants for a subdiagonal entry in a model with `order` states.
     pub fn new(entry: f64, order: usize) -> Self {
         if entry.abs() < NEGLIGIBLE {
             return Self {

@@ -1,4 +1,4 @@
-//! Transmission zeros of a single response.
+//! Computes a single response's transmission zeros.
 //!
 //! ```text
 //! 1  keep the states on a chain of nonzero entries from the input to the output; balance A
@@ -22,7 +22,7 @@ use super::schur_form::SchurForm;
 use super::single_response::SingleResponse;
 use crate::dataset::{Dynamics, Pair, StateSpace};
 
-/// Transmission zeros of a response.
+/// A response's transmission zeros.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransmissionZeros {
     /// Finite zeros \[rad/s\] in ascending modulus; conjugate pairs are exact, with the zero above
@@ -33,7 +33,7 @@ pub struct TransmissionZeros {
     pub infinite: usize,
 }
 
-/// Reason why the zeros of a response are unavailable.
+/// Reason why a response's zeros are unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ZerosError {
     #[error("{0}")]
@@ -123,7 +123,7 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     Ok(TransmissionZeros { finite, infinite })
 }
 
-/// A response without zeros at infinity, and the number of zeros at infinity that were removed.
+/// A response without zeros at infinity, and how many zeros at infinity were removed.
 struct ReducedResponse {
     model: SingleResponse,
     infinite: usize,
@@ -134,9 +134,9 @@ struct ReducedResponse {
 /// A feed-through is treated as zero if a zero would otherwise be farther out than 1e10 times
 /// `|A|`, or, once a zero has been removed, if it is below 1e-12 times `|c|`, its rounding error.
 fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> {
-    /// Maximum magnitude of a zero, relative to `|A|`.
+    /// Maximum zero magnitude, relative to `|A|`.
     const FARTHEST: f64 = 1e10;
-    /// Rounding error of a feed-through that was an entry of c, relative to `|c|`.
+    /// Rounding error in a feed-through that was an entry of c, relative to `|c|`.
     const ROUNDING: f64 = 1e-12;
     let size = model.a.norm().max(f64::MIN_POSITIVE);
     let mut infinite = 0;
@@ -155,8 +155,8 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
             return None;
         }
         let rest = states - 1;
-        // Omit the first entry of b: it is its only nonzero entry, and as a factor of the response
-        // does not move any zero.
+        // Omit the first entry of b: it is b's only nonzero entry, and scales the response without
+        // moving any zero.
         model = SingleResponse {
             a: model.a.view((1, 1), (rest, rest)).into_owned(),
             b: model.a.view((1, 0), (rest, 1)).column(0).into_owned(),
@@ -167,7 +167,7 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
     }
 }
 
-/// Value and slope of a response at a point of the s-plane.
+/// A response's value and slope at a point in the s-plane.
 struct PointValue {
     /// `H(s)`.
     value: Complex<f64>,
@@ -175,7 +175,7 @@ struct PointValue {
     slope: Complex<f64>,
 }
 
-/// Computes the value and slope of a response at `s`; `None` at a pole.
+/// Computes a response's value and slope at `s`; `None` at a pole.
 fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<PointValue> {
     let resolvent = DMatrix::from_fn(model.a.nrows(), model.a.nrows(), |row, column| {
         let diagonal = if row == column { s } else { Complex::from(0.0) };
@@ -190,15 +190,15 @@ fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<PointVa
     })
 }
 
-/// Returns the output `c x` of states x.
+/// Returns the output `c x` for states x.
 fn output(model: &SingleResponse, states: &DVector<Complex<f64>>) -> Complex<f64> {
     model.c.iter().zip(states.iter()).map(|(c, x)| x * *c).sum()
 }
 
-/// Refines a zero by Newton's method (step 5), at most by a relative distance of 1e-3; returns it
+/// Refines a zero by Newton's method (step 5), by a relative distance up to 1e-3; returns it
 /// unchanged if the response does not decrease.
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
-    /// Maximum number of Newton steps.
+    /// Maximum Newton step count.
     const MOST_STEPS: usize = 4;
     /// Maximum relative distance between a zero and its refined value.
     const CLOSE: f64 = 1e-3;
@@ -211,7 +211,7 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
         if zero.im == 0.0 {
             next.im = 0.0;
         }
-        // `!(...).le(...)` is also true for NaN, which results from a slope of zero.
+        // `!(...).le(...)` is also true for NaN, which results from a zero slope.
         if !(next - zero).norm().le(&(CLOSE * zero.norm())) || next.im < 0.0 {
             break;
         }

@@ -1,4 +1,4 @@
-//! Discretisation of a state-space model that is exact for inputs which are linear between samples.
+//! Discretises a state-space model exactly for inputs that are linear between samples.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -72,8 +72,8 @@ impl FirstOrderHold {
         outputs
     }
 
-    /// Returns the outputs `C Phi^k` of the free response to each initial state, for k = 0 ...
-    /// `samples` - 1: one column per state, and for each sample one row per output.
+    /// Returns the free response `C Phi^k` to each initial state, for k = 0 ... `samples` - 1: one
+    /// column per state, and for each sample one row per output.
     #[must_use]
     pub fn free_responses(&self, samples: usize) -> DMatrix<f64> {
         let (outputs, states) = self.c.shape();

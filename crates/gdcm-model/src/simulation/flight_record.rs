@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::dataset::channel::ChannelSide;
 
-/// A flight record: time stamps and samples of all inputs and outputs, in the units of the file.
+/// A flight record: time stamps and samples for all inputs and outputs, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightRecord {
     /// Display name.
@@ -19,12 +19,12 @@ pub struct FlightRecord {
     pub outputs: DMatrix<f64>,
 }
 
-/// A gap-free segment of a flight record on a uniform time grid, with all samples finite.
+/// A gap-free record segment on a uniform time grid, with all samples finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
     /// Record index, counted from 0.
     pub record: usize,
-    /// Time of the first sample \[s\], on the record's time axis.
+    /// First sample's time \[s\], on the record's time axis.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
@@ -35,7 +35,7 @@ pub struct Segment {
 }
 
 impl FlightRecord {
-    /// Returns the samples of a channel; panics if the record does not have it.
+    /// Returns a channel's samples; panics if the record does not have the channel.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -46,13 +46,13 @@ impl FlightRecord {
 }
 
 impl Segment {
-    /// Returns the number of samples times the sample time \[s\].
+    /// Returns the duration \[s\]: sample count times sample time.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.sample_time_s * self.inputs.nrows() as f64
     }
 
-    /// Returns the samples of a channel; panics if the segment does not have it.
+    /// Returns a channel's samples; panics if the segment does not have the channel.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal

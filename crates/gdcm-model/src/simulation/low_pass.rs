@@ -19,9 +19,9 @@ const LONGEST: f64 = 1e5;
 /// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
 /// ```
 ///
-/// Its phase is zero. All channels of a record pass through the same filter, so that the responses
-/// between channels are unchanged. At both ends the signal is extended by odd reflection,
-/// `2 x[0] - x[n]`.
+/// Its phase is zero. All channels in a record pass through the same filter, so that the responses
+/// between channels are unchanged. At both ends the signal is extended by odd reflection, `2 x[0] -
+/// x[n]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LowPass {
     /// Coefficients `h[0] ... h[M]`; the others follow by symmetry.
@@ -70,7 +70,7 @@ impl LowPass {
         filtered
     }
 
-    /// Returns the filtered value at index `centre` of the extended signal.
+    /// Returns the filtered value at index `centre` in the extended signal.
     fn filtered_sample(&self, extended: &[f64], centre: usize) -> f64 {
         let sides: f64 = self
             .half
@@ -82,15 +82,15 @@ impl LowPass {
         self.half[0] * extended[centre] + sides
     }
 
-    /// Filters every channel of a segment with the cut-off frequency `omega` \[rad/s\]. Returns the
+    /// Filters every channel in a segment with the cut-off frequency `omega` \[rad/s\]. Returns the
     /// segment unchanged if [`LowPass::new`] returns `None`.
     #[must_use]
     pub fn applied(omega: f64, segment: &Segment) -> Segment {
         Self::thinned(omega, 1, segment)
     }
 
-    /// Filters as [`LowPass::applied`] does and keeps every `step`-th sample, beginning with the
-    /// first: the samples that are kept are those at the same times.
+    /// Filters as [`LowPass::applied`] does, but computes only every `step`-th sample, beginning
+    /// with the first.
     ///
     /// The caller chooses a step that leaves half the sampling frequency well above `omega`. A
     /// segment that is not filtered is not thinned either.
@@ -119,8 +119,8 @@ impl LowPass {
     }
 }
 
-/// Returns `sin(wc n dt) / (pi n)` times the Hamming window of half length `length`, with
-/// `step = wc dt`.
+/// Returns `sin(wc n dt) / (pi n)` times the Hamming window with half length `length`, with `step =
+/// wc dt`.
 fn windowed_sinc(n: f64, step: f64, length: f64) -> f64 {
     let sinc = if n == 0.0 {
         step / PI

@@ -1,4 +1,4 @@
-//! Time responses: flight records, their low-pass filter, and simulation of a model against them
+//! Time responses: flight records, their low-pass filter, and model simulation against them
 //! (`validation.rs`).
 
 mod first_order_hold;

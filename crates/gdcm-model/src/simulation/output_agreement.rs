@@ -1,4 +1,4 @@
-//! Agreement of measured and simulated outputs: fit and Theil's coefficient.
+//! Agreement between measured and simulated outputs: fit and Theil's coefficient.
 //!
 //! ```text
 //! fit = 100 (1 - rms(y - y^) / std(y)),   Theil = rms(y - y^) / (rms(y) + rms(y^))
@@ -9,12 +9,12 @@
 
 use nalgebra::DMatrix;
 
-/// Measured and simulated outputs in a window of a record.
+/// Measured and simulated outputs in a record window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValidationWindow {
     /// Record index, counted from 0.
     pub record: usize,
-    /// Time of the first sample \[s\], on the record's time axis.
+    /// First sample's time \[s\], on the record's time axis.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
@@ -24,13 +24,13 @@ pub struct ValidationWindow {
     pub simulated: DMatrix<f64>,
 }
 
-/// Agreement of each output over all windows.
+/// Agreement for each output over all windows.
 pub(super) struct Agreement {
     pub(super) fit_percent: Vec<Option<f64>>,
     pub(super) theil: Vec<Option<f64>>,
 }
 
-/// Computes the fit \[%\] and Theil's coefficient of each output.
+/// Computes the fit \[%\] and Theil's coefficient for each output.
 pub(super) fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let measured = windows.iter().map(|window| &window.measured);
     let means = column_means(measured.clone());
@@ -43,8 +43,8 @@ pub(super) fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let simulated = column_sums(windows.iter().map(|window| &window.simulated), |o, y| {
         (y - means[o]).powi(2)
     });
-    // Sums replace rms and standard deviation: all run over the same samples, so that the number of
-    // samples cancels.
+    // Sums replace rms and standard deviation: all run over the same samples, so that the sample
+    // count cancels.
     let mut agreement = Agreement {
         fit_percent: Vec::new(),
         theil: Vec::new(),
@@ -58,7 +58,7 @@ pub(super) fn agreement(windows: &[ValidationWindow]) -> Agreement {
     agreement
 }
 
-/// Returns the standard deviation of each column over all `parts`; 1 for a constant column.
+/// Returns each column's standard deviation over all `parts`; 1 for a constant column.
 pub(super) fn column_deviations<'a>(
     parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone,
 ) -> Vec<f64> {
@@ -77,7 +77,7 @@ pub(super) fn column_deviations<'a>(
     deviations
 }
 
-/// Returns the mean of each column over all `parts`.
+/// Averages each column over all `parts`.
 fn column_means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let samples: usize = parts.clone().map(DMatrix::nrows).sum();
     column_sums(parts, |_, y| y)
@@ -86,7 +86,7 @@ fn column_means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Ve
         .collect()
 }
 
-/// Sums `term(column, value)` over all samples of all `parts`, for each column.
+/// Sums `term(column, value)` over all samples in all `parts`, for each column.
 fn column_sums<'a>(
     parts: impl Iterator<Item = &'a DMatrix<f64>>,
     term: impl Fn(usize, f64) -> f64,

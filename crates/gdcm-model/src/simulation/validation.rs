@@ -1,4 +1,4 @@
-//! Validation in the time domain: simulation of a model and comparison with flight records.
+//! Validation in the time domain: simulates a model and compares it with flight records.
 
 use super::first_order_hold::FirstOrderHold;
 use super::flight_record::Segment;
@@ -11,8 +11,8 @@ use super::window_simulation::best_simulation;
 use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
 
-/// Validates `model`, in the units of the file, against `segments` in the time domain (M14, section
-/// 6). The windows are short enough for an unstable model, and each has its own initial state and
+/// Validates `model`, in the file's units, against `segments` in the time domain (M14, section 6).
+/// The windows are short enough for an unstable model, and each has its own initial state and
 /// output offsets.
 ///
 /// ```text
@@ -68,8 +68,8 @@ pub fn validate(
     })
 }
 
-/// Simulates the windows of a segment; empty if it is too short. `std` holds the standard deviation
-/// of each output.
+/// Simulates the windows in a segment; empty if it is too short. `std` contains each output's
+/// standard deviation.
 fn simulated_windows(
     model: &StateSpace,
     segment: &Segment,
@@ -103,15 +103,15 @@ fn simulated_windows(
     Ok(windows)
 }
 
-/// Agreement of a model with flight records in the time domain.
+/// A model's agreement with flight records in the time domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validation {
     /// The windows, by segment and time; at least one.
     pub windows: Vec<ValidationWindow>,
-    /// Fit of each output, `100 (1 - rms(e) / std(y))`, at most 100; `None` if the output is
+    /// Each output's fit, `100 (1 - rms(e) / std(y))`, at most 100; `None` if the output is
     /// constant.
     pub fit_percent: Vec<Option<f64>>,
-    /// Theil's coefficient of each output, `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
+    /// Each output's Theil coefficient, `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
     /// `None` if both are constant.
     pub theil: Vec<Option<f64>>,
 }
@@ -121,7 +121,7 @@ pub struct Validation {
 pub enum ValidationError {
     #[error("no record is available for the comparison with the model")]
     NoSegments,
-    /// The inputs or outputs differ from those of a segment; index of its record, counted from 0.
+    /// The inputs or outputs differ from a segment's; its record's index, counted from 0.
     #[error("the channels of record {} differ from those of the model", .0 + 1)]
     ChannelsDiffer(usize),
     /// A model that cannot be discretised, or whose poles cannot be computed.
@@ -129,7 +129,7 @@ pub enum ValidationError {
     NotSimulated,
     #[error("the window length must be positive")]
     NoWindow,
-    /// Too few samples for the estimate of an initial state; window length \[s\].
+    /// Too few samples to estimate an initial state; window length \[s\].
     #[error(
         "too short to compare in time: windows of {0:.2} s (limited by the record, or to \
         {TIME_CONSTANTS} time constants of the model's fastest diverging mode) contain too few \

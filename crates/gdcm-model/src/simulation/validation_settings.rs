@@ -11,7 +11,7 @@ const LONGEST_WINDOW_S: f64 = 10.0;
 pub(super) const TIME_CONSTANTS: f64 = 3.0;
 /// Minimum ratio of output samples to unknowns (initial state and offsets) in a window.
 const SAMPLES_PER_UNKNOWN: usize = 3;
-/// Excess of a segment over a whole number of windows that is attributed to rounding, in windows.
+/// A segment's excess over a whole number of windows that is attributed to rounding, in windows.
 const WINDOW_SLACK: f64 = 1e-6;
 
 /// Settings for validation in the time domain.
@@ -19,7 +19,7 @@ const WINDOW_SLACK: f64 = 1e-6;
 pub struct ValidationSettings {
     /// Maximum window length \[s\].
     pub longest_window_s: f64,
-    /// Cut-off frequency \[rad/s\] of the low-pass filter for inputs and outputs; `None` compares
+    /// Cut-off frequency for low-pass filtering inputs and outputs \[rad/s\]; `None` compares
     /// unfiltered signals.
     pub low_pass: Option<f64>,
 }
@@ -46,7 +46,7 @@ impl ValidationSettings {
 
     /// Returns the settings with a maximum window length that suits all models: the shortest of
     /// their window lengths. A model with too few samples in its own windows cannot be compared,
-    /// and does not shorten the windows of the other models.
+    /// and does not shorten the other models' windows.
     #[must_use]
     pub fn common_to<'m>(
         self,
@@ -83,8 +83,8 @@ pub(super) fn window_length_s(model: &StateSpace, longest_s: f64) -> Option<f64>
     })
 }
 
-/// Returns the number of equal windows in a segment; `None` if they have too few samples for the
-/// estimate of an initial state.
+/// Returns the number of equal windows in a segment; `None` if they have too few samples to
+/// estimate an initial state.
 pub(super) fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
     let count = (samples as f64 * segment.sample_time_s / window_s - WINDOW_SLACK)
@@ -97,8 +97,8 @@ pub(super) fn window_count(model: &StateSpace, segment: &Segment, window_s: f64)
     }
 }
 
-/// Returns the index of the first sample in window `k`; uses 128 bits because the product may
-/// overflow 64 bits.
+/// Returns the first sample's index in window `k`; uses 128 bits because the product may overflow
+/// 64 bits.
 pub(super) fn window_start(k: usize, count: usize, samples: usize) -> usize {
     (samples as u128 * k as u128 / count as u128) as usize
 }

@@ -1,5 +1,5 @@
-//! Simulation of a model in a window of a record, with the initial state and the output offsets that
-//! fit the record best.
+//! Simulates a model in a record window, with the initial state and the output offsets that fit the
+//! record best.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -13,7 +13,7 @@ const RANK_TOLERANCE: f64 = 1e-9;
 /// between the outputs and `measured`, each output divided by its standard deviation in `std`;
 /// `None` if the outputs are not finite.
 ///
-/// `free` holds [`FirstOrderHold::free_responses`] for at least as many samples.
+/// `free` contains [`FirstOrderHold::free_responses`] for at least as many samples.
 pub(super) fn best_simulation(
     discretised: &FirstOrderHold,
     free: &DMatrix<f64>,
@@ -49,8 +49,8 @@ pub(super) fn best_simulation(
     }
 }
 
-/// Returns the least-squares solution `x` of `a x = b`, given as `[a | b]`; of several solutions,
-/// the one of minimum norm after scaling the columns of `a` to unit length. `None` if it is not
+/// Returns the least-squares solution `x` of `a x = b`, given as `[a | b]`; if there are several,
+/// the one with minimum norm after scaling the columns of `a` to unit length. `None` if it is not
 /// finite.
 fn least_squares(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     let unknowns = rows.ncols() - 1;

@@ -1,4 +1,4 @@
-//! Statistics of samples.
+//! Sample statistics.
 
 mod order_statistics;
 

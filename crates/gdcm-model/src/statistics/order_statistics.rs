@@ -59,12 +59,11 @@ pub fn mean(values: &[f64]) -> f64 {
 }
 
 /// Returns the quantile for a probability `q` from 0 to 1, linear between order statistics (M7):
-/// type 7 of Hyndman & Fan, "Sample quantiles in statistical packages", The American Statistician
-/// 50(4), 1996, the default of numpy.
+/// type 7 in Hyndman & Fan, "Sample quantiles in statistical packages", The American Statistician
+/// 50(4), 1996, the default in numpy.
 ///
-/// Of n sorted values, `x_0` to `x_(n-1)`: `h = q (n - 1)`, `k = floor(h)`,
-/// `x = x_k + (h - k) (x_(k+1) - x_k)`. NaN for no values. The values must be finite; their order
-/// changes.
+/// For n sorted values, `x_0` to `x_(n-1)`: `h = q (n - 1)`, `k = floor(h)`, `x = x_k + (h - k)
+/// (x_(k+1) - x_k)`. NaN for no values. The values must be finite; their order changes.
 pub fn quantile(values: &mut [f64], q: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;

@@ -7,10 +7,10 @@ use gdcm_sysid::identification::Identification;
 
 use super::edit_refusal::EditRefusal;
 
-/// Which models of an identification are adopted.
+/// Selection among the models from an identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OfferedModels {
-    /// Whether to adopt the refined model, the models of neighbouring orders, and those fitted
+    /// Whether to adopt the refined model, the models with neighbouring orders, and those fitted
     /// without one record each (M14, section 5).
     pub refined: bool,
     /// Whether to adopt the CT-PBSID model without refinement.
@@ -20,14 +20,14 @@ pub struct OfferedModels {
 }
 
 impl OfferedModels {
-    /// The refined model, the models of neighbouring orders, and those fitted without one record
+    /// The refined model, the models with neighbouring orders, and those fitted without one record
     /// each (M14, section 5).
     pub const REFINED: Self = Self {
         refined: true,
         unrefined: false,
         measured: false,
     };
-    /// The models of [`Self::REFINED`], and the CT-PBSID model without refinement.
+    /// The models in [`Self::REFINED`], and the CT-PBSID model without refinement.
     pub const WITH_UNREFINED: Self = Self {
         refined: true,
         unrefined: true,
@@ -49,7 +49,8 @@ pub struct AdoptedModels {
 }
 
 impl AdoptedModels {
-    /// Returns the chosen models of an identification from `records`, the recommended model first.
+    /// Collects the chosen models from an identification with `records`, the recommended model
+    /// first.
     pub fn from_identification(
         found: &Identification,
         offered: OfferedModels,
@@ -78,8 +79,8 @@ impl AdoptedModels {
         Self { models, records }
     }
 
-    /// Returns the dataset in which these models are the identified bundle of a condition; these
-    /// records are added to the records of the condition.
+    /// Returns the dataset in which these models are a condition's identified bundle; the records
+    /// are added to the condition's records.
     ///
     /// # Errors
     /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] if the models do not fit the
@@ -88,8 +89,8 @@ impl AdoptedModels {
         let before = dataset
             .condition(id)
             .ok_or(EditRefusal::NoCondition { condition: id })?;
-        // A condition may have no identified models, but an empty list of models must not replace
-        // the existing bundle.
+        // A condition may have no identified models, but an empty model list must not replace the
+        // existing bundle.
         if self.models.is_empty() {
             let error = ConditionError::EmptyBundle(BundleKind::Identified);
             return Err(refused(id, &error));

@@ -1,6 +1,6 @@
-//! Models of a study that differ from those in the file of its dataset: adopted models, and
-//! channels with reversed sign. The dataset of the study contains these changes, so that no other
-//! code needs to apply them.
+//! A study's models that differ from those in its dataset's file: adopted models, and channels with
+//! reversed sign. The study's dataset contains these changes, so that no other code needs to apply
+//! them.
 //!
 //! In names, "taken" models are adopted models, and "turned" channels have a reversed sign.
 
@@ -17,7 +17,7 @@ use super::signs::{SignRole, Signs, TurnedChannel, turned};
 use super::study::Study;
 
 impl Study {
-    /// Returns the dataset of the file, without adopted models and with the original signs.
+    /// Returns the dataset as in its file, without adopted models and with the original signs.
     pub fn file_dataset(&self) -> &Arc<Dataset> {
         self.file.as_ref().unwrap_or(&self.dataset)
     }
@@ -38,14 +38,14 @@ impl Study {
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Restores the models of the file in a condition.
+    /// Restores a condition's models from the file.
     pub(crate) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
         let mut models = self.taken.clone();
         models.remove(&condition);
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Reverses the sign of a channel in the models, or restores it.
+    /// Reverses a channel's sign in the models, or restores it.
     pub(crate) fn set_sign(
         &mut self,
         channel: Channel,
@@ -60,7 +60,7 @@ impl Study {
         self.rebuild(self.taken.clone(), signs)
     }
 
-    /// Applies these adopted models and then the reversed signs to the dataset of the file.
+    /// Applies these adopted models and then the reversed signs to the dataset from the file.
     fn rebuild(
         &mut self,
         models: BTreeMap<ConditionId, Arc<AdoptedModels>>,

@@ -9,9 +9,9 @@ use gdcm_model::dataset::BundleKind;
 /// The engineer's choices in a bundle.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BundleChoice {
-    /// Names of the rejected models.
+    /// Rejected models, by name.
     pub rejected: BTreeSet<String>,
-    /// Reasons of rejections, in the engineer's words, where given; studies saved by earlier
+    /// Reasons for rejections, in the engineer's words, where given; studies saved by earlier
     /// versions have none.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reasons: BTreeMap<String, String>,
@@ -40,8 +40,8 @@ pub struct ConditionChoice {
     pub physics: BundleChoice,
     pub identified: BundleChoice,
     pub scheduled: bool,
-    /// Whether the condition is held out: it is analysed and assessed, but not used in the fit of
-    /// the schedule, which it can therefore validate.
+    /// Whether the condition is held out: it is analysed and assessed, but not used to fit the
+    /// schedule, which it can therefore validate.
     pub held_out: bool,
 }
 
@@ -57,7 +57,7 @@ impl Default for ConditionChoice {
 }
 
 impl ConditionChoice {
-    /// Restores every model of both bundles.
+    /// Restores every rejected model in both bundles.
     pub(crate) fn restore_all(&mut self) {
         for choice in [&mut self.physics, &mut self.identified] {
             choice.rejected.clear();
@@ -65,7 +65,7 @@ impl ConditionChoice {
         }
     }
 
-    /// Returns the choices on which an analysis depends: all except the reasons of rejections.
+    /// Returns the choices on which an analysis depends: all except the reasons for rejections.
     pub(crate) fn without_reasons(&self) -> Self {
         let mut choice = self.clone();
         choice.physics.reasons.clear();
@@ -73,7 +73,7 @@ impl ConditionChoice {
         choice
     }
 
-    /// Returns the choices on which the comparison of the models depends.
+    /// Returns the choices on which the model comparison depends.
     pub(crate) fn of_models(&self) -> Self {
         Self {
             scheduled: true,
@@ -82,7 +82,7 @@ impl ConditionChoice {
         }
     }
 
-    /// Returns whether the condition is used in the fit of the schedule: chosen, and not held out.
+    /// Returns whether the condition is used to fit the schedule: chosen, and not held out.
     pub fn is_in_schedule(&self) -> bool {
         self.scheduled && !self.held_out
     }

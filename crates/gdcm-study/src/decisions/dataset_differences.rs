@@ -1,4 +1,4 @@
-//! Differences between two states of a dataset.
+//! Differences between two states of a dataset, and the inventory that detects them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -19,14 +19,14 @@ pub enum Difference {
     /// The file has changed since the study was saved, and the study has no inventory of its former
     /// content.
     AnotherFile {
-        /// SHA-256 of the file at the time the study was saved.
+        /// SHA-256 of the file when the study was saved.
         expected: String,
         /// SHA-256 of the file now.
         found: String,
     },
     ConditionAdded(ConditionId),
     ConditionRemoved(ConditionId),
-    /// The airspeed of a condition has changed.
+    /// A condition's airspeed has changed.
     AirspeedChanged {
         condition: ConditionId,
         /// Former airspeed \[kt\].
@@ -37,7 +37,7 @@ pub enum Difference {
     /// A bundle has a new model.
     ModelAdded(ModelId),
     ModelRemoved(ModelId),
-    /// The matrices, bands or trim of a model have changed.
+    /// A model's matrices, bands or trim have changed.
     ModelChanged(ModelId),
     /// A decision no longer applies.
     NotApplied {
@@ -85,7 +85,8 @@ pub enum CarriedDecision {
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotApplied {
     Refused(EditRefusal),
-    /// The dataset lacks a channel of a requirement setting, which the study keeps.
+    /// The dataset lacks the channel to which a requirement setting belongs; the study keeps the
+    /// setting.
     KeptForAnotherDataset,
     NoResponse,
     NoChannel,
@@ -109,7 +110,7 @@ impl NotApplied {
 pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
-    /// Creates the inventory of a dataset, with a fingerprint of every model.
+    /// Takes a dataset's inventory, with a fingerprint for every model.
     pub fn from_dataset(dataset: &Dataset) -> Self {
         let conditions = dataset.conditions().iter();
         Self(
@@ -127,7 +128,7 @@ impl Inventory {
             .collect()
     }
 
-    /// Lists the differences between the dataset of this inventory and `dataset`.
+    /// Lists the differences between the dataset in this inventory and `dataset`.
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
         let inventory_now = Inventory::from_dataset(dataset);
         let before = self.by_id();
@@ -145,7 +146,7 @@ impl Inventory {
     }
 }
 
-/// Models of a condition: for each name, a fingerprint of matrices, bands and trim.
+/// A condition's models: for each name, a fingerprint of matrices, bands and trim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionInventory {
     pub id: ConditionId,
@@ -171,7 +172,7 @@ impl ConditionInventory {
         }
     }
 
-    /// Returns the models of a bundle: their fingerprints by name.
+    /// Returns a bundle's models: their fingerprints by name.
     pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
         kind.pick(&self.physics, &self.identified)
     }

@@ -1,4 +1,4 @@
-//! All kinds of decisions about a study, and the only code that applies them.
+//! Every kind of decision about a study, and the only code that applies it.
 
 use std::sync::Arc;
 
@@ -25,11 +25,11 @@ pub enum Edit {
     /// Sets a rejection's reason; an empty reason removes it.
     SetReason(ModelId, String),
     Restore(ModelId),
-    /// Restores every rejected model of a condition, in both bundles.
+    /// Restores a condition's rejected models, in both bundles.
     RestoreAll {
         condition: ConditionId,
     },
-    /// Rejects all of these models, or none.
+    /// Rejects all these models, or none.
     RejectEach(Vec<ModelId>),
     RestoreEach(Vec<ModelId>),
     /// Makes a model represent its bundle instead of the medoid.
@@ -43,13 +43,13 @@ pub enum Edit {
         condition: ConditionId,
         scheduled: bool,
     },
-    /// Excludes a condition from the fit of the schedule, so that it can validate the schedule; or
+    /// Excludes a condition from the schedule fit, so that it can validate the schedule; or
     /// includes it again.
     SetHeldOut {
         condition: ConditionId,
         held_out: bool,
     },
-    /// Constrains the on-axis responses of the dataset, and releases all others.
+    /// Constrains the dataset's on-axis responses, and releases all others.
     ConstrainOnAxis,
     /// Constrains or releases a response.
     Hold(Pair, bool),
@@ -57,15 +57,14 @@ pub enum Edit {
     Fit(Pair, bool),
     /// Changes a setting; built by [`Setting::to`].
     Set(&'static Setting, Value),
-    /// Reverses the sign of a channel in the models, or restores it. As a decision about the data,
-    /// it is common to all variants.
+    /// Reverses a channel's sign in the models, or restores it. As a decision about the data, it is
+    /// common to all variants.
     SetSign {
         channel: Channel,
         /// The models in which the sign is reversed; `None` restores the sign in all.
         of: Option<SignRole>,
     },
-    /// Adopts models identified from flight records instead of the identified bundles of
-    /// conditions.
+    /// Adopts models identified from flight records instead of the conditions' identified bundles.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     ReturnModels {
         condition: ConditionId,
@@ -95,7 +94,7 @@ pub enum Edit {
     },
 }
 
-/// Maximum length of the reason of a rejection, in characters.
+/// Maximum length of the reason for a rejection, in characters.
 pub const LONGEST_REASON: usize = 1000;
 
 impl Setting {
@@ -106,14 +105,14 @@ impl Setting {
 }
 
 impl Edit {
-    /// Returns the decision that rejects physics models of a condition, by name.
+    /// Returns the decision that rejects a condition's physics models, by name.
     pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
         let named = |name: &String| ModelId::new(condition, BundleKind::Physics, name);
         Self::RejectEach(models.iter().map(named).collect())
     }
 
-    /// Returns whether two consecutive decisions form one undo step, as two positions of the same
-    /// slider do.
+    /// Returns whether two consecutive decisions form one undo step, such as two positions of the
+    /// same slider.
     pub fn continues(&self, earlier: &Edit) -> bool {
         match (self, earlier) {
             (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
@@ -184,8 +183,7 @@ impl Study {
             .ok_or(EditRefusal::NoCondition { condition: id })
     }
 
-    /// Returns the choices in the bundle of a model, for changes; refuses a model that does not
-    /// exist.
+    /// Returns the choices in a model's bundle, for changes; refuses a model that does not exist.
     fn bundle_choice_mut(&mut self, id: &ModelId) -> Result<&mut BundleChoice, EditRefusal> {
         let Some(condition) = self.dataset.condition(id.condition) else {
             return Err(EditRefusal::NoCondition {

@@ -1,4 +1,4 @@
-//! Refusals of decisions.
+//! Reasons for refusing a decision.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::band::BandError;
@@ -58,7 +58,7 @@ pub enum EditRefusal {
         \"parameter\""
     )]
     NoParameter { name: String },
-    /// The limits of the band are invalid.
+    /// The band limits are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
     #[error("{setting}: this value is not permitted")]

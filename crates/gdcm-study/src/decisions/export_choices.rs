@@ -1,28 +1,28 @@
-//! Choices of the export dialog, remembered in the study. No result depends on them, and they are
-//! no step of the undo history.
+//! Choices in the export dialog, remembered in the study. No result depends on them, and the undo
+//! history ignores them.
 
 use std::collections::BTreeSet;
 
 use gdcm_model::dataset::ConditionId;
 
-/// What was exported last, and where to.
+/// Choices in the last export: formats, contents and destination.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportChoices {
-    /// Names of the formats, as on the command line: "json", "m".
+    /// Formats, named as on the command line: "json", "m".
     pub formats: BTreeSet<String>,
     /// Exported conditions; all if `None`, also those that a later dataset adds.
     pub conditions: Option<BTreeSet<ConditionId>>,
-    /// Whether corrected models get their condition's own correction instead of the schedule.
+    /// Whether corrected models get their condition's own correction, not the schedule.
     pub per_condition: bool,
-    /// Physics model of each condition: "nominal", "representative", or the name of a model.
+    /// Physics model for each condition: "nominal", "representative", or a model name.
     pub model: String,
-    /// Airspeeds \[kt\] of lookup tables; those of the scheduled conditions if `None`.
+    /// Airspeeds in lookup tables \[kt\]; the scheduled conditions' airspeeds if `None`.
     pub breakpoints_kt: Option<Vec<f64>>,
-    /// Order of the Padé approximants of delays.
+    /// Padé order for delays.
     pub pade_order: usize,
     /// Folder as typed or chosen; `None` before the first export.
     pub folder: Option<String>,
-    /// Beginning of every file name; derived from the name of the study if `None`.
+    /// Beginning of every file name; derived from the study's name if `None`.
     pub prefix: Option<String>,
     /// Whether existing files are replaced; otherwise the new files get a number.
     pub replaces: bool,

@@ -1,4 +1,4 @@
-//! Undo and redo of decisions.
+//! Undoes and redoes decisions.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -10,22 +10,21 @@ use super::study::Study;
 
 /// Maximum number of undo steps; a snapshot takes a few kilobytes, because models are shared.
 const MOST_STEPS: usize = 500;
-/// Maximum size of the models that only the undo steps keep in memory \[bytes\]. Reversed signs,
-/// adopted models and reloaded files leave the former models in the steps before.
+/// Maximum memory for models that only the undo steps keep \[bytes\]. Reversed signs, adopted
+/// models and reloaded files leave the former models in the earlier steps.
 const MOST_BYTES: usize = 48 << 20;
-/// Number of datasets of any size that the undo steps may keep in memory.
+/// Number of datasets that the undo steps may keep in memory whatever their size.
 const LEAST_DATASETS: usize = 4;
 
-/// Change that a step of the history undoes or redoes. `C` describes a change of state outside the
-/// study.
+/// Change that a history step undoes or redoes. `C` describes a change to state outside the study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<C = ()> {
     Decision(Edit),
-    /// Changes of several settings in one session of [`History::begin_session`], in order.
+    /// Changes to several settings in one session (see [`History::begin_session`]), in order.
     Settings(Vec<Edit>),
-    /// A change of state outside the study.
+    /// A change to state outside the study.
     Beside(C),
-    /// The dataset was read again from the file of this name.
+    /// The dataset was read again from the file with this name.
     Reload {
         file: String,
     },
@@ -35,7 +34,7 @@ pub enum Change<C = ()> {
 #[derive(Clone, Debug)]
 pub struct Step<B = (), C = ()> {
     pub change: Change<C>,
-    /// The study on the other side of the step.
+    /// The study before the change in an undo step, after it in a redo step.
     pub study: Study,
     beside: B,
     /// Session in which a setting was changed; see [`History::begin_session`].
@@ -46,7 +45,7 @@ pub struct Step<B = (), C = ()> {
 ///
 /// `B` is state outside the study that a step changes as well. A step stores its value before the
 /// decision; undo and redo exchange the stored value and the present value. Decisions that only
-/// change the study use `B::default()`. `C` describes a change of that state.
+/// change the study use `B::default()`. `C` describes a change to that state.
 #[derive(Clone, Debug)]
 pub struct History<B = (), C = ()> {
     past: Vec<Step<B, C>>,
@@ -75,7 +74,8 @@ impl<B, C> Default for History<B, C> {
 }
 
 impl<C> Change<C> {
-    /// Adds a later change of settings. Of several changes of one setting only the last is kept.
+    /// Adds a later change to settings. If a setting changes several times, only the last change is
+    /// kept.
     fn append(&mut self, later: Self) {
         let mut edits = self.edits();
         for edit in later.edits() {
@@ -88,7 +88,7 @@ impl<C> Change<C> {
         };
     }
 
-    /// Returns the decisions of the change, in order.
+    /// Returns the decisions in the change, in order.
     fn edits(&self) -> Vec<Edit> {
         match self {
             Self::Decision(edit) => vec![edit.clone()],
@@ -130,8 +130,8 @@ impl<B: Default, C> History<B, C> {
         self.open = Some(edit.clone());
     }
 
-    /// Stores a decision that leaves the study unchanged; `before` is the former value of the state
-    /// outside the study.
+    /// Stores a decision that leaves the study unchanged; `before` is the former state outside the
+    /// study.
     pub fn record_beside(&mut self, study: Study, change: C, before: B) {
         self.lost = std::mem::take(&mut self.future);
         self.push(Step {
@@ -169,8 +169,8 @@ impl<B: Default, C> History<B, C> {
         }
     }
 
-    /// Removes the oldest steps until the models of all steps take at most [`MOST_BYTES`], or the
-    /// size of [`LEAST_DATASETS`] datasets like the last one if these are larger.
+    /// Removes the oldest steps until the models in all steps take at most [`MOST_BYTES`], or as
+    /// much as [`LEAST_DATASETS`] datasets like the last one if these are larger.
     fn limit_models(&mut self) {
         let mut most_bytes = MOST_BYTES;
         if let Some(last) = self.past.last() {
@@ -191,7 +191,7 @@ impl<B: Default, C> History<B, C> {
         }
     }
 
-    /// Returns the size of the models of all steps, each condition counted once \[bytes\].
+    /// Returns the memory for the models in all steps, each condition counted once \[bytes\].
     pub fn model_bytes(&self) -> usize {
         let mut counted: BTreeSet<*const Condition> = BTreeSet::new();
         let mut bytes = 0;
@@ -212,15 +212,15 @@ impl<B: Default, C> History<B, C> {
         self.open = None;
     }
 
-    /// Begins a session: until [`History::end_session`], each change of a setting has a step of its
-    /// own, which can be undone alone.
+    /// Begins a session: until [`History::end_session`], each change to a setting is a separate
+    /// step, which can be undone alone.
     pub fn begin_session(&mut self) {
         self.seal();
         self.sessions += 1;
         self.session = Some(self.sessions);
     }
 
-    /// Ends the session: its consecutive changes of settings become a single step, or none if they
+    /// Ends the session: its consecutive changes to settings become a single step, or none if they
     /// cancel out. `now` is the present study. Other decisions keep their own steps.
     pub fn end_session(&mut self, now: &Study) {
         let Some(session) = self.session.take() else {

@@ -1,4 +1,4 @@
-//! Decisions of the engineer: settings, rejections, constraints, signs, and the edits that change
+//! The engineer's decisions: settings, rejections, constraints, signs, and the edits that change
 //! them.
 
 pub mod adopted_models;

@@ -16,25 +16,24 @@ use super::settings::{ResponseMark, ResponseNames, Settings};
 use super::signs::TurnedChannel;
 use super::study::{Study, Variant};
 
-/// All decisions of a study, with channels, conditions and models by name: independent of the
-/// dataset.
+/// A study's decisions, with channels, conditions and models by name: independent of the dataset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decisions {
     pub settings: Settings<ResponseNames>,
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
-    /// Models adopted instead of the ones in the file.
+    /// Models adopted instead of those in the file.
     pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
     /// The channels with reversed sign.
     pub signs: Vec<TurnedChannel>,
     pub requirements: Arc<RequirementSettings>,
-    /// Choices of the last export.
+    /// Choices in the last export.
     pub exports: Arc<ExportChoices>,
-    /// The variants; a variant contains no variants of its own.
+    /// The variants, which contain no variants themselves.
     pub variants: Vec<(String, Decisions)>,
 }
 
 impl Decisions {
-    /// Collects the decisions of a study, with channels, conditions and models by name.
+    /// Collects a study's decisions, with channels, conditions and models by name.
     pub fn from_study(study: &Study) -> Self {
         let mut variants = Vec::new();
         for variant in &study.variants {
@@ -53,8 +52,8 @@ impl Decisions {
         }
     }
 
-    /// Returns the study of `dataset` with every decision that applies to it, and a list of the
-    /// decisions that do not apply.
+    /// Returns a study of `dataset` with every decision that applies to it, and those that do not
+    /// apply.
     pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut carried = CarriedDecisions {
             study: Study::new(dataset),
@@ -79,7 +78,7 @@ impl Decisions {
     }
 }
 
-/// A study to which the decisions of another dataset are applied.
+/// A study to which decisions about another dataset are applied.
 struct CarriedDecisions {
     study: Study,
     /// The decisions that do not apply.
@@ -211,7 +210,7 @@ impl CarriedDecisions {
 
 impl Study {
     /// Returns this study for a changed version of its dataset, with every decision that still
-    /// applies; and all differences.
+    /// applies, and all differences.
     pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut differences = Inventory::from_dataset(self.file_dataset()).differences(&dataset);
         let (study, not_applied) = Decisions::from_study(self).applied_to(dataset);

@@ -12,9 +12,9 @@ use gdcm_model::whole_number::whole;
 
 use super::edit_refusal::EditRefusal;
 
-/// Number of frequencies of the fit's grid in a new study.
+/// Number of frequencies in the fit's grid in a new study.
 const DEFAULT_POINTS: usize = 40;
-/// Permitted numbers of frequencies of the fit's grid.
+/// Permitted range for the number of frequencies in the fit's grid.
 const POINTS: [usize; 2] = [3, 1000];
 
 /// Which physics parameters move the physics models, before any other correction (M18.5).
@@ -44,25 +44,25 @@ impl PhysicsCorrection {
     }
 }
 
-/// Decisions about the parameters, by name, and settings of their fit (M18.1, M18.2). Entries for
+/// Decisions about the parameters, by name, and settings for their fit (M18.1, M18.2). Entries for
 /// parameters that the dataset lacks have no effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PhysicsSettings {
-    /// Changes set by hand, in the unit of the parameter.
+    /// Changes set by hand, in the parameter's unit.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub by_hand: BTreeMap<String, f64>,
     /// The parameters that take no part in the fit.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     pub off: BTreeSet<String>,
-    /// Plausible standard deviations instead of those of the dataset, in the unit of the parameter.
+    /// Plausible standard deviations that replace the dataset's, in the parameter's unit.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub plausible_sd: BTreeMap<String, f64>,
-    /// Prior standard deviation of the channels' ln gains in each condition; 0: no gains.
+    /// Prior standard deviation of each channel's ln gain in a condition; 0: no gains.
     pub gain_sd: f64,
-    /// Prior standard deviation of the channels' delays \[s\]; 0: no delays.
+    /// Prior standard deviation of each channel's delay \[s\]; 0: no delays.
     pub delay_sd_s: f64,
-    /// Number of logarithmic frequencies of the fit in the band.
+    /// Number of logarithmically spaced frequencies in the band, for the fit.
     #[serde(deserialize_with = "whole")]
     pub points: usize,
 }
@@ -88,7 +88,7 @@ pub enum ParameterDecision {
     Value(Option<f64>),
     /// Switches it on or off.
     On(bool),
-    /// Sets its plausible standard deviation, in its unit; `None` takes that of the dataset.
+    /// Sets its plausible standard deviation, in its unit; `None` takes the dataset's.
     PlausibleSd(Option<f64>),
 }
 
@@ -100,8 +100,8 @@ impl ParameterDecision {
 }
 
 impl PhysicsSettings {
-    /// Lists the parameters of a dataset that have runs, with the plausible standard deviations of
-    /// the study; parameters that are off included.
+    /// Lists the dataset's parameters that have runs, with the study's plausible standard
+    /// deviations; includes parameters that are off.
     pub fn parameters(&self, dataset: &Dataset) -> Vec<OfferedParameter> {
         let mut parameters = OfferedParameter::list(dataset);
         for parameter in &mut parameters {

@@ -1,4 +1,4 @@
-//! Settings of the qualification requirements (M17), on which no correction depends.
+//! Settings for the qualification requirements (M17), on which no correction depends.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +15,7 @@ use super::settings::is_default;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RequirementSettings {
-    /// Names of the outputs with attitude command; all other outputs have rate command.
+    /// Outputs with attitude command, by name; all other outputs have rate command.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     pub attitude_command: BTreeSet<String>,
     #[serde(skip_serializing_if = "is_default")]
@@ -23,10 +23,10 @@ pub struct RequirementSettings {
     /// Tolerances on simulated time histories, relative to the measured ones.
     #[serde(skip_serializing_if = "is_default")]
     pub tolerances: ToleranceTable,
-    /// Tolerances on the modes of the physics models, relative to the identified modes.
+    /// Tolerances on the physics models' modes, relative to the identified modes.
     #[serde(skip_serializing_if = "is_default")]
     pub mode_tolerances: ModeToleranceTable,
-    /// Limits of the grid that no tolerance table holds.
+    /// Limits in the requirement grid that no tolerance table contains.
     #[serde(skip_serializing_if = "is_default")]
     pub overview: OverviewLimits,
     /// Test input for displayed responses where no flight record is displayed.
@@ -34,13 +34,12 @@ pub struct RequirementSettings {
     pub test: TestInput,
 }
 
-/// Limits of the difference between a corrected and the identified model in the grid of the
-/// requirements. They are not taken from a standard.
+/// Limits on the difference between a corrected and the identified model in the requirement grid.
+/// They do not come from a standard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
-    /// Maximum relative difference between the bandwidths of the corrected and the identified
-    /// model.
+    /// Maximum relative difference in bandwidth between the corrected and the identified model.
     pub bandwidth: f64,
     pub phase_delay_s: f64,
     /// Maximum mean J over the on-axis responses.
@@ -60,7 +59,7 @@ impl Default for OverviewLimits {
     }
 }
 
-/// Error: a limit of the grid is not positive.
+/// Error: a limit in the grid is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("limits of the requirements: expected {name} above zero, found {}", number(*found))]
 pub struct OverviewLimitsError {
@@ -97,7 +96,7 @@ impl OverviewLimits {
 }
 
 impl RequirementSettings {
-    /// Returns the command type of an axis; `output` is the name of its output.
+    /// Returns the command type of an axis; `output` names its output.
     pub fn command_of(&self, output: &str) -> CommandType {
         if self.attitude_command.contains(output) {
             CommandType::Attitude
@@ -122,7 +121,7 @@ impl RequirementSettings {
     }
 }
 
-/// A requirement setting for one output, with the name of the output.
+/// A requirement setting for one output, with the output's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OutputRequirement {
     AttitudeCommand(String),

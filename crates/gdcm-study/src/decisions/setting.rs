@@ -1,4 +1,4 @@
-//! The type [`Setting`], a row of the settings table, and operations on it: setting, checking,
+//! The type [`Setting`], a row in the settings table, and operations on it: setting, checking,
 //! formatting and parsing a value. The table itself is in `setting_table.rs`.
 
 use gdcm_method::correction::delta::GainSource;
@@ -15,25 +15,25 @@ use super::physics_settings::PhysicsCorrection;
 use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 use super::study::Study;
 
-/// One setting: a row of [`SETTINGS`](super::setting_table::SETTINGS).
+/// One setting: a row in [`SETTINGS`](super::setting_table::SETTINGS).
 #[derive(Debug)]
 pub struct Setting {
     /// Name in running text: "α of the gains".
     pub name: &'static str,
-    /// Key in files; a dot separates the keys of nested objects: "lead.n".
+    /// Key in files; a dot separates keys in nested objects: "lead.n".
     pub key: &'static str,
     /// Command-line option: "--alpha".
     pub option: &'static str,
-    /// Value of the option without an argument; `None` where an argument is required.
+    /// Value that the option sets without an argument; `None` where an argument is required.
     pub bare: Option<&'static str>,
     pub unit: Unit,
-    /// Type and range of the value.
+    /// Value type and range.
     pub kind: Kind,
     /// Control in the window.
     pub control: Control,
 }
 
-/// Unit of a setting in files and on a command line, and its displayed unit.
+/// A setting's unit in files and on the command line, and its displayed unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit {
     /// Unit in files.
@@ -44,7 +44,7 @@ pub struct Unit {
     pub scale: f64,
 }
 
-/// Type and range of a setting, with access to its field in [`Settings`].
+/// A setting's type and range, with access to its field in [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     Number {
@@ -90,7 +90,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     pub place: Place,
-    /// Change in the displayed value for each point of dragging.
+    /// Change in the displayed value for each point dragged.
     pub step: f64,
     pub digits: Digits,
     /// Whether the setting has an effect in a study.
@@ -108,7 +108,7 @@ pub enum Digits {
     Gain,
 }
 
-/// Place of the control of a setting.
+/// Where a setting's control is placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Above the settings table, with a slider.
@@ -117,7 +117,7 @@ pub enum Place {
     Top,
     /// On its own line.
     Line,
-    /// On the line of the previous setting.
+    /// On the previous setting's line.
     Beside,
     /// Outside the settings panel, in the view that the setting concerns.
     Elsewhere,
@@ -137,10 +137,10 @@ pub enum Value {
 
 /// A type whose values are a setting's choices.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// All values, in the same order as the words of [`Kind::Choice`].
+    /// All values, in the same order as the words in [`Kind::Choice`].
     const ALL: &'static [Self];
 
-    /// Returns the index of the value in [`Self::ALL`].
+    /// Returns the value's index in [`Self::ALL`].
     fn index(self) -> usize {
         Self::ALL
             .iter()
@@ -496,7 +496,7 @@ fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
     Err(format!("expected {others} or {last}, found {text}"))
 }
 
-/// Returns the words of the choices on the command line.
+/// Returns the words for the choices on the command line.
 fn option_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
     words.iter().map(|[option, _]| *option).collect()
 }

@@ -1,6 +1,6 @@
-//! Table of the settings, with name, key in files, command-line option, allowed values and place of
-//! the window control. It is used by undo, comparison of decisions, refusals, the report, the
-//! command line and the window. The crate of words holds the captions and help texts.
+//! Settings table: name, key in files, command-line option, allowed values and place of the window
+//! control. Undo, decision comparison, refusals, the report, the command line and the window use
+//! it. The crate `gdcm-words` contains the captions and help texts.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -18,7 +18,7 @@ use super::settings::{
 };
 use super::study::Study;
 
-/// Control of a setting outside the settings panel, always applicable.
+/// Control outside the settings panel, always applicable.
 const DEFAULT_CONTROL: Control = Control {
     place: Place::Elsewhere,
     step: 0.01,
@@ -102,8 +102,8 @@ pub static PHASE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Source of the D to which the delays are fitted: median of phase over frequency, or line over the
-/// band (M15.2).
+/// Definition of the D to which the delays are fitted: median of phase over frequency, or line over
+/// the band (M15.2).
 pub static DELAY_FROM: Setting = Setting {
     name: "delay estimate",
     key: "delay_from",
@@ -121,8 +121,7 @@ pub static DELAY_FROM: Setting = Setting {
     ..DEFAULT
 };
 
-/// Order of the lead filters: 2 leaves the gain within the band nearly unchanged, 1 raises it
-/// (M15.3).
+/// Lead filter order: 2 leaves the gain within the band nearly unchanged, 1 raises it (M15.3).
 pub static LEAD_ORDER: Setting = Setting {
     name: "order of the lead filters",
     key: "lead.order",
@@ -144,7 +143,7 @@ fn has_leads(study: &Study) -> bool {
     study.settings.phase == PhaseCorrection::Lead
 }
 
-/// Parameter `n` of the lead filters: their lag time constant is `1 / (n omega_B)` (M15.3).
+/// Lead filter parameter `n`: the lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = Setting {
     name: "n of the lead filters",
     key: "lead.n",
@@ -164,7 +163,7 @@ pub static LEAD_POLE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Maximum gain of a lead filter at high frequency, as a factor; its range is 0 to 40 dB.
+/// Maximum lead filter gain at high frequency, as a factor; its range is 0 to 40 dB.
 pub static LEAD_LIMIT: Setting = Setting {
     name: "R_max of the lead filters",
     key: "lead.r_max",
@@ -184,7 +183,7 @@ pub static LEAD_LIMIT: Setting = Setting {
     ..DEFAULT
 };
 
-/// Correction of couplings and modes: none, mixing, or mixing and feedback (M16).
+/// Correction for couplings and modes: none, mixing, or mixing and feedback (M16).
 pub static COUPLINGS: Setting = Setting {
     name: "couplings",
     key: "couplings",
@@ -418,7 +417,8 @@ pub static GAIN_OBJECTIVE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Models from which G is computed: the two representatives, or all pairs of kept models.
+/// Models from which G is computed: the two representatives, or all pairs of kept physics and
+/// identified models.
 pub static GAIN_SOURCE: Setting = Setting {
     name: "source of G",
     key: "gain_from",
@@ -438,7 +438,7 @@ pub static GAIN_SOURCE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Confidence level of all error bars, intervals and tests.
+/// Confidence level for all error bars, intervals and tests.
 pub static LEVEL: Setting = Setting {
     name: "confidence level",
     key: "error_bars.level",
@@ -463,7 +463,7 @@ pub static LEVEL: Setting = Setting {
     ..DEFAULT
 };
 
-/// Maximum degrees of freedom that the identification part of a condition's error bar borrows from
+/// Maximum degrees of freedom that the identification part in a condition's error bar borrows from
 /// the other conditions.
 pub static POOLING: Setting = Setting {
     name: "pooling (degrees of freedom borrowed)",
@@ -484,7 +484,7 @@ pub static POOLING: Setting = Setting {
     ..DEFAULT
 };
 
-/// Minimum coherence of the frequencies that count in J, G and D.
+/// Minimum coherence at which a frequency counts in J, G and D.
 pub static COHERENCE: Setting = Setting {
     name: "coherence threshold",
     key: "coherence_threshold",
@@ -554,7 +554,7 @@ pub static HALF_OVERLAP: Setting = Setting {
     ..DEFAULT
 };
 
-/// Form of the schedule in airspeed: a polynomial of degree 0 to 3, or a lookup table.
+/// The schedule's form in airspeed: a polynomial of degree 0 to 3, or a lookup table.
 pub static SCHEDULE: Setting = Setting {
     name: "schedule",
     key: "schedule.kind",
@@ -617,7 +617,7 @@ pub static SCHEDULE_DELAYS: Setting = Setting {
     ..DEFAULT
 };
 
-/// Degree of the polynomials for the signed delays.
+/// Polynomial degree for the signed delays.
 pub static TAU_DEGREE: Setting = Setting {
     name: "degree of the signed delays",
     key: "schedule.tau_degree",
@@ -721,7 +721,7 @@ pub static SETTINGS: [&Setting; 30] = [
 ];
 
 impl Settings {
-    /// Checks every value against the range of its setting.
+    /// Checks every value against its setting's range.
     ///
     /// # Errors
     /// The first setting with an invalid value, and why the value is refused.

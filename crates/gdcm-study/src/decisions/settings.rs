@@ -18,13 +18,13 @@ use gdcm_model::whole_number::whole;
 
 use super::physics_settings::{PhysicsCorrection, PhysicsSettings};
 
-/// Default of the maximum mismatch around a loop that counts as consistent \[dB\].
+/// Default for the maximum mismatch around a loop that counts as consistent \[dB\].
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 
-/// Default of the minimum coherence (M4a).
+/// Default for the minimum coherence (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
-/// Method of the phase correction.
+/// Phase correction method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PhaseCorrection {
@@ -38,8 +38,8 @@ pub enum PhaseCorrection {
     Lead,
 }
 
-/// Correction of the couplings and modes of the physics models, applied before the channel
-/// correction (M16).
+/// Correction to couplings and modes in the physics models, applied before the channel correction
+/// (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
@@ -94,7 +94,7 @@ impl fmt::Display for DelayFrom {
     }
 }
 
-/// Responses by the names of their channels, output first, as stored in files.
+/// Responses by channel names, output first, as stored in files.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<(String, String)>")]
 pub struct ResponseNames(pub Vec<(String, String)>);
@@ -113,9 +113,9 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
     }
 }
 
-/// All settings that change a result, common to all conditions of a study. `R` is the type of a set
-/// of responses: a table over the dataset, or names in files. A setting that an older file does not
-/// contain has the default of its field, which may differ from its value in a new study
+/// All settings that change a result, common to all conditions in a study. `R` is the type for a
+/// set of responses: a table over the dataset, or names in files. A setting that an older file does
+/// not contain has its field's default, which may differ from its value in a new study
 /// ([`Settings::for_dataset`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings<R = PairTable<bool>> {
@@ -136,7 +136,7 @@ pub struct Settings<R = PairTable<bool>> {
     pub ignored: R,
     /// Average over frequency in J: the median (the paper) or the mean (Tischler) (M4).
     pub cost_average: CostAverage,
-    /// Minimum coherence \[-\] of the frequencies that count, if the reference carries coherence;
+    /// Minimum coherence \[-\] at which a frequency counts, if the reference carries coherence;
     /// coherence then also weights J, G and D. `None` ignores coherence (M4a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coherence_threshold: Option<f64>,
@@ -163,14 +163,14 @@ pub struct Settings<R = PairTable<bool>> {
     /// Decisions about the physics parameters (M18).
     #[serde(default, skip_serializing_if = "is_default")]
     pub physics_parameters: PhysicsSettings,
-    /// Maximum mismatch \[dB\] of constrained gains around a loop up to which they count as
+    /// Maximum mismatch \[dB\] between constrained gains around a loop at which they count as
     /// consistent: each is then constrained at the nearest consistent value.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
     /// How channel gains depend on airspeed (M11).
     #[serde(default)]
     pub schedule: ScheduleSettings,
-    /// Whether the schedule has delays too (M11). Files of earlier versions only contain
+    /// Whether the schedule has delays too (M11). Files from earlier versions only contain
     /// `schedule.delays` ([`Settings::complete_delay_scheduling`]).
     #[serde(default = "never_scheduled")]
     pub schedule_delays: DelayScheduling,
@@ -199,13 +199,13 @@ pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 pub enum ResponseMark {
     /// Constrained.
     Held,
-    /// Left out of the objective.
+    /// Excluded from the objective.
     Ignored,
 }
 
 impl<R> Settings<R> {
     /// Returns the same settings with another type for sets of responses. `of` converts a set; its
-    /// first argument says how the responses of the set are marked.
+    /// first argument says how the responses in the set are marked.
     pub fn with_responses<Q>(&self, mut of: impl FnMut(ResponseMark, &R) -> Q) -> Settings<Q> {
         Settings {
             band: self.band,
@@ -234,8 +234,8 @@ impl<R> Settings<R> {
         }
     }
 
-    /// Sets whether the schedule has delays, and the corresponding flag for earlier versions of the
-    /// program.
+    /// Sets whether the schedule has delays, and the corresponding flag for earlier program
+    /// versions.
     pub fn set_delay_scheduling(&mut self, scheduling: DelayScheduling) {
         self.schedule_delays = scheduling;
         self.schedule.delays = scheduling == DelayScheduling::Always;
@@ -251,7 +251,7 @@ impl<R> Settings<R> {
 }
 
 impl Settings {
-    /// Returns the settings of a new study of `dataset`.
+    /// Returns the settings for a new study of `dataset`.
     pub fn for_dataset(dataset: &Dataset) -> Self {
         let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
         Self {
@@ -298,8 +298,8 @@ impl Settings {
         self.ignored.map(|_, ignored| !ignored)
     }
 
-    /// Returns whether the source of G is requested but has no effect: with leads, the gains are
-    /// fitted to the representatives' difference after the leads (M15.5).
+    /// Returns whether [`GainSource::MeanOfPairs`] is requested but has no effect: with leads, the
+    /// gains are fitted to the representatives' difference after the leads (M15.5).
     pub fn is_gain_source_idle(&self) -> bool {
         self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead
     }

@@ -14,13 +14,13 @@ use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, Pair,
 
 use super::edit_refusal::EditRefusal;
 
-/// The models in which the sign of a channel is reversed.
+/// The models in which a channel's sign is reversed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SignRole {
-    /// Models of the identified bundles.
+    /// Models in the identified bundles.
     Identified,
-    /// Models of the physics bundles.
+    /// Models in the physics bundles.
     Physics,
     All,
 }
@@ -47,7 +47,7 @@ impl SignRole {
         }
     }
 
-    /// Returns whether the sign is reversed in the models of a bundle.
+    /// Returns whether the sign is reversed in a bundle's models.
     pub fn covers(self, kind: BundleKind) -> bool {
         self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
     }
@@ -81,8 +81,8 @@ impl TurnedChannel {
     }
 }
 
-/// Returns the dataset with the signs of these channels reversed: rows of C and D for an output,
-/// columns of B and D for an input; for measured responses, every response of the channel.
+/// Returns the dataset with these channels' signs reversed: rows of C and D for an output, columns
+/// of B and D for an input; for measured responses, all responses of the channel.
 pub(crate) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
     let mut turned = Arc::clone(dataset);
     if signs.is_empty() {
@@ -135,7 +135,7 @@ fn turned_models(
     Ok(models)
 }
 
-/// Signs of the channels in the models of a bundle.
+/// Channel signs in a bundle's models.
 struct BundleSigns<'a> {
     signs: &'a Signs,
     kind: BundleKind,
@@ -150,7 +150,7 @@ impl BundleSigns<'_> {
         }
     }
 
-    /// Returns the product of the signs of the two channels of a response.
+    /// Returns the product of the two channel signs in a response.
     fn pair_sign(&self, pair: Pair) -> f64 {
         let [output, input] = Channel::of_pair(pair);
         self.sign(output) * self.sign(input)

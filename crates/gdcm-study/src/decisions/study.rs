@@ -26,7 +26,7 @@ pub struct Study {
     pub signs: Signs,
     /// Requirement settings. No correction depends on them.
     pub requirements: Arc<RequirementSettings>,
-    /// Choices of the last export. No result depends on them.
+    /// Choices in the last export. No result depends on them.
     pub exports: Arc<ExportChoices>,
     /// Models adopted instead of those in the file; `dataset` contains them.
     pub(crate) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
@@ -35,8 +35,8 @@ pub struct Study {
 }
 
 impl PartialEq for Study {
-    /// Compares the decisions first. The contents of the datasets are only compared if they are not
-    /// the same object.
+    /// Compares the decisions first. The datasets' contents are only compared if they are not the
+    /// same object.
     fn eq(&self, other: &Self) -> bool {
         let decisions = (
             &self.settings,
@@ -58,7 +58,8 @@ impl PartialEq for Study {
 }
 
 impl Study {
-    /// Returns the datasets that the study keeps in memory: the one in use, and the one of the file.
+    /// Returns the datasets that the study keeps in memory: the one in use, and the one as in its
+    /// file.
     pub(crate) fn datasets(&self) -> impl Iterator<Item = &Arc<Dataset>> {
         std::iter::once(&self.dataset).chain(&self.file)
     }
@@ -98,7 +99,7 @@ impl Study {
             .contains(&id.name)
     }
 
-    /// Returns the reason for the rejection of a model, where given.
+    /// Returns the reason for rejecting a model, where given.
     pub fn reason(&self, id: &ModelId) -> Option<&str> {
         self.choice(id.condition)
             .bundle(id.bundle)
@@ -107,7 +108,7 @@ impl Study {
             .map(String::as_str)
     }
 
-    /// Returns the names of the rejected models of a condition in file order, physics bundle first.
+    /// Names a condition's rejected models in file order, physics bundle first.
     pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
         let rejected_in_bundle = |kind| {
             let rejected = &self.choice(condition).bundle(kind).rejected;
@@ -127,7 +128,7 @@ impl Study {
     }
 }
 
-/// All decisions of a study at a certain time, stored under a name.
+/// Decisions about a study at a certain time, stored under a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
     /// The name, unique in its study.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::edit_refusal::{EditRefusal, check_length};
 use super::study::{Study, Variant};
 
-/// Maximum length of the name of a variant, in characters.
+/// Maximum length of a variant name, in characters.
 pub const LONGEST_VARIANT_NAME: usize = 60;
 
 impl Study {
@@ -17,7 +17,7 @@ impl Study {
             .map(Arc::as_ref)
     }
 
-    /// Returns the study with the decisions of a variant instead of the present ones, and without
+    /// Returns the study with a variant's decisions instead of the present ones, and without
     /// variants. It is analysed for comparisons.
     pub fn of_variant(&self, name: &str) -> Option<Study> {
         let Variant {
@@ -46,7 +46,7 @@ impl Study {
         Ok(())
     }
 
-    /// Replaces the present decisions with the decisions of a variant.
+    /// Replaces the present decisions with a variant's decisions.
     pub(crate) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let index = self.variant_index(name)?;
         let Variant {

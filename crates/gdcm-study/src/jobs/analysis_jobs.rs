@@ -25,8 +25,8 @@ use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 use crate::stages::physics_assessment::with_physics;
 
-/// Complete proof of optimality for eq. (7) in a condition, if the budget of the interactive
-/// analysis was too small.
+/// Job that completes the optimality proof for eq. (7) in a condition, if the interactive
+/// analysis's budget was too small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
     pub problem: Arc<Problem>,
@@ -41,7 +41,7 @@ impl Job for ProofJob {
     }
 }
 
-/// Cost of constraining or releasing each response of a condition.
+/// Job that computes the cost of constraining or releasing each response in a condition.
 #[derive(Clone, Debug)]
 pub struct TogglesJob {
     pub condition: ConditionAnalysis,
@@ -96,7 +96,7 @@ impl Job for TogglesJob {
     }
 }
 
-/// Cost of every single toggle in a condition.
+/// Cost of each toggle in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toggles {
     pub gains: Vec<Toggle>,
@@ -104,21 +104,21 @@ pub struct Toggles {
 }
 
 impl Toggles {
-    /// Returns the toggles of a response: in the gain problem, and in the delay problem.
+    /// Returns a response's toggles: in the gain problem, and in the delay problem.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
         (gain, self.delays.iter().find(|toggle| toggle.pair == pair))
     }
 }
 
-/// Analysis of a variant ([`Study::of_variant`]), beside the interactive analysis.
+/// Job that analyses a variant ([`Study::of_variant`]), beside the interactive analysis.
 #[derive(Clone, Debug)]
 pub struct VariantJob {
     pub study: Study,
 }
 
 impl PartialEq for VariantJob {
-    /// Compares the dataset and the decisions, but not the reasons of rejections.
+    /// Compares the dataset and the decisions, but not the reasons for rejections.
     fn eq(&self, other: &Self) -> bool {
         let a = &self.study;
         let b = &other.study;
@@ -141,7 +141,7 @@ impl Job for VariantJob {
     }
 }
 
-/// Error bars of an analysis, and the conclusions drawn from them.
+/// Job that computes an analysis's error bars, and the conclusions drawn from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertaintyJob {
     pub analysis: Shared<Analysis>,
@@ -157,7 +157,7 @@ impl Job for UncertaintyJob {
     }
 }
 
-/// Assessment of hundreds of conditions, which may take longer than a frame of the window.
+/// Job that assesses all conditions; with hundreds, this may take longer than a window frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentJob {
     pub analysis: Shared<Analysis>,
@@ -210,11 +210,10 @@ impl Job for CouplingsJob {
     }
 }
 
-/// Job that diagnoses and assesses the physics parameters of a study, beside the interactive
-/// analysis.
+/// Job that diagnoses and assesses a study's physics parameters, beside the interactive analysis.
 #[derive(Clone, Debug)]
 pub struct PhysicsJob {
-    /// The study; its own setting of the parameters applied is ignored.
+    /// The study; its own choice of applied parameters is ignored.
     pub study: Study,
     /// The parameters whose effect is assessed; not off.
     pub physics: PhysicsCorrection,

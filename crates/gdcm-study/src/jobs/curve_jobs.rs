@@ -18,7 +18,7 @@ use crate::shared::Shared;
 use crate::stages::condition_curves::ConditionCurves;
 use crate::stages::engine::Engine;
 
-/// Computation of the frequency responses of all models of a condition, for drawing.
+/// Job that computes the frequency responses of a condition's models, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
     pub dataset: Shared<Dataset>,
@@ -38,7 +38,7 @@ impl Job for CurvesJob {
     }
 }
 
-/// Computation of the modes of all models of a condition.
+/// Job that computes the modes of a condition's models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
     pub condition: Shared<Condition>,
@@ -53,7 +53,7 @@ impl Job for ModesJob {
     }
 }
 
-/// Responses of selected models from any conditions, on a grid.
+/// Job that computes responses for selected models from any conditions, on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
@@ -61,38 +61,38 @@ pub struct AcrossJob {
     pub moved_dataset: Shared<Dataset>,
     /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
-    /// The couplings of the corrected physics models; `None` without couplings.
+    /// The couplings in the corrected physics models; `None` without couplings.
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Band, and number of frequencies in it.
     pub grid: (Band, usize),
 }
 
-/// Responses of models from several conditions.
+/// Model responses from several conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossCurves {
     pub grid: FrequencyGrid,
     pub responses: Vec<AcrossModel>,
 }
 
-/// Response of a model in one of several conditions.
+/// A model's response in one of several conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossModel {
     pub model: ModelId,
     pub response: Arc<FrequencyResponse>,
-    /// Response of a physics model with physics parameters and couplings applied; `None` without
+    /// A physics model's response with physics parameters and couplings applied; `None` without
     /// both, and for an identified model.
     pub coupled: Option<Arc<FrequencyResponse>>,
 }
 
 impl AcrossCurves {
-    /// Returns the response of a model; `None` if it was not computed.
+    /// Returns a model's response; `None` if it was not computed.
     pub fn model(&self, id: &ModelId) -> Option<&AcrossModel> {
         self.responses.iter().find(|found| found.model == *id)
     }
 }
 
 impl AcrossJob {
-    /// Returns the job for the models of all roles in every condition that has them.
+    /// Creates the job for every role's models in all conditions that have them.
     pub fn for_conditions(
         dataset: &Arc<Dataset>,
         analysis: Option<&Analysis>,
@@ -125,7 +125,7 @@ impl AcrossJob {
         }
     }
 
-    /// Computes the response of a model; `None` if the dataset does not have it.
+    /// Computes a model's response; `None` if the dataset does not have the model.
     fn response(&self, id: &ModelId, grid: &FrequencyGrid) -> Option<AcrossModel> {
         let condition = self.dataset.condition(id.condition)?;
         let model = condition.model(id.bundle, &id.name)?;
@@ -138,8 +138,8 @@ impl AcrossJob {
         })
     }
 
-    /// Returns the response of a physics model after the physics parameters and the couplings, to
-    /// which gains and delays apply (M18.5); `None` if neither changes it.
+    /// Returns a physics model's response after the physics parameters and the couplings, to which
+    /// gains and delays apply (M18.5); `None` if neither changes it.
     fn response_before_gains(
         &self,
         id: &ModelId,
@@ -179,12 +179,12 @@ impl Job for AcrossJob {
     }
 }
 
-/// Role of a model that is drawn for each condition in the overlay of conditions.
+/// A model's role when one model is drawn for each condition in an overlay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum AcrossRole {
     /// The identified model that represents its bundle.
     Identified,
-    /// The physics representative under the schedule, at the airspeed of the condition.
+    /// The physics representative under the schedule, at the condition's airspeed.
     Scheduled,
     /// The physics representative under the condition's own correction.
     Corrected,
@@ -204,10 +204,10 @@ impl AcrossRole {
         Self::Nominal,
     ];
 
-    /// Roles that are drawn at first: the schedule is judged by their difference.
+    /// Roles drawn initially: their difference shows how good the schedule is.
     pub const SHOWN_AT_FIRST: [Self; 2] = [Self::Identified, Self::Scheduled];
 
-    /// Returns the name of the role in lists and captions: "corrected".
+    /// Returns the role's name in lists and captions: "corrected".
     pub fn name(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -239,8 +239,8 @@ impl AcrossRole {
         Some(ModelId::new(id, kind, result.representative_name(kind)))
     }
 
-    /// Returns the correction applied to the response of the model before drawing; `None` where the
-    /// correction has no positive net gain, or there is no result or no schedule.
+    /// Returns the correction applied to the model's response before drawing; `None` where its net
+    /// gain is not positive, or there is no result or no schedule.
     pub fn correction(
         self,
         condition: &Condition,
@@ -271,7 +271,7 @@ pub struct ConditionModes {
 }
 
 impl ConditionModes {
-    /// Computes the modes of every model in turn; each model is a step.
+    /// Computes the modes model by model; each model is a step.
     ///
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` requests it.
@@ -289,13 +289,13 @@ impl ConditionModes {
         })
     }
 
-    /// Returns the modes of the models of a bundle, in file order.
+    /// Returns the modes of a bundle's models, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Follows each mode through the models of a bundle, starting from the model with index
-    /// `reference`. Models without modes leave gaps.
+    /// Follows each mode through a bundle's models, starting from the model with index `reference`.
+    /// Models without modes leave gaps.
     pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
         let modes = self
             .bundle(kind)

@@ -1,4 +1,4 @@
-//! Jobs on flight records: identification of models, simulation of a model.
+//! Jobs on flight records: identifying models, simulating a model.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -42,7 +42,7 @@ impl NothingToIdentify {
     }
 }
 
-/// Flight records, and the options of their identification.
+/// Flight records, and the options for identifying models from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentificationRequest {
     /// The records, in the channels' units.
@@ -87,10 +87,10 @@ impl IdentificationRequest {
         })
     }
 
-    /// Identifies models from the records of the request.
+    /// Identifies models from the request's records.
     ///
     /// # Errors
-    /// The errors of [`identify`].
+    /// As for [`identify`].
     pub fn identify(
         &self,
         executor: &dyn Executor,
@@ -100,10 +100,10 @@ impl IdentificationRequest {
     }
 }
 
-/// Intermediate results of a running identification.
+/// Intermediate results from a running identification.
 #[derive(Clone, Debug, Default)]
 pub struct IdentificationNews {
-    /// Description of the present step.
+    /// The present step, in words.
     pub step: String,
     /// First model, before refinement.
     pub first_model: Option<Arc<StateSpace>>,
@@ -113,7 +113,7 @@ pub struct IdentificationNews {
     pub next_flight: Option<Arc<FlightPlan>>,
 }
 
-/// Identification of a condition's models from its flight records.
+/// Job that identifies a condition's models from its flight records.
 #[derive(Clone, Debug)]
 pub struct IdentifyJob {
     pub condition: ConditionId,
@@ -174,7 +174,7 @@ impl Progress for NewsProgress<'_> {
 }
 
 impl Job for IdentifyJob {
-    /// Executor of the pieces of work.
+    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
@@ -209,11 +209,11 @@ fn next_flight(found: &Identification, executor: &dyn Executor) -> Option<Flight
     FlightPlanner::new(information, executor)?.standard_plan()
 }
 
-/// Simulation of a model with a flight record's inputs (M14, section 6).
+/// Job that simulates a model with a flight record's inputs (M14, section 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     pub record: Shared<FlightRecord>,
-    /// How the channels of the record are prepared.
+    /// How the record's channels are prepared.
     pub preparation: Preparation,
     pub model: StateSpace,
 }
@@ -236,7 +236,7 @@ impl SimulationFailure {
 }
 
 impl Job for SimulationJob {
-    /// Executor of the pieces of work.
+    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Validation>, SimulationFailure>;
 

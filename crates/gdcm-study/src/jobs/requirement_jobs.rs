@@ -1,4 +1,4 @@
-//! Jobs for requirements: findings without records, time histories, responses of single models.
+//! Jobs for requirements: findings without records, time histories, test input responses.
 
 use std::sync::Arc;
 
@@ -21,11 +21,11 @@ use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistorie
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 
-/// Requirements on the models of an analysis, with error bars if they were computed.
+/// Job that checks the requirements on an analysis's models, with error bars if they were computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
     pub analysis: Shared<Analysis>,
-    /// Error bars of the values in the analysis.
+    /// Error bars for the analysis's values.
     pub uncertainty: Option<Shared<Uncertainty>>,
     /// Requirement settings, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
@@ -33,7 +33,7 @@ pub struct RequirementsJob {
 }
 
 impl Job for RequirementsJob {
-    /// Executor of the pieces of work.
+    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Arc<Requirements>;
 
@@ -52,7 +52,7 @@ impl Job for RequirementsJob {
     }
 }
 
-/// Comparison of flight records with the models of an analysis.
+/// Job that compares flight records with an analysis's models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     pub analysis: Shared<Analysis>,
@@ -61,7 +61,7 @@ pub struct TimeHistoriesJob {
 }
 
 impl Job for TimeHistoriesJob {
-    /// Executor of the pieces of work.
+    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Arc<TimeHistories>;
 
@@ -78,20 +78,19 @@ impl Job for TimeHistoriesJob {
     }
 }
 
-/// Comparison of a flight record with the models of its condition, within the tolerances of the
-/// study.
+/// Job that compares a flight record with its condition's models, within the tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     pub analysis: Shared<Analysis>,
     pub condition: ConditionId,
     pub record: HistoryRecord,
-    /// How the channels of the record are prepared.
+    /// How the record's channels are prepared.
     pub preparation: Preparation,
     pub tolerances: ToleranceTable,
 }
 
 impl Job for RecordHistoryJob {
-    /// Executor of the pieces of work.
+    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<RecordHistory>, NoRecordHistory>;
 
@@ -114,7 +113,7 @@ impl Job for RecordHistoryJob {
     }
 }
 
-/// Simulation of the models of a condition with the test input of the study.
+/// Job that simulates a condition's models with the study's test input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswersJob {
     pub analysis: Shared<Analysis>,
@@ -125,7 +124,7 @@ pub struct TestAnswersJob {
 }
 
 impl Job for TestAnswersJob {
-    /// Executor of the pieces of work.
+    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<TestAnswers>, NoResult>;
 

@@ -1,5 +1,5 @@
-//! Trade-off of the weight α of the gains in a condition: how far the output gains are from 1, and
-//! what J remains.
+//! Trade-off behind the gain weight α in a condition: how far the output gains are from 1, and how
+//! large J remains.
 
 use std::sync::Arc;
 
@@ -15,12 +15,12 @@ use crate::results::analysis::{Analysis, ConditionAnalysis};
 use crate::stages::engine::LIVE_PROOF;
 use crate::stages::optima::solved;
 
-/// Smallest and largest α of the trade-off, as powers of ten; the slider of α has the same ends.
+/// Smallest and largest α in the trade-off, as powers of ten; the α slider has the same ends.
 const POWERS: [i32; 2] = [-3, 3];
-/// Number of α in each decade.
+/// Number of α values in each decade.
 const STEPS_PER_DECADE: i32 = 4;
 
-/// Solution of the gain problem of a condition for a series of α.
+/// Job that solves a condition's gain problem for a series of α.
 #[derive(Clone, Debug)]
 pub struct TradeOffJob {
     condition: ConditionAnalysis,
@@ -33,22 +33,22 @@ pub struct TradeOffJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TradeOff {
     pub condition: ConditionId,
-    /// In the order of increasing α; an α without a solution is left out.
+    /// By increasing α; an α without a solution is left out.
     pub points: Vec<TradeOffPoint>,
 }
 
-/// Result for a value of α.
+/// Result for one α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TradeOffPoint {
     pub alpha: f64,
-    /// Root mean square of `ln k` of the outputs.
+    /// Root mean square of `ln k` over the outputs.
     pub output_deviation: f64,
-    /// Mean J of the responses in the objective.
+    /// Mean J over the responses in the objective.
     pub mean_cost: f64,
 }
 
 impl TradeOffPoint {
-    /// Computes the point of a correction; `None` if no response in the objective can be compared.
+    /// Computes a correction's point; `None` if no response in the objective can be compared.
     pub fn new(
         condition: &ConditionAnalysis,
         correction: &ChannelCorrection,
@@ -80,7 +80,7 @@ impl TradeOffPoint {
 }
 
 impl TradeOffJob {
-    /// Returns the job for a condition of an analysis; `None` without a result.
+    /// Creates the job for a condition in an analysis; `None` without a result.
     pub fn new(analysis: &Analysis, condition: ConditionId) -> Option<Self> {
         Some(Self {
             condition: analysis.condition(condition)?.clone(),
@@ -89,8 +89,7 @@ impl TradeOffJob {
         })
     }
 
-    /// Returns the gain problem with the same α for every α, so that a change of α leaves the job
-    /// equal.
+    /// Returns the gain problem with α replaced by 1, so that jobs that differ only in α are equal.
     fn problem(&self) -> Problem {
         Problem {
             alpha: 1.0,
@@ -98,7 +97,7 @@ impl TradeOffJob {
         }
     }
 
-    /// Returns the correction with these gains, and with the delays or leads of the condition.
+    /// Returns the correction with these gains, and with the condition's delays or leads.
     fn correction(&self, gains: Channels<f64>) -> ChannelCorrection {
         ChannelCorrection {
             input_gains: gains.inputs,

@@ -1,4 +1,4 @@
-//! The complete result of a study.
+//! A study's complete result.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ use crate::decisions::study::Study;
 /// Each condition's result, or why it has none.
 pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
-/// J of the nominal model by response, before and after the scheduled correction (M12), or why the
+/// The nominal model's J by response, before and after the scheduled correction (M12), or why the
 /// condition is left out.
 pub type Assessed = Result<PairTable<Option<CostChange>>, NotAssessed>;
 
@@ -54,7 +54,7 @@ impl NotAssessed {
     }
 }
 
-/// Complete result of a study: conditions, couplings, schedule, assessment and uncertainty.
+/// Complete study result: conditions, couplings, schedule, assessment and uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub study: Study,
@@ -86,7 +86,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Returns the result of a condition; `None` where it has none.
+    /// Returns a condition's result; `None` where it has none.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
     }
@@ -153,12 +153,11 @@ impl Analysis {
     }
 }
 
-/// Result of the analysis of a condition: comparison of its models, optimal gains and delays,
-/// cautions.
+/// Analysed condition: model comparison, optimal gains and delays, cautions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
     /// The analysed condition, its physics models moved by the physics parameters where there are
-    /// any; the order of its models applies to all results below.
+    /// any; its model order applies to all results below.
     pub condition: Arc<Condition>,
     /// Distances within the bundles, and discontinuity ratios.
     pub figures: Arc<BundleMetrics>,
@@ -169,9 +168,9 @@ pub struct ConditionAnalysis {
     /// Representatives, G and D, with the couplings on the physics models where there are any
     /// (M16.3).
     pub comparison: Arc<Comparison>,
-    /// Optimisation problem of the gains, eq. (7).
+    /// Optimisation problem for the gains, eq. (7).
     pub gain_problem: Arc<Problem>,
-    /// Optimisation problem of the delays, eq. (11), or of signed delays, if requested (M15.4).
+    /// Optimisation problem for the delays, eq. (11), or for signed delays if requested (M15.4).
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,
@@ -192,8 +191,7 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Returns the comparison of the models without couplings, which is [`Self::comparison`] if
-    /// there are none.
+    /// Compares the models without couplings; returns [`Self::comparison`] if there are none.
     pub fn before_couplings(&self) -> &Comparison {
         match &self.coupled {
             Some(coupled) => &coupled.before,
@@ -201,8 +199,7 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Returns the comparison of the models as in the dataset, without physics parameters and
-    /// couplings.
+    /// Returns the model comparison as in the dataset, without physics parameters and couplings.
     pub fn file_comparison(&self) -> &Comparison {
         match &self.moved {
             Some(moved) => &moved.before,
@@ -247,7 +244,7 @@ impl ConditionAnalysis {
         *asked == delta.band_delay_s && *asked != delta.delay_s
     }
 
-    /// Returns the key of the error bar (M13) that belongs to [`Self::wanted_delay_s`].
+    /// Returns the key of the error bar (M13) on [`Self::wanted_delay_s`].
     pub fn wanted_delay(&self, pair: Pair) -> Scalar {
         if self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair] {
             Scalar::Delay(pair)
@@ -261,7 +258,7 @@ impl ConditionAnalysis {
         self.gain_problem.bounds
     }
 
-    /// Returns the minimum and maximum delay of every channel \[s\]; leads are negative (M15.4).
+    /// Returns each channel's minimum and maximum delay \[s\]; leads are negative (M15.4).
     pub fn delay_bounds_s(&self) -> [f64; 2] {
         // Adding zero turns -0.0 into 0.0.
         [
@@ -275,7 +272,7 @@ impl ConditionAnalysis {
         self.delay_problem.bounds.upper
     }
 
-    /// Returns the names of the physics models suggested as outliers, including rejected models.
+    /// Names the physics models suggested as outliers, including rejected models.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
             .figures
@@ -290,7 +287,7 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// Returns the representative of a bundle, with the scores of all models in the order of
+    /// Returns a bundle's representative, and all model scores in the order of
     /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
@@ -318,7 +315,7 @@ impl ConditionAnalysis {
     }
 }
 
-/// Why an analysis contains no result of a condition.
+/// Why an analysis contains no result for a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoResult {
     NotAnalysed,
@@ -353,7 +350,7 @@ pub enum ConditionFailure {
     NothingToCompare {
         physics: String,
         identified: String,
-        /// Cautions about the responses of the models, which explain the failure.
+        /// Cautions about the model responses, which explain the failure.
         cautions: Vec<Caution>,
     },
     /// Every kept model is set aside (M5b).

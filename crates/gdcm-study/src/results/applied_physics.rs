@@ -1,5 +1,5 @@
-//! Physics models with the parameters of a study moved: the only source of such models for the
-//! stages after the fit and for exports (M18.5).
+//! Physics models with a study's parameters moved: the only source of such models for the stages
+//! after the fit and for exports (M18.5).
 //!
 //! ```text
 //! A(z) = A + sum_k (z_k L_k + z_k^2 Q_k);   B, C and D likewise
@@ -17,26 +17,27 @@ use super::moved_models::MovedModels;
 use super::physics_findings::PhysicsFindings;
 use crate::decisions::physics_settings::PhysicsCorrection;
 
-/// The values of a study's physics parameters, and the physics models moved by them.
+/// A study's physics parameter values, and the physics models moved by them.
 #[derive(Clone, Debug)]
 pub struct AppliedPhysics {
     pub correction: PhysicsCorrection,
-    /// Diagnosis of all parameters that are on; `None` for values set by hand.
+    /// Diagnosis with all parameters that are on; `None` for values set by hand.
     pub findings: Option<Arc<PhysicsFindings>>,
-    /// Fit of the named parameters with the others off; `None` if all are applied, or none is named.
+    /// Fit with the named parameters only, the others off; `None` if all are applied, or none is
+    /// named.
     pub refit: Option<Arc<PhysicsDiagnosis>>,
-    /// The moved parameters, in the order of the dataset; empty if none is moved.
+    /// The moved parameters, in dataset order; empty if none is moved.
     pub values: Vec<AppliedValue>,
-    /// Names with a value by hand that the dataset does not have.
+    /// Parameters with a value set by hand that the dataset lacks, by name.
     pub unknown: Vec<String>,
-    /// What happened to the physics models of each condition; empty if no parameter is moved.
+    /// Outcome for each condition's physics models; empty if no parameter is moved.
     pub conditions: BTreeMap<ConditionId, MovedModels>,
     /// The dataset with the moved physics models.
     pub dataset: Arc<Dataset>,
 }
 
 impl PartialEq for AppliedPhysics {
-    /// Compares values and outcomes: the models follow from them and from the dataset of the study.
+    /// Compares values and outcomes: the models follow from them and from the study's dataset.
     fn eq(&self, other: &Self) -> bool {
         self.correction == other.correction
             && self.values == other.values
@@ -53,15 +54,15 @@ pub struct AppliedValue {
     pub parameter: OfferedParameter,
     /// Its change, in plausible standard deviations.
     pub z: f64,
-    /// Half-width of the interval, in plausible standard deviations; `None` for a value set by hand,
-    /// and with fewer than four conditions.
+    /// Interval half-width, in plausible standard deviations; `None` for a value set by hand, and
+    /// with fewer than four conditions.
     pub half_width: Option<f64>,
     /// Whether the value was set by hand.
     pub is_by_hand: bool,
 }
 
 impl AppliedValue {
-    /// Returns the change in the unit of the parameter.
+    /// Returns the change in the parameter's unit.
     pub fn change(&self) -> f64 {
         self.z * self.parameter.plausible_sd
     }
@@ -81,13 +82,13 @@ impl AppliedValue {
 pub struct MovedCondition {
     /// The condition as in the dataset.
     pub file: Arc<Condition>,
-    /// Comparison of the models of the dataset, by which the representatives are selected.
+    /// Comparison of the unmoved dataset models, which selects the representatives.
     pub before: Arc<Comparison>,
     pub applied: Arc<AppliedPhysics>,
 }
 
 impl AppliedPhysics {
-    /// Returns a condition with its moved physics models; `None` if it keeps those of the dataset.
+    /// Returns a condition with its moved physics models; `None` if it keeps the dataset's models.
     pub fn moved(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         match self.conditions.get(&id)? {
             MovedModels::Moved { .. } => self.dataset.condition(id),
@@ -95,7 +96,7 @@ impl AppliedPhysics {
         }
     }
 
-    /// Returns the changes of the moved parameters, as a rerun states them.
+    /// Returns the moved parameters' changes in the form in which a rerun states them.
     pub fn changes(&self) -> Vec<ParameterChange> {
         self.values
             .iter()
@@ -103,8 +104,8 @@ impl AppliedPhysics {
             .collect()
     }
 
-    /// Returns the values of the moved parameters without a condition, in plausible standard
-    /// deviations; those of all conditions if the condition takes no part in the fit.
+    /// Returns the moved parameters' values fitted without a condition, in plausible standard
+    /// deviations; the values fitted to all conditions if the condition takes no part in the fit.
     pub fn values_without(&self, condition: ConditionId) -> Vec<AppliedValue> {
         let mut values = self.values.clone();
         let (Some(diagnosis), Some(findings)) = (self.diagnosis(), &self.findings) else {
@@ -128,7 +129,7 @@ impl AppliedPhysics {
         values
     }
 
-    /// Returns the diagnosis of the values applied: that of the named parameters, or of all.
+    /// Returns the diagnosis behind the applied values: with the named parameters, or with all.
     pub fn diagnosis(&self) -> Option<&PhysicsDiagnosis> {
         match (&self.refit, &self.findings) {
             (Some(refit), _) => Some(refit),

@@ -10,7 +10,7 @@ use super::requirement_role::RequirementRole;
 pub(crate) struct AskedCondition<'a> {
     pub(crate) analysis: &'a Analysis,
     pub(crate) result: &'a ConditionAnalysis,
-    /// The schedule evaluated at the airspeed of the condition, where there is a schedule.
+    /// The schedule evaluated at the condition's airspeed; `None` without a schedule.
     pub(crate) scheduled: Option<ChannelCorrection>,
 }
 
@@ -23,7 +23,7 @@ impl AskedCondition<'_> {
         self.result.condition.flight_state().airspeed_kt
     }
 
-    /// Returns the name of a role's model.
+    /// Names a role's model.
     pub(crate) fn model_name(&self, role: RequirementRole) -> String {
         self.result.representative_name(role.bundle()).to_owned()
     }

@@ -29,7 +29,7 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
-    /// The schedule without the lead filters of its signed delays (M15).
+    /// The schedule without the lead filters from its signed delays (M15).
     ScheduledWithoutLeads,
     /// The schedule fitted without this condition, at its airspeed: a prediction for a flight not
     /// used in the fit.
@@ -78,7 +78,7 @@ pub struct AssessmentChoice {
 }
 
 impl AssessmentChoice {
-    /// The paper's assessment: the nominal model under the schedule.
+    /// Returns the paper's choices: the nominal model under the schedule.
     pub(crate) fn of_paper(settings: &Settings) -> Self {
         Self {
             model: AssessedModel::Nominal,
@@ -88,7 +88,7 @@ impl AssessmentChoice {
     }
 }
 
-/// Assessment of a condition: J before and after the correction, response by response.
+/// Assessed condition: J before and after the correction, response by response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
     pub condition: ConditionId,
@@ -105,7 +105,7 @@ pub struct AssessedCondition {
 /// Why a response has no J before and after the correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MissingCost {
-    /// The net gain of the correction in this response is not positive.
+    /// The correction's net gain in this response is not positive.
     NetGainNotPositive,
     /// The representatives cannot be compared in this response.
     Undefined(Undefined),
@@ -139,7 +139,7 @@ pub struct AssessmentTable {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Summary of an assessment: number of responses with a lower J, and the largest increase in J.
+/// Assessment summary: the number of responses with a lower J, and the largest increase in J.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
     /// Number of responses with a lower J.
@@ -160,8 +160,8 @@ impl AssessmentTable {
         }
     }
 
-    /// Assesses all conditions of an analysis. The stored mismatches are used: each response costs
-    /// only two averages over frequency.
+    /// Assesses all conditions. The stored mismatches are used: each response costs only two
+    /// averages over frequency.
     pub fn assess(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self::new(choice);
         for id in analysis.study.dataset.ids() {
@@ -178,7 +178,7 @@ impl AssessmentTable {
         }
     }
 
-    /// Returns J of a response in a condition before and after the correction.
+    /// Returns a response's J in a condition before and after the correction.
     pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.conditions
             .iter()
@@ -263,7 +263,7 @@ pub fn assessed(
     })
 }
 
-/// Computes J of a model before and after a correction, response by response.
+/// Computes a model's J before and after a correction, response by response.
 fn changes(
     analysis: &Analysis,
     models: &ModelMismatch,

@@ -30,8 +30,8 @@ pub enum Caution {
         lacks: Vec<Pair>,
         /// The missing responses that are zero wherever they have values.
         zero: Vec<Pair>,
-        /// Why some of the missing responses are not finite, if any; the others are zero somewhere
-        /// in the band.
+        /// Why some missing responses are not finite, if any; the others are zero somewhere in the
+        /// band.
         why: Option<NotFinite>,
         /// Whether the model was pinned; the pin has no effect.
         pinned: bool,
@@ -54,36 +54,36 @@ pub enum Caution {
         identified: String,
         responses: Vec<GainOutOfRange>,
     },
-    /// Responses of a representative treated as structurally zero (M6a).
+    /// Some responses of a representative are treated as structurally zero (M6a).
     NumericallyNothing {
         model: BundleModel,
         responses: Vec<Pair>,
     },
-    /// Frequencies of the identified representative's responses have no weight: their coherence is
-    /// too low, or they lie outside the valid band (M4a).
+    /// Some frequencies in the identified representative's responses have no weight: their
+    /// coherence is too low, or they lie outside the valid band (M4a).
     NotCoherent {
-        /// Minimum coherence of the frequencies that count.
+        /// Minimum coherence at which a frequency counts.
         threshold: f64,
         /// Number of responses weighted by coherence.
         weighed: usize,
-        /// Number of omitted frequencies of each response, in descending order.
+        /// Omitted frequency count for each response, in descending order.
         left_out: Vec<(Pair, usize)>,
         points: usize,
     },
     /// The identified representative has measured coherence, and weighting by coherence is switched
     /// off (M4a).
     CoherenceNotUsed,
-    /// The channels of models were assigned by position, because their files do not name them.
+    /// Model channels were assigned by position, because the files do not name them.
     ChannelsByPosition {
         bundle: BundleKind,
         models: Vec<String>,
     },
     /// The physics parameters move other conditions, but not this one (M18.5).
     ParametersNotApplied(ConditionOmission),
-    /// Physics models keep their response, because the changes of the runs do not apply to them
+    /// Physics models keep their response, because the changes from the runs do not apply to them
     /// (M18.5).
     ModelsNotMoved(Vec<UnmovedModel>),
-    /// The effect of parameters bends at the values applied (M18.7).
+    /// The parameter effects are curved at the applied values (M18.7).
     ParametersBend(Vec<BendingParameter>),
     /// The objective fits a response whose G is outside [`USUAL_GAINS`].
     UnusualGain { pair: Pair, gain: f64 },
@@ -99,7 +99,7 @@ impl Caution {
         }
     }
 
-    /// Returns the cautions about the moved physics models of a condition.
+    /// Returns the cautions about a condition's moved physics models.
     pub(crate) fn of_moved_models(moved: &MovedModels) -> Vec<Self> {
         let mut cautions = Vec::new();
         match moved {
@@ -171,8 +171,8 @@ impl GainOutOfRange {
             .collect()
     }
 
-    /// Returns the gain of a response if it is outside the computable range; `None` also where a
-    /// model lacks the response.
+    /// Returns a response's gain if it is outside the computable range; `None` also where a model
+    /// lacks the response.
     pub(crate) fn of_pair(
         physics: &PolarResponse,
         identified: &PolarResponse,
@@ -223,7 +223,7 @@ impl fmt::Display for BundleModel {
 pub enum Undefined {
     /// Zero over the whole band in this bundle's representative.
     Zero(BundleKind),
-    /// Zero at some frequency of the band in this bundle's representative.
+    /// Zero at some frequency in the band, in this bundle's representative.
     ZeroSomewhere(BundleKind),
     /// Not finite somewhere in the band in this bundle's representative.
     NotFinite(BundleKind),
@@ -231,8 +231,8 @@ pub enum Undefined {
     GainOutOfRange(i32),
     /// Numerically zero in this bundle's representative (M6a).
     NumericallyNothing(BundleKind),
-    /// No frequency of the identified representative's response is coherent enough, or all lie
-    /// outside its valid band (M4a).
+    /// The identified representative's response is nowhere coherent enough, or all its frequencies
+    /// lie outside its valid band (M4a).
     NotCoherent,
     /// The identified representative is measured, and none of its files contains this response.
     NotMeasured,
@@ -256,9 +256,9 @@ impl Undefined {
 /// Why a model has responses that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotFinite {
-    /// An entry of its matrices is too large to compute with.
+    /// A matrix entry is too large to compute with.
     Entry(LargeEntry),
-    /// The model is measured over a part of the band only.
+    /// The model is measured over only a part of the band.
     Measured {
         /// First measured frequency \[rad/s\].
         min: f64,

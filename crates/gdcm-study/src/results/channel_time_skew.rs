@@ -27,15 +27,15 @@ use gdcm_model::statistics::median;
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
-/// Minimum share of the frequencies in the band at which a response must be coherent.
+/// Minimum share of the band's frequencies at which a response must be coherent.
 const LEAST_SHOWN: f64 = 0.5;
 /// Lower bound on the standard deviation of a physics model's phase \[rad\].
 const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Minimum delay that is reported \[s\].
 const LEAST_S: f64 = 5e-3;
-/// Minimum significant delay, as a multiple of the scatter of the other responses.
+/// Minimum significant delay, as a multiple of the scatter among the other responses.
 const STANDS_OUT: f64 = 2.5;
-/// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
+/// Ratio of standard deviation to median absolute deviation, for a normal distribution.
 const SD_OVER_MEDIAN: f64 = 1.4826;
 /// Maximum share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
@@ -53,8 +53,8 @@ pub struct ChannelTimeSkew {
 }
 
 impl ChannelTimeSkew {
-    /// Finds the channel whose delay explains the lag of the measured responses in a band \[rad/s\]
-    /// relative to a physics model; `None` where no delay is significant.
+    /// Finds the channel whose delay explains why the measured responses lag behind a physics model
+    /// in a band \[rad/s\]; `None` where no delay is significant.
     pub fn find(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = response_lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
@@ -76,7 +76,7 @@ impl ChannelTimeSkew {
             .map(|suspect| suspect.channel)
     }
 
-    /// Like [`ChannelTimeSkew::find`], with the nominal physics model of a condition; `None` also if
+    /// Like [`ChannelTimeSkew::find`], with a condition's nominal physics model; `None` also if
     /// that model is missing.
     pub fn of_condition(
         measured: &ResponseEstimate,
@@ -112,7 +112,7 @@ struct PhasePoint {
     weight: f64,
 }
 
-/// Lag of a measured response relative to a physics model.
+/// Lag of a measured response behind the physics model's.
 struct Lag {
     pair: Pair,
     delay_s: f64,
@@ -120,7 +120,7 @@ struct Lag {
 }
 
 impl Lag {
-    /// Fits the delay of a response; `None` where it is coherent at too few frequencies.
+    /// Fits a response's delay; `None` where it is coherent at too few frequencies.
     fn fit(points: &[&EstimatePoint], physics: &FrequencyResponse, pair: Pair) -> Option<Self> {
         let at = (pair.output, pair.input);
         let mut angles = Vec::new();
@@ -176,7 +176,7 @@ impl Lag {
     }
 }
 
-/// Computes the lags of the responses that are coherent over half of the band; `None` where the
+/// Computes the lags for the responses that are coherent over half the band; `None` where the
 /// physics model has no response at these frequencies.
 fn response_lags(
     measured: &ResponseEstimate,
@@ -214,9 +214,9 @@ fn response_lags(
 /// A channel with a significant delay.
 struct Suspect {
     channel: ChannelTimeSkew,
-    /// Median delay of the other responses \[s\].
+    /// Median delay in the other responses \[s\].
     common_s: f64,
-    /// Decrease in the squared phase due to the delay of the channel.
+    /// Decrease in the squared phase due to the channel's delay.
     explained: f64,
 }
 

@@ -1,6 +1,5 @@
-//! Differences between the models of a condition: distances within each bundle, the two
-//! representatives, and the differences between these. None depends on constraints, alpha or
-//! bounds.
+//! Differences between a condition's models: distances within each bundle, the two representatives,
+//! and the differences between these. None depends on constraints, alpha or bounds.
 
 use gdcm_method::correction::delta::Delta;
 use gdcm_method::fidelity::discontinuity::DiscontinuityError;
@@ -14,13 +13,13 @@ use super::caution::{Caution, Undefined};
 /// Difference between two models in every response that both have.
 pub type Mismatches = PairTable<Option<Mismatch>>;
 
-/// Distances within each bundle, and discontinuity ratios of the physics bundle; independent of
+/// Distances within each bundle, and discontinuity ratios for the physics bundle; independent of
 /// rejections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleMetrics {
     pub physics: BundleDistance,
     pub identified: BundleDistance,
-    /// Discontinuity ratios of the physics models, or why there are none.
+    /// The physics models' discontinuity ratios, or why there are none.
     pub discontinuity: Result<Discontinuity, DiscontinuityError>,
 }
 
@@ -36,7 +35,7 @@ impl BundleMetrics {
 pub struct ModelMismatch {
     /// Difference between the models in every response that both have.
     pub mismatch: Mismatches,
-    /// J of the uncorrected physics model.
+    /// The uncorrected physics model's J.
     pub cost: PairTable<Option<Cost>>,
 }
 
@@ -51,8 +50,8 @@ pub struct Comparison {
     pub nominal: ModelMismatch,
     /// The representatives' G and D.
     pub delta: Delta,
-    /// Why G and D of a response are undefined; `None` where they are defined.
+    /// Why a response has no G and D; `None` where they are defined.
     pub undefined: PairTable<Option<Undefined>>,
-    /// Cautions about the models, independent of the constraints.
+    /// Cautions about the models, whatever the constraints.
     pub cautions: Vec<Caution>,
 }

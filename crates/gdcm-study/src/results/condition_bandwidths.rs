@@ -1,4 +1,4 @@
-//! Computes bandwidth and phase delay of a condition's models, with intervals (M17.1).
+//! Computes bandwidth and phase delay for a condition's models, with intervals (M17.1).
 //!
 //! ```text
 //! physics     each other kept physics model instead of the representative, uncorrected   (M13.1)
@@ -32,8 +32,8 @@ use super::required_bandwidth::{
 };
 use super::requirement_role::RequirementRole;
 
-/// Computes the on-axis bandwidths of a condition for every role; a response without a bandwidth
-/// has the reason instead.
+/// Computes a condition's on-axis bandwidths for every role; a response without a bandwidth has the
+/// reason instead.
 pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
     let models = ConditionBandwidths::new(asked);
     let mut findings = Vec::new();
@@ -45,7 +45,7 @@ pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
     findings
 }
 
-/// A model prepared for the evaluation of its responses.
+/// A model prepared for evaluating its responses.
 struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
     /// The standard deviations that the model contains, if any.
@@ -68,7 +68,7 @@ impl<'a> EvaluatedModel<'a> {
 #[derive(Clone, Copy, PartialEq)]
 enum Evaluation {
     Exact,
-    /// By interpolation, for models that only contribute to the scatter of a metric.
+    /// By interpolation, for models that only contribute to a metric's scatter.
     Interpolated,
 }
 
@@ -87,7 +87,7 @@ impl PairCorrection {
         has_leads: false,
     };
 
-    /// Returns the effect of a correction on a response; `None` where the net gain is not positive.
+    /// Returns a correction's effect on a response; `None` where the net gain is not positive.
     fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
         let has_leads = Channel::of_pair(pair)
             .into_iter()
@@ -98,7 +98,7 @@ impl PairCorrection {
         })
     }
 
-    /// Returns the effect of the correction after a swap; `None` where a gain or delay is missing.
+    /// Returns the correction's effect after a swap; `None` where a gain or delay is missing.
     fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
         let [output, input] = Channel::of_pair(pair);
@@ -125,7 +125,7 @@ struct MeasuredBandwidth {
 /// A condition's models, prepared for bandwidths.
 struct ConditionBandwidths<'a> {
     asked: &'a AskedCondition<'a>,
-    /// Index of the physics representative.
+    /// The physics representative's index.
     physics: usize,
     /// The physics representative and the models that replace it in swaps.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
@@ -256,9 +256,8 @@ impl<'a> ConditionBandwidths<'a> {
                     Evaluation::Exact => &exact,
                     Evaluation::Interpolated => &interpolated,
                 };
-                // Of the 400 points of the line for the phase delay, only the end points are
-                // evaluated by `response`, like the crossings; the points between them are always
-                // interpolated.
+                // The line for the phase delay has 400 points. `response` evaluates only its end
+                // points, like the crossings; the points between them are always interpolated.
                 AttitudeResponse::new(response, output, &search_frequencies(band), band)?
                     .sampled_by(&interpolated)
             }
@@ -279,7 +278,7 @@ impl<'a> ConditionBandwidths<'a> {
         })
     }
 
-    /// Adds the intervals of the metrics, or why there are none.
+    /// Adds the metrics' intervals, or why there are none.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let why = match finding.role {
@@ -329,7 +328,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
     }
 
-    /// Computes the metrics of a response after each swap in a bundle.
+    /// Computes a response's metrics after each swap in a bundle.
     fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
         let mut values = Vec::new();
         for swap in self.swaps {
@@ -341,7 +340,7 @@ impl<'a> ConditionBandwidths<'a> {
         values
     }
 
-    /// Computes the metrics of a response after a swap; `None` where that is impossible.
+    /// Computes a response's metrics after a swap; `None` where that is impossible.
     fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
         let correction = match role {
             RequirementRole::Corrected => {

@@ -1,4 +1,4 @@
-//! Finds the remarks on the result of a condition.
+//! Finds the remarks on a condition's result.
 
 use gdcm_method::schedule::Schedule;
 
@@ -9,7 +9,7 @@ use super::remark::{FartherResponse, MissedTargets, NeededLead, Remark};
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 
-/// Maximum increase in J of a constrained response that is not reported as worse; with leads every
+/// Maximum increase in a constrained response's J that is not reported as worse; with leads every
 /// increase is reported (M15.6).
 const NEGLIGIBLE_INCREASE: f64 = 0.5;
 
@@ -40,7 +40,7 @@ pub fn condition_remarks(
     remarks
 }
 
-/// Returns the cautions of the schedule that concern the condition.
+/// Returns the schedule cautions that concern the condition.
 fn schedule_remarks(result: &ConditionAnalysis, schedule: &Schedule) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for caution in &schedule.cautions {
@@ -90,7 +90,7 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Returns the loops of gains and of delays that agree within the tolerance.
+/// Returns the constraint loops, in gain and in delay, that agree within the tolerance.
 fn agreement_remarks(result: &ConditionAnalysis) -> Vec<Remark> {
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
     loops.cloned().map(Remark::LoopAgrees).collect()
@@ -144,8 +144,7 @@ fn held_farther_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
     Some(Remark::HeldFarther(farther))
 }
 
-/// Returns a remark on the number of unconstrained responses that the leads move away from flight
-/// (M15.6).
+/// Returns a remark on the unconstrained responses that the leads move away from flight (M15.6).
 fn free_farther_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     if study.settings.phase != PhaseCorrection::Lead {
         return None;

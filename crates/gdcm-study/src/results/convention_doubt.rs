@@ -8,7 +8,7 @@ use gdcm_model::dataset::{ConditionId, Pair};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Convention {
     Sign,
-    /// The unit; the value is the ratio of the identified to the physics models' gains.
+    /// The unit; the value is the ratio of the identified gains to the physics gains.
     Factor(f64),
 }
 

@@ -1,4 +1,4 @@
-//! J without and with a correction of the physics models: couplings (M16.4) or physics parameters
+//! J without and with a correction to the physics models: couplings (M16.4) or physics parameters
 //! (M18.5).
 
 use serde::Serialize;
@@ -12,7 +12,7 @@ pub struct AxisCost {
     pub others: Option<f64>,
 }
 
-/// Mean J without and with a correction of the physics models.
+/// Mean J without and with a correction to the physics models.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CorrectionCost {
     pub without: AxisCost,
@@ -23,14 +23,14 @@ pub struct CorrectionCost {
 /// correction (M16.4, M18.5).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CorrectionCosts {
-    /// J of the uncorrected physics representatives.
+    /// The uncorrected physics representatives' J.
     pub uncorrected: AxisCost,
     /// J under each condition's own correction.
     pub own: CorrectionCost,
-    /// J under the schedule at the airspeed of each condition.
+    /// J under the schedule at each condition's airspeed.
     pub scheduled: CorrectionCost,
-    /// J of each condition when it is left out of the fits of the correction, channel delays and
-    /// schedule; `None` where no condition can be left out.
+    /// J in each condition, with correction, channel delays and schedule fitted to the others;
+    /// `None` where no condition can be left out.
     pub left_out: Option<CorrectionCost>,
 }
 

@@ -1,5 +1,5 @@
-//! Physics models with the couplings of an analysis: the only source of coupled models for exports
-//! (M16.3 in `docs/method.md`).
+//! Physics models with an analysis's couplings: the only source of coupled models for exports
+//! (M16.3 in `docs/couplings.md`).
 //!
 //! ```text
 //! H~ = (I - H K)^-1 H M~       H   response of a physics model, outputs x inputs
@@ -42,7 +42,7 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Returns the pole shifts of the physics representative due to the couplings; empty without
+    /// Returns the pole shifts due to the couplings, for the physics representative; empty without
     /// couplings, and where the model has no poles or they cannot be computed.
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
@@ -57,9 +57,9 @@ impl ConditionAnalysis {
             .unwrap_or_default()
     }
 
-    /// Returns the matrices of a physics model with the couplings; the model itself without
-    /// couplings. The input and output delays of the model lie inside the feedback loop and become
-    /// states: `pade` approximants, or delays by whole samples in discrete time.
+    /// Returns a physics model's matrices with the couplings; the model itself without couplings.
+    /// The model's input and output delays lie inside the feedback loop and become states: `pade`
+    /// approximants, or delays by whole samples in discrete time.
     ///
     /// # Errors
     /// [`CoupledModelError`] where the loop through the feed-through is singular or
@@ -73,11 +73,11 @@ impl ConditionAnalysis {
         coupled_model(fitted, physics, self.airspeed_kt(), pade)
     }
 
-    /// Returns `M_O H~ M_I`: a physics model with the couplings, and then with the correction of
-    /// its channels.
+    /// Returns `M_O H~ M_I`: a physics model with the couplings, and then with its channel
+    /// corrections.
     ///
     /// # Errors
-    /// As for [`ConditionAnalysis::coupled_model`], and where the delays or leads of the correction
+    /// As for [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads
     /// cannot become states.
     pub fn corrected_model(
         &self,

@@ -1,5 +1,5 @@
 //! Remarks on couplings as typed facts (diagnosis, benefit and cost, M16.4), each with a stable
-//! code. The sentences are in the crate of words.
+//! code. The sentences are in the crate `gdcm-words`.
 
 use nalgebra::Complex;
 
@@ -18,9 +18,9 @@ use crate::decisions::settings::CouplingCorrection;
 pub enum CouplingRemark {
     /// The requested couplings are unavailable; all results are computed without couplings.
     Unavailable(CouplingError),
-    /// A significant entry of the mixing.
+    /// A significant mixing entry.
     Mixing(MixingShare),
-    /// A significant entry of the feedback.
+    /// A significant feedback entry.
     Feedback {
         share: FeedbackShare,
         meaning: FeedbackMeaning,
@@ -38,24 +38,24 @@ pub enum CouplingRemark {
         without: f64,
         with: f64,
     },
-    /// The largest relative change \[dB\] of an on-axis response at a frequency above the band.
+    /// The largest relative change \[dB\] in an on-axis response above the band.
     ChangeAboveBand {
         condition: ConditionId,
         pair: Pair,
         change_db: f64,
         omega_rad_s: f64,
     },
-    /// The largest shift of a pole within the band \[rad/s\].
+    /// The largest pole shift within the band \[rad/s\].
     PolesMoved {
         condition: ConditionId,
         before: Complex<f64>,
         after: Complex<f64>,
         distance_rad_s: f64,
     },
-    /// The error bars are computed with fixed couplings, which are not fitted again for each swap of
-    /// models.
+    /// The error bars are computed with fixed couplings, which are not fitted again for each model
+    /// swap.
     BarsKeepCouplings,
-    /// Newly unstable poles of the representatives, or of the other kept physics models.
+    /// Newly unstable poles in the representatives, or in the other kept physics models.
     NewlyUnstable {
         is_representative: bool,
         poles: Vec<UnstablePole>,
@@ -65,7 +65,7 @@ pub enum CouplingRemark {
         condition: ConditionId,
         margin: LoopMargin,
     },
-    /// The number of conditions in which the feedback compensates for a missing lead.
+    /// Number of conditions in which the feedback compensates for a missing lead.
     FeedbackAsLead { conditions: usize },
     /// The couplings are fitted to too few conditions for error bars.
     FewConditions { conditions: usize },
@@ -74,7 +74,7 @@ pub enum CouplingRemark {
     NotFedBack { outputs: Vec<usize> },
     /// Entries that the data do not determine.
     EntriesUndetermined(Vec<Unknown>),
-    /// The poles of a condition are unavailable.
+    /// A condition's poles are unavailable.
     PolesUnknown {
         condition: ConditionId,
         why: NoPoles,
@@ -89,7 +89,7 @@ pub enum CouplingRemark {
     PartlyLeftOut { fits: usize, conditions: usize },
 }
 
-/// Physical meaning of a feedback entry, derived from the units of the channels.
+/// Physical meaning of a feedback entry, derived from the channel units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FeedbackMeaning {
     DirectionalStiffness,
@@ -97,7 +97,7 @@ pub enum FeedbackMeaning {
     Coupling,
 }
 
-/// Source of the J by which the benefit of couplings is judged.
+/// Source of the J that measures the benefit from couplings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CostSource {
     /// Conditions left out of the fit.

@@ -17,8 +17,8 @@ const MOST_REPORTED: usize = 3;
 /// Smaller shares \[-\] are not reported.
 const NOTHING: f64 = 0.005;
 
-/// Returns the remarks on the couplings of an analysis: the reason why requested couplings are
-/// unavailable, or the remarks of [`coupling_remarks`]; empty if none were requested.
+/// Returns the remarks on an analysis's couplings: the reason why requested couplings are
+/// unavailable, or the remarks from [`coupling_remarks`]; empty if none were requested.
 pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<CouplingRemark> {
     match (&analysis.couplings, &analysis.coupling_assessment) {
         (Some(Err(error)), _) => vec![CouplingRemark::Unavailable(error.clone())],
@@ -27,7 +27,7 @@ pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<CouplingRemark> {
     }
 }
 
-/// Returns the largest entries, then the remarks of [`coupling_consequences`].
+/// Returns the largest entries, then the remarks from [`coupling_consequences`].
 pub fn coupling_remarks(
     assessment: &CouplingsAssessment,
     dataset: &Dataset,
@@ -37,7 +37,7 @@ pub fn coupling_remarks(
     remarks
 }
 
-/// Returns remarks on the benefit and the cost of the couplings, and cautions about them.
+/// Returns remarks on the benefit and cost of the couplings, and cautions about them.
 pub fn coupling_consequences(
     assessment: &CouplingsAssessment,
     dataset: &Dataset,
@@ -50,8 +50,7 @@ pub fn coupling_consequences(
     remarks
 }
 
-/// Returns the largest entries outside their error bars: those of the mixing, then those of the
-/// feedback.
+/// Returns the largest entries outside their error bars: mixing entries, then feedback entries.
 fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<CouplingRemark> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let matrices = assessment.fitted.matrices();
@@ -82,7 +81,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Couplin
     remarks
 }
 
-/// Derives the physical meaning of a feedback entry from the unit of its output.
+/// Derives a feedback entry's physical meaning from its output's unit.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMeaning {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -103,12 +102,12 @@ fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMean
     }
 }
 
-/// Returns whether the channel has a unit of angular rate.
+/// Returns whether the channel's unit is an angular rate.
 pub(super) fn is_rate(channel: &Channel) -> bool {
     ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
 }
 
-/// Returns whether the channel has a unit of acceleration.
+/// Returns whether the channel's unit is an acceleration.
 fn is_acceleration(channel: &Channel) -> bool {
     matches!(
         channel.unit.trim(),
@@ -137,7 +136,7 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
 }
 
 /// Returns the hint that recommends these couplings to a study that does not use them; `None` if
-/// they are not worthwhile, or if no condition was left out of the fit.
+/// they are not worthwhile, or if no condition was left out.
 pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<CouplingRemark> {
     let cost = assessment
         .costs
@@ -150,7 +149,7 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<CouplingRemark
     })
 }
 
-/// Returns the largest change of an on-axis response above the band.
+/// Returns the largest change in an on-axis response above the band.
 fn largest_change_above_band(
     assessment: &CouplingsAssessment,
     dataset: &Dataset,
@@ -257,8 +256,8 @@ fn unknown_poles(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
     remarks
 }
 
-/// Returns a remark on newly unstable poles of the physics representatives, then a remark on newly
-/// unstable poles of the other kept physics models.
+/// Returns a remark on newly unstable poles in the physics representatives, then one on those in
+/// the other kept physics models.
 fn newly_unstable(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
     let mut remarks = Vec::new();
     for is_representative in [true, false] {
@@ -278,7 +277,7 @@ fn newly_unstable(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
     remarks
 }
 
-/// Returns the minimum singular value of the loop over all conditions; `None` unless it is close to
+/// Returns the loop's minimum singular value over all conditions; `None` unless it is close to
 /// ringing.
 fn close_to_ringing(assessment: &CouplingsAssessment) -> Option<CouplingRemark> {
     let margins = assessment

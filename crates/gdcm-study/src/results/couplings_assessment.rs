@@ -1,5 +1,5 @@
 //! Benefit and cost of couplings: error bars on their entries, J without and with them and for
-//! conditions left out, pole shifts, stability margin of the loop, effect above the band (M16.4).
+//! conditions left out, pole shifts, the loop's stability margin, effect above the band (M16.4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,14 +14,14 @@ use super::correction_costs::{CorrectionCost, CorrectionCosts};
 use super::fitted_couplings::FittedCouplings;
 use crate::decisions::settings::CouplingCorrection;
 
-/// Assessment, or the error of the coupling fit.
+/// Assessment, or the error that stopped the coupling fit.
 pub type AssessedCouplings = Result<Arc<CouplingsAssessment>, CouplingError>;
 
 /// An entry in `M~` or `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingEntry {
     pub value: f64,
-    /// Half-width of the error bar; `None` with fewer than three conditions.
+    /// Error bar half-width; `None` with fewer than three conditions.
     pub half_width: Option<f64>,
     /// Jackknife standard deviation.
     pub deviation: Option<f64>,
@@ -34,14 +34,13 @@ pub struct CouplingEntry {
 pub struct ConditionCouplings {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Poles of the physics representative before and after, or why they are unavailable.
+    /// The physics representative's poles before and after, or why they are unavailable.
     pub poles: Result<Vec<PoleShift>, NoPoles>,
     /// Minimum singular value of `I - K H` at each frequency in [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
-    /// Minimum singular value over the range from the lower end of the band to ten times its upper
-    /// end.
+    /// Minimum singular value from the band's lower end to ten times its upper end.
     pub margin: Option<LoopMargin>,
-    /// `20 log10 |H~ - H| / |H|` at ten times the upper end of the band, response by response.
+    /// `20 log10 |H~ - H| / |H|` at ten times the band's upper end, response by response.
     pub above_band_db: PairTable<Option<f64>>,
     /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit.
     pub left_out: Option<CorrectionCost>,
@@ -49,7 +48,7 @@ pub struct ConditionCouplings {
     pub refused: Vec<RefusedModel>,
 }
 
-/// Why the poles of a physics model without and with couplings are unavailable.
+/// Why a physics model's poles without and with couplings are unavailable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoPoles {
     /// The model is a measured response.
@@ -84,7 +83,7 @@ pub struct UnstablePole {
     pub is_representative: bool,
     /// The pole \[rad/s\].
     pub pole: Complex<f64>,
-    /// Whether the frequency of the pole lies in the comparison band.
+    /// Whether the pole's frequency lies in the comparison band.
     pub is_in_band: bool,
 }
 
@@ -93,23 +92,23 @@ pub struct UnstablePole {
 pub struct CouplingsAssessment {
     pub couplings: CouplingCorrection,
     pub fitted: Arc<FittedCouplings>,
-    /// Confidence level of the error bars.
+    /// Confidence level for the error bars.
     pub level: f64,
     pub band: Band,
     /// The fits without each condition in turn; empty with fewer than three conditions.
     pub left_out_fits: Vec<LeftOutFit>,
     /// J without and with the couplings.
     pub costs: CorrectionCosts,
-    /// Frequencies of the singular values \[rad/s\]: from a tenth of the band's lower end to ten
+    /// Frequencies for the singular values \[rad/s\]: from a tenth of the band's lower end to ten
     /// times its upper end.
     pub omega: Arc<[f64]>,
     /// Effect of the couplings on each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionCouplings>,
-    /// Newly unstable poles of all kept physics models.
+    /// Newly unstable poles in all kept physics models.
     pub unstable: Vec<UnstablePole>,
-    /// Number of conditions in which leads would help
-    /// ([`ConditionAnalysis::offer`](super::analysis::ConditionAnalysis::offer)) and are not
-    /// requested: feedback then replaces the missing lead.
+    /// Number of conditions with an unused offer of leads
+    /// ([`ConditionAnalysis::offer`](super::analysis::ConditionAnalysis::offer)): feedback then
+    /// replaces the missing lead.
     pub want_leads: usize,
 }
 

@@ -1,5 +1,4 @@
-//! Facts about an exported file, found by its writer: the kind of its contents, and what it omits
-//! or approximates.
+//! Facts about an exported file, found by its writer: what it contains, omits or approximates.
 
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::couplings::problem::CouplingError;
@@ -8,12 +7,12 @@ use gdcm_model::dataset::ConditionId;
 
 use super::schedule_losses::DelayedChannel;
 
-/// Kind and size of the contents of an exported file.
+/// Kind and size of an exported file's contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileSummary {
     /// All results.
     Results { has_error_bars: bool },
-    /// A table of results.
+    /// A result table.
     Rows { rows: usize },
     /// The schedule as a function of airspeed.
     Function {
@@ -23,13 +22,13 @@ pub enum FileSummary {
     },
     /// The schedule at some airspeeds.
     Table { airspeeds: usize },
-    /// Corrected models; each has this number of states more than its physics model, at most.
+    /// Corrected models; each has at most this many states more than its physics model.
     Models { models: usize, added_states: usize },
     /// SHA-256 of the other files.
     Checksums { files: usize },
 }
 
-/// Signed delay of a channel in a condition, far from its mean in the others.
+/// A channel's signed delay in a condition, far from its mean in the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignedDelayApart {
     pub channel: Channel,
@@ -44,10 +43,10 @@ pub enum ExportNote {
     DelaysNotScheduled { channels: Vec<DelayedChannel> },
     /// Each scheduled delay is the same at all airspeeds.
     ConstantDelays {
-        /// Whether the delays are signed: of delays and leads.
+        /// Whether the delays are signed, so that some may be leads.
         is_signed: bool,
     },
-    /// The signed delays of some channels in one condition are far from those in the others.
+    /// In one condition, some channels have signed delays far from those in the others.
     SignedDelaysNotScheduled {
         condition: ConditionId,
         /// Channels, the greatest difference first.
@@ -55,7 +54,7 @@ pub enum ExportNote {
     },
     /// The requested couplings are unavailable.
     CouplingsLeftOut { why: CouplingError },
-    /// Maximum error of linear interpolation in a lookup table: \[%\] of a gain.
+    /// Maximum error in a gain due to linear interpolation in a lookup table \[%\].
     GainTableError {
         channel: Channel,
         error_percent: f64,
@@ -63,8 +62,8 @@ pub enum ExportNote {
         /// Rounded airspeed \[kt\] that would reduce the error; `None` if the table has it.
         remedy_kt: Option<f64>,
     },
-    /// Maximum error of linear interpolation in a lookup table: \[ms\] of a delay or of the time
-    /// constant of a lead.
+    /// Maximum error in a delay, or in a lead's time constant, due to linear interpolation in a
+    /// lookup table \[ms\].
     TimeTableError {
         channel: Channel,
         error_ms: f64,
@@ -82,13 +81,13 @@ pub enum ExportNote {
         /// Order with a smaller error; `None` for the highest order.
         remedy: Option<usize>,
     },
-    /// Tustin's rule replaces the lead filters of sampled models.
+    /// Tustin's rule converts the lead filters in sampled models.
     TustinError { error_deg: f64, band_top_rad_s: f64 },
-    /// Lead filters limit the range of validity.
+    /// Lead filters limit the valid frequency range.
     NotValidAbove { price: LeadPrice },
-    /// Conditions that the engineer has left out of the export.
+    /// Conditions that the engineer excluded from the export.
     ConditionsNotChosen { conditions: Vec<ConditionId> },
-    /// Conditions that the fit of the schedule leaves out.
+    /// Conditions that the schedule fit leaves out.
     ConditionsNotScheduled { conditions: Vec<ConditionId> },
     /// Chosen conditions without a result.
     ConditionsWithoutResult { conditions: Vec<ConditionId> },
@@ -100,7 +99,7 @@ pub enum ExportNote {
     NoPhysicsParameters,
 }
 
-/// A change of the study or of the export that removes or reduces what a note states.
+/// A change to the study or the export that removes or reduces what a note states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExportRemedy {
     /// Schedules the delays.
@@ -109,7 +108,7 @@ pub enum ExportRemedy {
     SignedDelaysOverAirspeed,
     /// Adds a row to the lookup tables.
     AddBreakpoint { airspeed_kt: f64 },
-    /// Raises the order of the Padé approximants.
+    /// Raises the Padé order.
     UsePadeOrder { order: usize },
     /// Exports all conditions.
     IncludeAllConditions,
@@ -138,7 +137,7 @@ impl ExportNote {
         }
     }
 
-    /// Returns whether notes of several files state the same fact, so that one of them is enough.
+    /// Returns whether notes in several files state the same fact, so that a single note is enough.
     pub fn has_same_subject(&self, other: &Self) -> bool {
         match (self, other) {
             // Functions concern the scheduled conditions, models the exported ones.

@@ -8,11 +8,11 @@ use gdcm_model::dataset::ConditionId;
 
 use super::comparison::Comparison;
 
-/// Couplings of a study: the problem of the fit, and its solution.
+/// A study's couplings: the fit problem and its solution.
 #[derive(Clone, Debug)]
 pub struct FittedCouplings {
-    /// Problem of the fit, built from the representatives of the conditions that are analysed and
-    /// not held out.
+    /// Fit problem, built from the representatives in the conditions that are analysed and not held
+    /// out.
     pub problem: CouplingProblem,
     pub fit: CouplingFit,
 }
@@ -26,7 +26,7 @@ impl PartialEq for FittedCouplings {
 }
 
 impl FittedCouplings {
-    /// Returns the matrices of mixing and feedback.
+    /// Returns the mixing and feedback matrices.
     pub fn matrices(&self) -> &CouplingMatrices {
         &self.fit.matrices
     }
@@ -43,7 +43,7 @@ impl FittedCouplings {
 /// Changes that the couplings make in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledCondition {
-    /// Comparison of the models without couplings, by which the representatives are selected.
+    /// Comparison of the models without couplings, which selects the representatives.
     pub before: Arc<Comparison>,
     pub fitted: Arc<FittedCouplings>,
 }

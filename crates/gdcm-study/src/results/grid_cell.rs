@@ -1,4 +1,4 @@
-//! Cells of the grid of requirements: values of models with verdicts, and reasons for missing ones.
+//! Cells in the requirement grid: each model's value and verdict, or why it is missing.
 
 use super::grid_requirement::RequirementLimit;
 use super::required_bandwidth::NoBandwidth;
@@ -36,9 +36,9 @@ pub enum NotDetermined {
         role: RequirementRole,
         why: NoBandwidth,
     },
-    /// Bandwidth and phase delay lie above the end of a level boundary.
+    /// Bandwidth and phase delay lie beyond the upper end of a level boundary.
     AboveBoundaries(RequirementRole),
-    /// The condition has no flight record that was held out of the identification.
+    /// The condition has no flight record held out from the identification.
     NoHeldOutRecord,
     /// The quantity could not be compared with the held-out records.
     NotCompared,
@@ -70,7 +70,7 @@ impl NotDetermined {
     }
 }
 
-/// Value of a model, and its verdict.
+/// A model's value and its verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoleCell {
     /// Fraction, seconds, cost or level ([`unit`](super::grid_requirement::Requirement::unit)); `None` where it is not determined.
@@ -97,7 +97,7 @@ impl RoleCell {
 /// A requirement in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridCell {
-    /// The corrected model, in the role of the grid.
+    /// The corrected model, in the grid's role.
     pub corrected: RoleCell,
     /// The uncorrected physics model.
     pub physics: RoleCell,
@@ -110,7 +110,7 @@ impl RequirementLimit {
             Self::AtMost(limit) => value <= *limit,
             Self::AtLeast(limit) => value >= *limit,
             Self::Tolerance(_) => value <= 1.0,
-            // Levels and modes have verdicts of their own.
+            // Levels and modes have their own verdicts.
             Self::IdentifiedLevel | Self::Mode(_) | Self::None => return CellVerdict::NoTolerance,
         };
         if is_met {

@@ -1,4 +1,4 @@
-//! Requirements of the grid: the rows, their groups, units and limits (M17.5).
+//! Requirements as grid rows: groups, units and limits (M17.5).
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use gdcm_method::requirements::mode_comparison::ModeTolerance;
 use gdcm_method::requirements::{ModeName, Tolerance, ToleranceTable};
 use gdcm_model::dataset::{Dataset, Pair};
 
-/// Group of requirements, in the order of the grid.
+/// Requirement group, in grid order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementGroup {
@@ -20,14 +20,14 @@ impl RequirementGroup {
     pub const ALL: [Self; 4] = [Self::Bandwidth, Self::InTime, Self::Modes, Self::Summary];
 }
 
-/// A requirement: a row of the grid.
+/// A requirement: a grid row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Requirement {
     Bandwidth(Pair),
     PhaseDelay(Pair),
-    /// Level of bandwidth and phase delay by the level boundaries of the settings.
+    /// Level for bandwidth and phase delay, from the level boundaries in the settings.
     Level(Pair),
-    /// Peak error in time; the index is that of the row in the tolerance table.
+    /// Peak error in time; the index is its row in the tolerance table.
     PeakError(usize),
     ModeFrequency(ModeName),
     MeanJOnAxis,
@@ -35,7 +35,7 @@ pub enum Requirement {
     MuadShareOnAxis,
 }
 
-/// Unit in which the values of a requirement are displayed.
+/// Unit in which a requirement's values are displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequirementUnit {
     /// The stored value is a fraction.
@@ -44,12 +44,12 @@ pub enum RequirementUnit {
     Milliseconds,
     /// The value is a cost without unit.
     Cost,
-    /// The value is the number of a level.
+    /// The value is a level number.
     Level,
 }
 
 impl Requirement {
-    /// Returns the group of rows to which the requirement belongs.
+    /// Returns the row group to which the requirement belongs.
     pub fn group(self) -> RequirementGroup {
         match self {
             Self::Bandwidth(_) | Self::PhaseDelay(_) | Self::Level(_) => {
@@ -61,7 +61,7 @@ impl Requirement {
         }
     }
 
-    /// Returns the unit of its cells and of its limit.
+    /// Returns the unit for its cells and its limit.
     pub fn unit(self) -> RequirementUnit {
         match self {
             Self::PhaseDelay(_) => RequirementUnit::Milliseconds,
@@ -74,7 +74,7 @@ impl Requirement {
         }
     }
 
-    /// Returns the stable code of the quantity, for files and tests.
+    /// Returns the quantity's stable code, for files and tests.
     pub fn code(self) -> &'static str {
         match self {
             Self::Bandwidth(_) => "bandwidth",
@@ -88,8 +88,8 @@ impl Requirement {
         }
     }
 
-    /// Returns the response that a requirement concerns: for a peak error, the on-axis response of
-    /// its output; `None` for modes and summary costs.
+    /// Returns the response that a requirement concerns: for a peak error, its output's on-axis
+    /// response; `None` for modes and summary costs.
     pub fn pair(self, dataset: &Dataset, tolerances: &ToleranceTable) -> Option<Pair> {
         match self {
             Self::Bandwidth(pair) | Self::PhaseDelay(pair) | Self::Level(pair) => Some(pair),
@@ -107,18 +107,18 @@ impl Requirement {
     }
 }
 
-/// Limit of the values in a row.
+/// Limit for the values in a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RequirementLimit {
-    /// Maximum magnitude, in the stored unit of the values.
+    /// Maximum magnitude, in the unit in which the values are stored.
     Within(f64),
     AtMost(f64),
     AtLeast(f64),
-    /// The level of the identified model.
+    /// The identified model's level.
     IdentifiedLevel,
-    /// Tolerance of a time history: a peak error of at most 1.
+    /// Tolerance for a time history: a peak error up to 1.
     Tolerance(Tolerance),
-    /// Tolerances of a mode: the period, and the time to half amplitude or the damping ratio.
+    /// Tolerances for a mode: the period, and the time to half amplitude or the damping ratio.
     Mode(ModeTolerance),
     None,
 }

@@ -1,4 +1,4 @@
-//! Builds the grid of requirements from the results of a study, and judges its cells (M17.5).
+//! Builds the requirement grid from a study's results, and judges its cells (M17.5).
 
 use std::collections::BTreeSet;
 
@@ -16,8 +16,7 @@ use super::requirements::Requirements;
 use super::time_histories::TimeHistories;
 use crate::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
 
-/// Modes with a row of their own even without a tolerance; any other mode has one only with a
-/// tolerance.
+/// Modes that always have a row; any other mode has a row only with a tolerance.
 const SHOWN_MODES: [ModeName; 3] = [
     ModeName::DutchRoll,
     ModeName::ShortPeriod,
@@ -93,8 +92,8 @@ impl GridSource<'_> {
         conditions
     }
 
-    /// Returns bandwidth and phase delay of each on-axis response in which any model has either, and
-    /// the level where boundaries give levels for its axis.
+    /// Returns a bandwidth row and a phase delay row for each on-axis response in which any model
+    /// has either, and a level row where boundaries give levels for its axis.
     fn bandwidth_rows(&self) -> Vec<RowSource> {
         let mut rows = Vec::new();
         for pair in self.dataset.measuring_pairs().marked() {
@@ -124,9 +123,9 @@ impl GridSource<'_> {
         rows
     }
 
-    /// Returns the first row of the tolerance table for each quantity of the dataset. Further rows
-    /// for the same quantity are alternatives in the standard (2.c.3.b joins attitude and rate by
-    /// "or"), not requirements of their own.
+    /// Returns the tolerance table's first row for each quantity in the dataset. Further rows for
+    /// the same quantity are alternatives in the standard (2.c.3.b joins attitude and rate by
+    /// "or"), not separate requirements.
     fn peak_error_rows(&self) -> Vec<RowSource> {
         let mut rows = Vec::new();
         let mut known = BTreeSet::new();
@@ -215,7 +214,7 @@ impl GridSource<'_> {
         }
     }
 
-    /// Returns the relative change of the bandwidth from that of the identified model.
+    /// Returns the relative difference in bandwidth from the identified model.
     fn bandwidth_change(
         &self,
         condition: ConditionId,
@@ -229,7 +228,7 @@ impl GridSource<'_> {
         Ok(model_rad_s / flown_rad_s - 1.0)
     }
 
-    /// Returns the change of the phase delay \[s\] from that of the identified model.
+    /// Returns the difference in phase delay from the identified model \[s\].
     fn phase_delay_change(
         &self,
         condition: ConditionId,
@@ -243,7 +242,7 @@ impl GridSource<'_> {
         Ok(model_s - flown_s)
     }
 
-    /// Compares the level of a model with that of the identified model.
+    /// Compares a model's level with the identified model's.
     fn level_cell(&self, condition: ConditionId, pair: Pair, role: RequirementRole) -> RoleCell {
         let level = match self.level(condition, pair, role) {
             Ok(level) => level,
@@ -260,7 +259,7 @@ impl GridSource<'_> {
         }
     }
 
-    /// Returns the number of a model's level.
+    /// Returns a model's level number.
     fn level(
         &self,
         condition: ConditionId,
@@ -323,7 +322,7 @@ impl GridSource<'_> {
         }
     }
 
-    /// Judges a mode by its tolerance; the value is the relative change of its natural frequency.
+    /// Judges a mode by its tolerance; the value is its natural frequency's relative change.
     fn mode_cell(&self, condition: ConditionId, name: ModeName, role: RequirementRole) -> RoleCell {
         if self.requirements.no_modes(condition).is_some() {
             return RoleCell::absent(NotDetermined::NoModes);

@@ -8,7 +8,7 @@ use gdcm_model::dataset::PairTable;
 
 use super::comparison::Mismatches;
 
-/// The physics representative with the lead filters of its channels against the identified
+/// The physics representative with its channels' lead filters, against the identified
 /// representative; the gains are fitted to this difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadCompensated {
@@ -17,7 +17,7 @@ pub struct LeadCompensated {
     /// Difference in every response that both models have; signed delays without a filter (pure
     /// delays) are not applied.
     pub mismatch: Mismatches,
-    /// G of the compensated representative, `[output, input]`.
+    /// The compensated representative's G, `[output, input]`.
     pub gain: PairTable<Option<f64>>,
 }
 

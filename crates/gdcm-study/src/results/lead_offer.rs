@@ -1,5 +1,5 @@
-//! Benefit of leads for a study that does not use them: J with lead filters in the channels that need
-//! them (M15.5).
+//! Benefit of leads for a study that does not use them: J with lead filters in the channels that
+//! need them (M15.5).
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::correction::channel_leads::ChannelLeads;
@@ -22,7 +22,7 @@ pub struct LeadOffer {
 }
 
 impl LeadOffer {
-    /// Maximum ratio of J with leads to J without, at which leads are recommended.
+    /// Leads are recommended up to this ratio of J with leads to J without.
     const WORTH: f64 = 0.9;
 
     /// Returns J without and with these leads if they would reduce J over the constrained responses

@@ -9,8 +9,8 @@ use super::remark::{DelaysApart, MissedTargets, Remark};
 use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 
-/// Maximum difference \[s\] between the two values of D, by eq. (9) and over the band, at which the
-/// missing phase can be due to a delay.
+/// Maximum difference \[s\] between D by eq. (9) and D over the band at which the missing phase can
+/// be due to a delay.
 const APART_S: f64 = 0.02;
 /// Minimum absolute signed delay \[s\] that needs a correction.
 const NOTHING_S: f64 = 2e-3;
@@ -30,8 +30,8 @@ pub fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Reports that all constrained responses need about the same lead: the median of their values of
-/// D, if these differ by at most half of it.
+/// Reports the median lead if all constrained responses need lead, and their leads differ by at
+/// most half the median.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let mut wanted_s: Vec<f64> = result
         .held()
@@ -89,9 +89,9 @@ fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::GainRaised { rise_db, pair })
 }
 
-/// Reports the constrained responses whose two values of D are far apart, which indicates a zero or
-/// a mode in the band. Responses with a suspected sign difference are excepted, because their half
-/// turn of phase has another cause.
+/// Reports the constrained responses whose two estimates for D are far apart, which indicates a
+/// zero or a mode in the band. Responses with a suspected sign difference are excluded, because
+/// their phase difference near half a turn has another cause.
 fn not_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let delta = &result.comparison.delta;
     let mut responses = Vec::new();

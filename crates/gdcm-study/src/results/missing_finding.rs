@@ -1,5 +1,5 @@
-//! Reasons for missing results, as typed facts with stable codes. The sentences are in the crate of
-//! words; the export writes them in place of the codes.
+//! Reasons for missing results, as typed facts with stable codes. The sentences are in the crate
+//! `gdcm-words`; the export writes them instead of the codes.
 
 use serde::{Serialize, Serializer};
 
@@ -33,7 +33,7 @@ pub enum MissingReason {
     /// No flight record was given for any condition.
     NoRecord,
     NoRecordOfCondition,
-    /// A row of the tolerance table is not applicable.
+    /// A tolerance row is not applicable.
     ToleranceNotApplied(ToleranceError),
     RecordNotPrepared {
         record: String,
@@ -53,7 +53,7 @@ pub enum MissingReason {
 pub enum NoModes {
     /// The model is a measured response.
     Measured { model: String },
-    /// The modes of a model, without or with couplings, cannot be computed.
+    /// A model's modes, without or with couplings, cannot be computed.
     NotComputed {
         model: String,
         is_coupled: bool,

@@ -1,17 +1,17 @@
-//! What the physics parameters did to the physics models of a condition (M18.5).
+//! Outcome of moving a condition's physics models by the physics parameters (M18.5).
 
 use gdcm_method::physics::ConditionOmission;
 use gdcm_method::physics::increments::IncrementError;
 
-/// What happened to the physics models of a condition.
+/// Outcome for a condition's physics models.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MovedModels {
     /// Models are moved, except those listed.
     Moved {
         /// The models that keep their response, with the reasons.
         kept: Vec<UnmovedModel>,
-        /// The parameters whose effect bends: the curvature has more than half of the share of the
-        /// slope (M18.7). A second run at the value found would help.
+        /// Parameters whose effect is curved: the curvature contributes more than half as much as
+        /// the slope (M18.7). A second run at the value found would help.
         bends: Vec<BendingParameter>,
     },
     /// The condition keeps its physics models.
@@ -25,10 +25,10 @@ pub struct UnmovedModel {
     pub why: IncrementError,
 }
 
-/// A parameter whose effect bends at the value applied.
+/// A parameter whose effect is curved at the applied value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BendingParameter {
     pub name: String,
-    /// `|z| ||Q|| / ||L||` of A.
+    /// `|z| ||Q|| / ||L||` for A.
     pub curvature: f64,
 }

@@ -28,14 +28,14 @@ pub struct PhysicsAssessment {
     pub correction: PhysicsCorrection,
     /// Values, models and, unless set by hand, the diagnosis.
     pub applied: Arc<AppliedPhysics>,
-    /// Confidence level of the intervals.
+    /// Confidence level for the intervals.
     pub level: f64,
     pub band: Band,
-    /// Frequencies of [`ConditionPhysics::responses`] \[rad/s\].
+    /// Frequencies for [`ConditionPhysics::responses`] \[rad/s\].
     pub omega: Arc<[f64]>,
-    /// J without and with the parameters, each with the other corrections of the study.
+    /// J without and with the parameters, each with the study's other corrections.
     pub costs: CorrectionCosts,
-    /// J of the moved physics representatives without any other correction.
+    /// The moved physics representatives' J without any other correction.
     pub moved_uncorrected: AxisCost,
     /// Effect on each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionPhysics>,
@@ -43,7 +43,7 @@ pub struct PhysicsAssessment {
     pub couplings_without: Option<Arc<FittedCouplings>>,
     /// Couplings fitted with the parameters applied.
     pub couplings_with: Option<Arc<FittedCouplings>>,
-    /// Reruns of the dataset against the prediction for their values.
+    /// The dataset's reruns against the predictions for their values.
     pub reruns: Vec<RerunCheck>,
 }
 
@@ -52,14 +52,15 @@ pub struct PhysicsAssessment {
 pub struct ConditionPhysics {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Signed delays of the channels without and with the parameters \[s\]; leads are negative.
+    /// Signed channel delays without and with the parameters \[s\]; leads are negative.
     pub delays_s: WithoutAndWith<Channels<f64>>,
-    /// Poles of the physics representative before and after, or why they are unavailable.
+    /// The physics representative's poles before and after, or why they are unavailable.
     pub poles: Result<Vec<PoleShift>, NoPoles>,
-    /// Responses before and after, the most improved first; empty if the physics models of the
-    /// condition are not moved.
+    /// Responses before and after, the most improved first; empty if the condition's physics models
+    /// are not moved.
     pub responses: Vec<ResponseShapes>,
-    /// J of the condition left out of the fit and the schedule; `None` if it takes no part in them.
+    /// The condition's J with parameters and schedule fitted to the others; `None` if the condition
+    /// takes no part in the fit.
     pub left_out: Option<CorrectionCost>,
 }
 
@@ -83,7 +84,7 @@ impl PhysicsAssessment {
     }
 }
 
-/// Adds `share` times the delays of `other`.
+/// Adds `share` times the delays in `other`.
 fn add(channels: &mut Channels<f64>, other: &Channels<f64>, share: f64) {
     for (delay_s, other) in channels.inputs.iter_mut().zip(&other.inputs) {
         *delay_s += share * other;

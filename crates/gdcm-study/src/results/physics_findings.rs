@@ -9,11 +9,11 @@ use gdcm_model::dataset::ConditionId;
 /// Diagnosis of the parameters that are on.
 #[derive(Clone, Debug)]
 pub struct PhysicsFindings {
-    /// The parameters that are on, in the order of the dataset.
+    /// The parameters that are on, in dataset order.
     pub parameters: Vec<OfferedParameter>,
     /// The parameters that are off.
     pub off: Vec<OfferedParameter>,
-    /// Data of the fit.
+    /// Fit data.
     pub problem: PhysicsProblem,
     pub diagnosis: PhysicsDiagnosis,
     pub left_out: LeftOutData,
@@ -45,7 +45,7 @@ pub struct OmittedCondition {
 pub enum NotFitted {
     /// It is held out.
     HeldOut,
-    /// Its representatives cannot be compared; the stable code of the reason.
+    /// Its representatives cannot be compared; the reason's stable code.
     NotCompared { code: &'static str },
     /// Its runs do not suffice.
     Runs(ConditionOmission),
@@ -65,7 +65,7 @@ impl NotFitted {
 /// Why requested physics parameters are unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PhysicsFailure {
-    /// The dataset has no run of any parameter.
+    /// The dataset has no run with a moved parameter.
     #[error(
         "no physics parameters: the dataset has no run of any parameter; add physics models \
         linearised with one parameter moved"
@@ -104,7 +104,7 @@ impl PhysicsFailure {
 }
 
 impl PartialEq for PhysicsFindings {
-    /// Compares the results; the data of the fit are not read.
+    /// Compares the results; the fit data are not read.
     fn eq(&self, other: &Self) -> bool {
         self.parameters == other.parameters
             && self.off == other.off
@@ -121,17 +121,17 @@ pub struct DiagnosedParameter<'a> {
 }
 
 impl DiagnosedParameter<'_> {
-    /// Returns the change in the unit of the parameter.
+    /// Returns the change in the parameter's unit.
     pub fn change(&self) -> f64 {
         self.diagnosis.z * self.parameter.plausible_sd
     }
 
-    /// Returns the half-width of the interval in the unit of the parameter.
+    /// Returns the interval half-width in the parameter's unit.
     pub fn half_width(&self) -> Option<f64> {
         Some(self.diagnosis.half_width? * self.parameter.plausible_sd)
     }
 
-    /// Returns the ends of the interval in the unit of the parameter.
+    /// Returns the interval ends in the parameter's unit.
     pub fn interval(&self) -> Option<[f64; 2]> {
         let half_width = self.half_width()?;
         Some([self.change() - half_width, self.change() + half_width])
@@ -160,8 +160,8 @@ impl PhysicsFindings {
             })
     }
 
-    /// Lists the parameters that are on, by index: the fitted ones in the order of the stepwise
-    /// list, then the others.
+    /// Lists the parameters that are on, by index: the fitted ones in stepwise order, then the
+    /// others.
     pub fn ranked(&self) -> Vec<usize> {
         let mut ranked: Vec<usize> = (0..self.parameters.len()).collect();
         ranked.sort_by_key(|parameter| {
@@ -171,8 +171,8 @@ impl PhysicsFindings {
         ranked
     }
 
-    /// Returns the index of the named parameter among those that are on; without a name, or if no
-    /// such parameter is on, that of the first in the ranking. `None` if no parameter is on.
+    /// Returns the named parameter's index among those that are on; without a name, or if no such
+    /// parameter is on, the index of the first in the ranking. `None` if no parameter is on.
     pub fn selected(&self, name: Option<&str>) -> Option<usize> {
         let found = self
             .parameters

@@ -1,4 +1,4 @@
-//! Comparison of simulated responses with a flight record, tolerance by tolerance (M17.2).
+//! Compares simulated responses with a flight record, tolerance by tolerance (M17.2).
 
 use serde::Serialize;
 
@@ -8,11 +8,10 @@ use gdcm_model::dataset::{Channel, Dataset, Pair, PairTable, StateSpace};
 use gdcm_model::simulation::{Segment, ValidationSettings};
 use gdcm_sysid::identification::Preparation;
 
-/// Minimum length of a compared piece \[s\]: qualification tests are short steps and doublets.
+/// Minimum length for a compared piece \[s\]: qualification tests are short steps and doublets.
 const LEAST_PIECE_S: f64 = 2.0;
 
-/// Returns the preparation of a record for comparison: it admits shorter pieces than identification
-/// does.
+/// Returns the preparation before a comparison: it admits shorter pieces than identification does.
 pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
     Preparation {
         least_segment_s: LEAST_PIECE_S,
@@ -20,8 +19,8 @@ pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
     }
 }
 
-/// Returns the settings for simulating the models of a condition with a record: unfiltered signals,
-/// and the same windows for all models.
+/// Returns the settings for simulating a condition's models with a record: unfiltered signals, and
+/// the same windows for all models.
 pub(crate) fn common_windows<'m>(
     models: impl IntoIterator<Item = &'m StateSpace>,
     segments: &[Segment],
@@ -41,7 +40,7 @@ pub enum Trend {
 
 impl Trend {
     /// Returns the trend of an output that is off-axis to the input with the largest variation,
-    /// from the correlation of simulated and measured output; `None` on-axis.
+    /// from the correlation between simulated and measured output; `None` on-axis.
     pub fn from_correlation(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
         let correlation = correlation?;
         if on_axis != Some(false) {
@@ -62,7 +61,7 @@ impl Trend {
     }
 }
 
-/// A tolerance row, with its tolerance in the unit of the dataset.
+/// A tolerance row, with its tolerance in the dataset's unit.
 pub(crate) struct AppliedTolerance<'a> {
     pub(crate) tolerance: &'a Tolerance,
     pub(crate) channel: ChannelTolerance,
@@ -98,7 +97,7 @@ impl<'a> RecordComparison<'a> {
         }
     }
 
-    /// Returns the input with the largest variation over the segments of a record; `None` where the
+    /// Returns the input with the largest variation over a record's segments; `None` where the
     /// inputs have different units.
     pub(crate) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
         let (first, others) = self.inputs.split_first()?;
@@ -116,7 +115,7 @@ impl<'a> RecordComparison<'a> {
     }
 }
 
-/// Returns the sum of an input's squared deviations from its mean in each segment.
+/// Sums an input's squared deviations from its mean in each segment.
 fn variation(segments: &[Segment], input: usize) -> f64 {
     segments
         .iter()

@@ -1,5 +1,5 @@
-//! Comparison of a flight record with simulations of the models of its condition, for plots with
-//! tolerance corridors about the measured outputs (M17.2).
+//! Compares a flight record with simulations of its condition's models, for plots with tolerance
+//! corridors about the measured outputs (M17.2).
 
 use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_method::requirements::{RecordCheck, Tolerance, ToleranceTable};
@@ -21,18 +21,18 @@ use crate::shared::Shared;
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuantityHistory {
     pub tolerance: Tolerance,
-    /// Index of the output from which the quantity is computed.
+    /// Output from which the quantity is computed.
     pub output: usize,
     /// The compared quantity's unit.
     pub unit: String,
     /// Whether the output is on-axis to the input with the largest variation; `None` where that
     /// input cannot be determined.
     pub on_axis: Option<bool>,
-    /// Result of each model, in the same windows for all models.
+    /// Each model's result, in the same windows for all models.
     pub models: Vec<(RequirementRole, RecordCheck)>,
 }
 
-/// Comparison of a record with simulations, within tolerances.
+/// A record and its simulations, with tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistory {
     pub condition: ConditionId,
@@ -41,15 +41,15 @@ pub struct RecordHistory {
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
     pub flight: Shared<FlightRecord>,
-    /// Index of the input with the largest variation; `None` where the inputs have different units.
+    /// Input with the largest variation; `None` where the inputs have different units.
     pub moved_input: Option<usize>,
-    /// Result for each applicable row of the tolerance table.
+    /// Result for each applicable tolerance row.
     pub quantities: Vec<QuantityHistory>,
     /// Why other models or quantities are not compared.
     pub missing: Vec<NotInHistory>,
 }
 
-/// Why a comparison of a record lacks a model or a quantity.
+/// Why a record comparison lacks a model or a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotInHistory {
     NoRoleModel(NoRoleModel),
@@ -57,7 +57,7 @@ pub enum NotInHistory {
         role: RequirementRole,
         why: ValidationError,
     },
-    /// A row of the tolerance table is not applicable.
+    /// A tolerance row is not applicable.
     ToleranceNotApplied(ToleranceError),
 }
 
@@ -72,7 +72,7 @@ impl NotInHistory {
     }
 }
 
-/// Why a record is not compared with the models of a condition.
+/// Why a record is not compared with a condition's models.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoRecordHistory {
     NoResult(NoResult),
@@ -98,11 +98,12 @@ pub(crate) struct ComparedRecord<'a> {
 }
 
 impl RecordHistory {
-    /// Simulates the models of the condition with the record, and checks the results against the
+    /// Simulates the condition's models with the record, and checks the results against the
     /// tolerances.
     ///
     /// # Errors
-    /// [`NoRecordHistory`] without a result of the condition, and if the record cannot be prepared.
+    /// [`NoRecordHistory`] without a result for the condition, and if the record cannot be
+    /// prepared.
     pub(crate) fn new(
         analysis: &Analysis,
         compared: &ComparedRecord<'_>,

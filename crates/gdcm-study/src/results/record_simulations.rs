@@ -1,4 +1,4 @@
-//! Simulates the models of every condition with its flight records, and compares the results with the
+//! Simulates each condition's models with its flight records, and compares the results with the
 //! tolerances (M17.2).
 //!
 //! ```text
@@ -49,7 +49,7 @@ struct Simulation<'a> {
     settings: ValidationSettings,
 }
 
-/// Simulates the models of every condition with its `records`, and compares the results within
+/// Simulates each condition's models with its `records`, and compares the results within
 /// `tolerances` (M17.2). The step count is [`HistoryRecords::steps`].
 ///
 /// # Errors
@@ -123,7 +123,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
     missing
 }
 
-/// Prepares the records of conditions with a result; adds the reason to `missing` where that is
+/// Prepares the records for conditions with a result; adds the reason to `missing` where that is
 /// impossible.
 fn prepare_records<'a>(
     analysis: &'a Analysis,
@@ -169,7 +169,7 @@ fn prepare_records<'a>(
 /// Each condition's models with their roles.
 type RoleModels = BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>>;
 
-/// Builds the models of every condition with a record.
+/// Builds the models for every condition with a record.
 fn role_models(
     analysis: &Analysis,
     prepared: &[PreparedRecord<'_>],
@@ -198,7 +198,7 @@ fn role_models(
     models
 }
 
-/// Lists the simulations of every record with the models of its condition, in common windows.
+/// Simulates each record with its condition's models, in common windows.
 fn simulations<'a>(
     prepared: &'a [PreparedRecord<'a>],
     models: &'a RoleModels,
@@ -282,7 +282,7 @@ fn finding(
     })
 }
 
-/// Evaluates a row of the tolerance table over all windows of a record.
+/// Evaluates a tolerance row over all windows in a record.
 fn tolerance_finding(
     comparison: &RecordComparison<'_>,
     row: &AppliedTolerance<'_>,

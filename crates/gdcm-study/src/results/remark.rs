@@ -1,5 +1,5 @@
-//! Remarks on the result of a condition as typed facts: each with a stable code, its kind and the
-//! decision that it suggests. The sentences are in the crate of words.
+//! Remarks on a condition's result as typed facts: each with a stable code, its kind and the
+//! decision that it suggests. The sentences are in the crate `gdcm-words`.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::conflict::Conflict;
@@ -19,9 +19,9 @@ use crate::decisions::signs::SignRole;
 /// A remark on a result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
-    /// A suspected difference of sign or unit between the two bundles.
+    /// A suspected difference in sign or unit between the two bundles.
     ConventionDoubt(ConventionDoubt),
-    /// The sign of a channel is reversed relative to the file.
+    /// A channel's sign is reversed relative to the file.
     ChannelTurned { channel: Channel, role: SignRole },
     /// All `held` constrained gains are matched: exactly if there is no tolerance \[dB\].
     GainsMatched {
@@ -32,9 +32,9 @@ pub enum Remark {
     GainsMissed(MissedTargets),
     /// Single changes, each of which would match every constrained gain.
     GainsRemedy(Remedy),
-    /// All `held` constrained delays are matched: exactly, or within the tolerance of loops.
+    /// All `held` constrained delays are matched: exactly, or within the loop tolerance.
     DelaysMatched { held: usize, is_exact: bool },
-    /// Some of the `held` constrained responses have a negative D, which no delay can match.
+    /// Some constrained responses (`held` in total) have a negative D, which no delay can match.
     NeedsLead {
         needed: Vec<NeededLead>,
         held: usize,
@@ -52,27 +52,26 @@ pub enum Remark {
     LeadsMatched { held: usize },
     /// Constrained responses do not get the delay or lead that they need.
     LeadsMissed(MissedTargets),
-    /// Maximum change of the gain within the band \[dB\] due to the lead filters, and the response
-    /// in which it occurs.
+    /// Maximum gain change within the band \[dB\] due to the lead filters, and the response in
+    /// which it occurs.
     GainRaised { rise_db: f64, pair: Pair },
-    /// Constrained responses whose two values of D are far apart: their missing phase is not due to
-    /// a delay. `by_leads`: whether leads are requested.
+    /// Constrained responses whose two estimates for D are far apart: their missing phase is not
+    /// due to a delay. `by_leads`: whether leads are requested.
     NotADelay {
         responses: Vec<DelaysApart>,
         by_leads: bool,
     },
     /// All constrained responses need lead, which is not requested.
     LeadsOffered(LeadOffer),
-    /// A loop of constraints that agrees within the tolerance.
+    /// A constraint loop that agrees within the tolerance.
     LoopAgrees(Conflict),
-    /// J, G and D of this number of responses are weighted by coherence, which excludes no
-    /// frequency.
+    /// In this many responses, J, G and D are weighted by coherence, which excludes no frequency.
     CoherenceUsed { responses: usize },
     /// Constrained responses that the correction moves away from flight.
     HeldFarther(Vec<FartherResponse>),
     /// Number of unconstrained responses that the leads move away from flight.
     FreeFarther { farther: usize, compared: usize },
-    /// The condition does not enter the fit of the schedule.
+    /// The condition does not enter the schedule fit.
     LeftOutOfSchedule,
     /// A caution about the condition.
     Caution(Caution),
@@ -85,8 +84,8 @@ pub enum Remark {
 /// Constrained responses that miss their targets, or a conflict that causes this.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MissedTargets {
-    /// All responses that miss their targets; phase errors are reported at the upper end of the
-    /// band \[rad/s\].
+    /// All responses that miss their targets; phase errors are reported at the band's upper end
+    /// \[rad/s\].
     Responses {
         misses: Vec<Unmatched>,
         band_top_rad_s: f64,
@@ -95,7 +94,7 @@ pub enum MissedTargets {
 }
 
 impl MissedTargets {
-    /// Returns the constrained responses of a solution that miss their targets, then each conflict
+    /// Returns the constrained responses that miss their targets in a solution, then each conflict
     /// among the constraints that causes this.
     pub(super) fn find(solution: &Solution, band: Band) -> Vec<Self> {
         let mut missed = vec![Self::Responses {
@@ -129,7 +128,7 @@ pub struct FartherResponse {
     pub cost: CostChange,
 }
 
-/// A channel whose sign the user may reverse in the models of a role or, without a role, restore.
+/// A channel whose sign the user may reverse in one role's models or, without a role, restore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SuggestedSign {
     pub channel: Channel,
@@ -209,7 +208,7 @@ impl Remark {
         }
     }
 
-    /// Returns the change of a sign that the remark suggests, if any.
+    /// Returns the sign change that the remark suggests, if any.
     pub fn suggested_sign(&self) -> Option<SuggestedSign> {
         match self {
             Self::ConventionDoubt(doubt) => doubt.turns().map(|channel| SuggestedSign {

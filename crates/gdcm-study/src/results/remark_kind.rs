@@ -1,4 +1,4 @@
-//! Kinds of remarks.
+//! Remark kinds.
 
 /// Whether a request was fulfilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Standard errors of the identified representative, from its coherence or its standard deviations
+//! The identified representative's standard errors, from its coherence or its standard deviations
 //! (M13.2).
 
 use gdcm_method::uncertainty::coherence_error::CoherenceError;
@@ -10,24 +10,24 @@ use gdcm_model::statistics::median;
 
 use super::analysis::{Analysis, ConditionAnalysis};
 
-/// 1 dB as a difference of natural logarithms.
+/// 1 dB as a difference between natural logarithms.
 pub(crate) const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;
 
-/// Standard errors of a response, with their degrees of freedom.
+/// A response's standard errors, with their degrees of freedom.
 #[derive(Clone, Copy)]
 struct ReportedError {
     error: CoherenceError,
     degrees_of_freedom: f64,
 }
 
-/// Standard errors of the responses of an identified representative, by source.
+/// Standard errors for an identified representative's responses, by source.
 pub(crate) struct ReportedErrors {
     by_coherence: Option<PairTable<Option<ReportedError>>>,
     by_bands: Option<PairTable<Option<ReportedError>>>,
 }
 
 impl ReportedErrors {
-    /// Collects the standard errors of the identified representative of a condition.
+    /// Collects the standard errors for a condition's identified representative.
     pub(crate) fn new(analysis: &Analysis, result: &ConditionAnalysis) -> Self {
         Self {
             by_coherence: errors_by_coherence(analysis, result),
@@ -35,8 +35,8 @@ impl ReportedErrors {
         }
     }
 
-    /// Returns the standard error of a gain or delay: from coherence where available, otherwise
-    /// from the standard deviations of the model.
+    /// Returns the standard error in a gain or delay: from coherence where available, otherwise
+    /// from the model's standard deviations.
     pub(crate) fn of_scalar(
         &self,
         result: &ConditionAnalysis,
@@ -72,12 +72,11 @@ impl ReportedErrors {
     }
 }
 
-/// Returns whether the standard error of the identified representative enters the error bar of a
-/// value.
+/// Returns whether the identified representative's standard error enters a value's error bar.
 ///
-/// It does for G, D and the net gains that are constrained and matched, which equal G (M13.2). For
-/// other net gains and for channels only the spread of the models counts: the effect of the
-/// standard error of a single response is unknown without the joint errors of all responses.
+/// It enters for G, D and the net gains that are constrained and matched, which equal G (M13.2).
+/// For other net gains and for channels only the spread among the models counts: the effect of a
+/// single response's standard error on them is unknown without the joint errors of all responses.
 pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
     match scalar {
         Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
@@ -88,13 +87,13 @@ pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool 
     }
 }
 
-/// Returns whether a standard error of the identified representative of a condition is available,
-/// from its standard deviations or from its coherence.
+/// Returns whether a condition's identified representative has standard errors, from its standard
+/// deviations or from its coherence.
 pub fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
     errors_by_bands(analysis, result).is_some() || errors_by_coherence(analysis, result).is_some()
 }
 
-/// Returns the standard errors of the identified representative from its coherence; `None` where
+/// Returns the identified representative's standard errors from its coherence; `None` where
 /// coherence or the number of averages is not available, or coherence is not used.
 fn errors_by_coherence(
     analysis: &Analysis,
@@ -120,8 +119,8 @@ fn errors_by_coherence(
     }))
 }
 
-/// Returns the standard errors of the identified representative from the standard deviations of its
-/// model: medians over the comparison band. The standard deviations are treated as exact.
+/// Returns the identified representative's standard errors from its model's standard deviations:
+/// medians over the comparison band. The standard deviations are treated as exact.
 fn errors_by_bands(
     analysis: &Analysis,
     result: &ConditionAnalysis,

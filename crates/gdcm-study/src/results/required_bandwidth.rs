@@ -1,4 +1,4 @@
-//! Findings on bandwidth and phase delay (M17.1), in the format of the export; they are computed by
+//! Findings on bandwidth and phase delay (M17.1), in the export format; they are computed by
 //! `condition_bandwidths::bandwidth_findings`.
 
 use std::collections::BTreeMap;
@@ -38,28 +38,28 @@ pub struct BandwidthFinding {
     pub phase_delay_s: Option<f64>,
     /// The margin that determines the bandwidth.
     pub rule: Option<BandwidthRule>,
-    /// Whether the gain margin is reached before the phase margin; the standard warns of this case.
+    /// Whether the gain margin is reached before the phase margin; the standard warns about this
+    /// case.
     pub gain_limited: bool,
-    /// Maximum deviation of the phase from a straight line between `omega_180` and `2 omega_180`
-    /// \[deg\].
+    /// Maximum phase deviation from a straight line between `omega_180` and `2 omega_180` \[deg\].
     pub phase_departure_deg: Option<f64>,
     /// Whether the phase delay is computed from a least-squares line because the phase is not
     /// straight.
     pub phase_delay_of_line: bool,
-    /// Names of the metrics that depend on the response above the band.
+    /// Metrics that depend on the response above the band.
     pub rests_above_band: Vec<&'static str>,
-    /// Names of the metrics that depend on the response below the band.
+    /// Metrics that depend on the response below the band.
     pub rests_below_band: Vec<&'static str>,
-    /// Intervals by the name of the metric, where available.
+    /// Intervals by metric name, where available.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub interval: BTreeMap<&'static str, [f64; 2]>,
-    /// Number of swaps without a value, by the name of the metric; the interval excludes them.
+    /// Number of swaps without a value, by metric name; the interval excludes them.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub swaps_left_out: BTreeMap<&'static str, usize>,
-    /// Phase \[deg\] at the lowest frequency of the band, if it indicates a reversed channel.
+    /// Phase \[deg\] at the band's lowest frequency, if it indicates a reversed channel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reversed_phase_deg: Option<f64>,
-    /// Reasons for absent values by the name of the metric; "interval" for all intervals.
+    /// Reasons for absent values by metric name; "interval" for all intervals.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<&'static str, NoBandwidth>,
 }
@@ -74,9 +74,9 @@ pub enum NoBandwidth {
     NoMetric(NoMetric),
     /// No interval: the bundles contain no other model from which to compute a spread.
     NoOtherModel,
-    /// No interval: the schedule is not refitted for each swap of models.
+    /// No interval: the schedule is not refitted for each model swap.
     ScheduleNotRefitted,
-    /// No interval: the standard deviations of the identified model do not extend to this frequency.
+    /// No interval: the identified model's standard deviations do not extend to this frequency.
     DeviationsTooNarrow,
     /// No interval: the measured response has no standard deviations.
     MeasuredWithoutDeviations,
@@ -108,7 +108,7 @@ impl Serialize for NoBandwidth {
     }
 }
 
-/// Names of the metrics that [`metrics`] returns.
+/// Names under which [`metrics`] returns its values.
 pub(super) const METRICS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -117,13 +117,13 @@ pub(super) const METRICS: [&str; 5] = [
     "phase_delay_s",
 ];
 
-/// Name of the maximum deviation of the phase from a straight line.
+/// Name of the maximum phase deviation from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
-/// Values of a response's metrics, in the order of [`METRICS`].
+/// A response's metric values, in the order of [`METRICS`].
 pub(super) type MetricValues = [Option<f64>; 5];
 
-/// Returns the metrics of a response, in the order of [`METRICS`].
+/// Returns a response's metrics, in the order of [`METRICS`].
 pub(super) fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     [
         bandwidth.omega_bw,
@@ -134,7 +134,7 @@ pub(super) fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     ]
 }
 
-/// Returns the values of a response's metrics, in the order of [`METRICS`].
+/// Returns a response's metric values, in the order of [`METRICS`].
 pub(super) fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
     metrics(bandwidth).map(|metric| Some(metric.ok()?.value))
 }
@@ -153,8 +153,8 @@ impl BandwidthFinding {
         ]
     }
 
-    /// Returns the level of bandwidth and phase delay; `None` if either is missing, or if no boundary
-    /// gives levels for the output.
+    /// Returns the level that bandwidth and phase delay meet; `None` if either is missing, or if no
+    /// boundary gives levels for the output.
     pub fn level(&self, levels: &LevelBoundaries) -> Option<AssessedLevel> {
         levels.level(&self.output, self.omega_bw_rad_s?, self.phase_delay_s?)
     }
@@ -164,7 +164,7 @@ impl BandwidthFinding {
         self.rests_above_band.contains(&name)
     }
 
-    /// Stores the metrics of a response.
+    /// Stores a response's metrics.
     pub(super) fn store(&mut self, bandwidth: &Bandwidth) {
         let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = metric_values(bandwidth);
         self.omega_bw_rad_s = omega_bw;

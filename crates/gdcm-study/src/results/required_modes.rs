@@ -1,5 +1,5 @@
-//! Modes of the physics representative, without and with the study's couplings, compared with the
-//! modes of the identified representative, where both models have matrices (M17.3).
+//! The physics representative's modes, without and with the study's couplings, compared with the
+//! identified representative's, where both models have matrices (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use super::asked_condition::AskedCondition;
 use super::missing_finding::NoModes;
 use super::requirement_role::RequirementRole;
 
-/// Poles of identified models with their uncertainty, by condition; a dataset does not store them.
+/// Identified models' poles with their uncertainty, by condition; a dataset does not store them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
@@ -39,13 +39,13 @@ impl KnownPoles {
     }
 }
 
-/// A mode of a model.
+/// A natural mode: a pole, or the one with positive imaginary part in a conjugate pair.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeNumbers {
     pub model: String,
-    /// Real part of the pole \[rad/s\].
+    /// The pole's real part \[rad/s\].
     pub pole_real_rad_s: f64,
-    /// Imaginary part of the pole \[rad/s\], not negative.
+    /// The pole's imaginary part \[rad/s\], not negative.
     pub pole_imaginary_rad_s: f64,
     #[serde(flatten)]
     pub values: ModeValues,
@@ -53,7 +53,7 @@ pub struct ModeNumbers {
     pub absent: BTreeMap<&'static str, NoModeValue>,
 }
 
-/// Why a value of a mode is missing.
+/// Why a mode lacks a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoModeValue {
@@ -96,7 +96,7 @@ impl ModeNumbers {
         }
     }
 
-    /// Returns the natural frequency: the modulus of the pole \[rad/s\].
+    /// Returns the natural frequency: the pole's modulus \[rad/s\].
     pub fn modulus_rad_s(&self) -> f64 {
         self.pole_real_rad_s.hypot(self.pole_imaginary_rad_s)
     }
@@ -117,18 +117,18 @@ impl ModeNumbers {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeFinding {
     pub condition: ConditionId,
-    /// True airspeed of the condition \[kt\].
+    /// The condition's true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Index of the mode in this condition, counted from 1 in order of increasing frequency.
+    /// The mode's number in this condition, counted from 1 by increasing frequency.
     pub number: usize,
-    /// Name of the mode; `None` where neither states nor frequency determine it.
+    /// `None` where neither states nor frequency determine the name.
     pub name: Option<ModeName>,
-    /// What the name is based on; a name by frequency and damping alone is a guess.
+    /// Basis of the name; a name from frequency and damping alone is a guess.
     pub named_by: NamedBy,
     /// Verdict on the physics mode.
     pub verdict: ModeVerdict,
     pub identified: ModeNumbers,
-    /// Standard deviations of the identified values; `None` if the model has no pole uncertainty,
+    /// Standard deviations for the identified values; `None` if the model has no pole uncertainty,
     /// for example because it was read from a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identified_deviation: Option<ModeValues>,
@@ -232,7 +232,7 @@ fn coupled_modes(
     Ok(Some(modes))
 }
 
-/// Returns the modes of a model, or why they cannot be computed.
+/// Returns a model's modes, or why they cannot be computed.
 fn known_modes(model: &Model) -> Result<Vec<Mode>, NoModes> {
     if model.state_space().is_none() {
         return Err(NoModes::Measured {
@@ -246,15 +246,15 @@ fn known_modes(model: &Model) -> Result<Vec<Mode>, NoModes> {
     })
 }
 
-/// A mode of the model in a role, with its verdict.
+/// A mode in a role's model, with its verdict.
 pub struct RoleMode<'a> {
     pub numbers: Option<&'a ModeNumbers>,
     pub verdict: ModeVerdict,
 }
 
 impl ModeFinding {
-    /// Returns the counterpart of the flown mode in the model of a role. Gains and delays move no
-    /// pole: without couplings, a corrected model has the modes of the physics model.
+    /// Returns the flown mode's counterpart in a role's model. Gains and delays move no pole:
+    /// without couplings, a corrected model has the physics model's modes.
     pub fn of_role(&self, role: RequirementRole) -> RoleMode<'_> {
         match (role, self.corrected_verdict) {
             (RequirementRole::Corrected | RequirementRole::Scheduled, Some(verdict)) => RoleMode {

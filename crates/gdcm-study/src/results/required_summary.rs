@@ -1,4 +1,4 @@
-//! Summary costs of the physics models against the identified representative (M17.4).
+//! Summary costs for the physics models against the identified representative (M17.4).
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ use gdcm_model::response::GainDelay;
 use super::asked_condition::AskedCondition;
 use super::requirement_role::RequirementRole;
 
-/// Summary costs of a physics model against the identified representative (M17.4).
+/// Summary costs for a physics model against the identified representative (M17.4).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SummaryFinding {
     pub condition: ConditionId,
-    /// True airspeed of the condition \[kt\].
+    /// The condition's true airspeed \[kt\].
     pub airspeed_kt: f64,
     pub role: RequirementRole,
     pub model: String,
@@ -48,9 +48,9 @@ impl SummaryFinding {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoSummary {
-    /// No on-axis response of the two models can be compared.
+    /// The two models have no on-axis response that can be compared.
     NoOnAxisResponse,
-    /// No response of the two models can be compared.
+    /// The two models have no response that can be compared.
     NoResponse,
 }
 
@@ -64,7 +64,7 @@ impl NoSummary {
     }
 }
 
-/// Computes the summary costs of the model in a role against the identified representative.
+/// Computes the summary costs for a role's model against the identified representative.
 pub(super) fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> SummaryFinding {
     let study = &asked.analysis.study;
     let correction = asked.correction(role);

@@ -1,5 +1,5 @@
-//! All requirements of all conditions in one grid (M17.5): a corrected model, and the physics model
-//! beside it, against the identified model or the held-out flight records.
+//! Every requirement in every condition, as a grid (M17.5): a corrected model, and the physics
+//! model beside it, against the identified model or the held-out flight records.
 //!
 //! ```text
 //! bandwidth     omega_BW / omega_BW of the identified model - 1
@@ -29,7 +29,7 @@ pub struct GridRow {
     pub cells: Vec<GridCell>,
 }
 
-/// A condition: a column of the grid.
+/// A condition: a grid column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridCondition {
     pub id: ConditionId,
@@ -37,12 +37,12 @@ pub struct GridCondition {
     pub airspeed_kt: f64,
 }
 
-/// Number of cells by verdict.
+/// Cell counts by verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct GridCount {
     /// Cells that the corrected model meets.
     pub met: usize,
-    /// Cells with a limit and a value of the corrected model.
+    /// Cells with a limit and a value for the corrected model.
     pub judged: usize,
     /// Cells that the physics model meets.
     pub physics_met: usize,
@@ -67,7 +67,7 @@ impl GridCount {
     }
 }
 
-/// Result of a group of requirements in a condition, for folded groups.
+/// A requirement group's result in a condition, shown when the group is folded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GroupCell {
     pub count: GridCount,
@@ -78,14 +78,14 @@ pub struct GroupCell {
 /// Requirements by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementGrid {
-    /// Role of the corrected model: with the condition's own correction or with the schedule.
+    /// The corrected model's role: with the condition's own correction or with the schedule.
     pub role: RequirementRole,
     pub conditions: Vec<GridCondition>,
     pub rows: Vec<GridRow>,
 }
 
 impl RequirementGrid {
-    /// Counts the cells of all rows.
+    /// Counts the cells in all rows.
     pub fn count(&self) -> GridCount {
         let mut count = GridCount::default();
         for cell in self.rows.iter().flat_map(|row| &row.cells) {
@@ -94,7 +94,7 @@ impl RequirementGrid {
         count
     }
 
-    /// Counts the cells of a group in a column.
+    /// Counts a group's cells in a column.
     pub fn group_cell(&self, group: RequirementGroup, column: usize) -> GroupCell {
         let mut found = GroupCell::default();
         for row in self.group_rows(group) {
@@ -108,25 +108,25 @@ impl RequirementGrid {
         found
     }
 
-    /// Returns the rows of a group.
+    /// Returns a group's rows.
     pub fn group_rows(&self, group: RequirementGroup) -> impl Iterator<Item = &GridRow> {
         self.rows
             .iter()
             .filter(move |row| row.requirement.group() == group)
     }
 
-    /// Returns the row of a requirement.
+    /// Returns a requirement's row.
     pub fn row(&self, requirement: Requirement) -> Option<&GridRow> {
         self.rows.iter().find(|row| row.requirement == requirement)
     }
 
-    /// Returns the cell of a requirement in a condition.
+    /// Returns a requirement's cell in a condition.
     pub fn cell(&self, requirement: Requirement, condition: ConditionId) -> Option<&GridCell> {
         let column = self.column(condition)?;
         self.row(requirement)?.cells.get(column)
     }
 
-    /// Returns the column of a condition.
+    /// Returns a condition's column.
     pub fn column(&self, condition: ConditionId) -> Option<usize> {
         self.conditions
             .iter()

@@ -27,7 +27,7 @@ pub enum RequirementRole {
 }
 
 impl RequirementRole {
-    /// Every role, in the order of tables.
+    /// Every role, in the order used in tables.
     pub const ALL: [Self; 4] = [
         Self::Physics,
         Self::Corrected,
@@ -35,7 +35,7 @@ impl RequirementRole {
         Self::Identified,
     ];
 
-    /// Returns the bundle of the role's representative.
+    /// Returns the bundle that contains the role's representative.
     pub fn bundle(self) -> BundleKind {
         if self == Self::Identified {
             BundleKind::Identified
@@ -44,7 +44,7 @@ impl RequirementRole {
         }
     }
 
-    /// Returns the name of the role in files, tables and captions: "physics".
+    /// Returns the role's name in files, tables and captions: "physics".
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -55,7 +55,7 @@ impl RequirementRole {
     }
 }
 
-/// Why the model of a role cannot be simulated.
+/// Why a role's model cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoleModelError {
     /// The model is a measured response, without matrices.
@@ -87,7 +87,7 @@ impl RoleModelError {
 }
 
 impl Analysis {
-    /// Returns the model of a role in continuous time, with delays as states: the physics
+    /// Returns a role's model in continuous time, with delays as states: the physics
     /// representative, uncorrected or with the study's couplings and a correction (`M_O H~ M_I`);
     /// or the identified representative.
     ///

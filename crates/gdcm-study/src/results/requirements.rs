@@ -20,8 +20,8 @@ use super::required_summary::{SummaryFinding, summary_finding};
 use super::requirement_role::RequirementRole;
 use crate::execution::Execution;
 
-/// A response of a condition whose phase at the lowest frequency of the band suggests a reversed
-/// channel in the models of these roles.
+/// A response whose phase at the band's lowest frequency suggests a reversed channel in these
+/// roles' models.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReversedPhase {
     pub condition: ConditionId,
@@ -51,13 +51,13 @@ pub struct Requirements {
     /// Comparison band \[rad/s\].
     pub band_rad_s: [f64; 2],
     pub interval_level: f64,
-    /// Names of the outputs with attitude command; all other outputs have rate command.
+    /// Outputs with attitude command, by name; all other outputs have rate command.
     pub attitude_command: BTreeSet<String>,
-    /// Bandwidth and phase delay of every on-axis response of every condition and role.
+    /// Bandwidth and phase delay for every on-axis response, condition and role.
     pub bandwidth: Vec<BandwidthFinding>,
     /// The physics modes against the identified modes.
     pub modes: Vec<ModeFinding>,
-    /// The summary costs of every condition and role.
+    /// The summary costs for every condition and role.
     pub summary: Vec<SummaryFinding>,
     pub missing: Vec<MissingFinding>,
     pub cautions: Vec<ReversedPhase>,
@@ -74,7 +74,7 @@ impl Requirements {
             .map(|missing| &missing.why)
     }
 
-    /// Returns the bandwidth of a response of a condition's model.
+    /// Returns a response's bandwidth in a condition's model.
     pub fn bandwidth_of(
         &self,
         condition: ConditionId,
@@ -90,9 +90,8 @@ impl Requirements {
 /// Computes the requirements without flight records on every condition with a result (M17.1, M17.3,
 /// M17.4). Each condition is a step.
 ///
-/// Intervals are based on the error bars of the analysis ([`Analysis::uncertainty`]). The
-/// uncertainty of the `known` poles determines whether the flight data suffice for a verdict on a
-/// mode.
+/// Intervals are based on the analysis's error bars ([`Analysis::uncertainty`]). The uncertainty in
+/// the `known` poles determines whether the flight data suffice for a verdict on a mode.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.

@@ -1,4 +1,4 @@
-//! Comparison of a rerun with the prediction of the runs (M18.6).
+//! Compares a rerun with the prediction from the runs (M18.6).
 
 use gdcm_method::physics::ConditionOmission;
 use gdcm_method::physics::increments::IncrementError;
@@ -7,20 +7,18 @@ use gdcm_model::dataset::physics_parameter::ParameterChange;
 
 use super::correction_costs::AxisCost;
 
-/// J of the prediction against the rerun up to which the family of models is good.
+/// Maximum J between prediction and rerun at which the model family is good.
 pub const GOOD_PREDICTION: f64 = 1.0;
-/// J of the prediction against the rerun above which the effect of the parameters is not linear
-/// enough.
+/// J between prediction and rerun above which the parameters' effect is not linear enough.
 pub const POOR_PREDICTION: f64 = 5.0;
-/// Share of the J by which the rerun differs from its base above which the effect of the parameters
-/// is not linear enough.
+/// Ratio of the prediction's J to the base's J, both against the rerun, above which the parameters'
+/// effect is not linear enough (unless the prediction is good).
 pub const POOR_SHARE: f64 = 0.1;
 
 /// A physics model with several parameters moved, compared with the prediction for its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RerunCheck {
     pub condition: ConditionId,
-    /// Name of the rerun.
     pub model: String,
     pub changes: Vec<ParameterChange>,
     pub outcome: Result<RerunCost, RerunRefusal>,
@@ -29,21 +27,21 @@ pub struct RerunCheck {
 /// J between a rerun and two models: the prediction `H(z)` for its values, and its base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RerunCost {
-    /// Mean J of the prediction against the rerun.
+    /// Mean J between prediction and rerun.
     pub prediction: AxisCost,
-    /// Mean J of the base, with all parameters nominal, against the rerun.
+    /// Mean J between the base, with all parameters nominal, and the rerun.
     pub base: AxisCost,
 }
 
-/// What a rerun says about the prediction.
+/// Verdict on the prediction, from a rerun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RerunVerdict {
     /// The prediction agrees with the rerun.
     Good,
     /// The prediction differs, but less than the limits.
     Fair,
-    /// The effect of the parameters is not linear enough: a second run at the value found is
-    /// needed, or the rerun as new nominal model with runs of its own.
+    /// The parameters' effect is not linear enough: a second run at the value found is needed, or
+    /// the rerun must become the nominal model, with its own runs.
     NotLinear,
 }
 
@@ -59,7 +57,7 @@ impl RerunVerdict {
 }
 
 impl RerunCost {
-    /// Decides from the larger of the on-axis and the off-axis mean.
+    /// Returns the worse of the verdicts on the on-axis and the off-axis mean.
     pub fn verdict(&self) -> RerunVerdict {
         let mut verdict = RerunVerdict::Good;
         for (prediction, base) in [
@@ -87,9 +85,9 @@ impl RerunCost {
 /// Why a rerun cannot be compared.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RerunRefusal {
-    /// No physics model of the condition has the rerun's perturbation.
+    /// No physics model in the condition has the rerun's perturbation.
     NoBase,
-    /// The dataset has no run of a parameter of the rerun.
+    /// The rerun moves a parameter for which the dataset has no run.
     UnknownParameter { name: String },
     /// A change is in another unit than the runs.
     Unit {
@@ -97,11 +95,11 @@ pub enum RerunRefusal {
         expected: String,
         found: String,
     },
-    /// The runs of the condition do not suffice.
+    /// The condition's runs do not suffice.
     Runs(ConditionOmission),
-    /// The changes of the runs do not apply to the base.
+    /// The changes in the runs do not apply to the base.
     Increments(IncrementError),
-    /// No response of the prediction can be compared with the rerun.
+    /// Prediction and rerun have no response that can be compared.
     NothingToCompare,
 }
 

@@ -1,4 +1,4 @@
-//! J of a response in each condition: before the correction, at the condition's optimum, and under
+//! A response's J in each condition: before the correction, at the condition's optimum, and under
 //! the schedule (M12).
 
 use gdcm_method::fidelity::Cost;
@@ -7,7 +7,7 @@ use gdcm_model::dataset::{ConditionId, Pair};
 
 use super::analysis::Analysis;
 
-/// J of the physics representative in a response of a condition.
+/// The physics representative's J in a condition's response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResponseCosts {
     pub condition: ConditionId,
@@ -16,14 +16,13 @@ pub struct ResponseCosts {
     pub before: Cost,
     /// With the condition's own correction.
     pub optimum: Cost,
-    /// With the schedule at the airspeed of the condition; `None` without a schedule, and where its
-    /// net gain is not positive.
+    /// With the schedule at the condition's airspeed; `None` without a schedule, and where its net
+    /// gain is not positive.
     pub scheduled: Option<Cost>,
 }
 
 impl Analysis {
-    /// Returns J of a response in each condition in which it can be compared, in the order of the
-    /// dataset.
+    /// Returns a response's J in each condition in which it can be compared, in dataset order.
     pub fn response_costs(&self, pair: Pair) -> Vec<ResponseCosts> {
         let mut costs = Vec::new();
         for id in self.study.dataset.ids() {
@@ -32,7 +31,7 @@ impl Analysis {
         costs
     }
 
-    /// Returns J of a response in a condition; `None` without a result, and where the response
+    /// Returns a response's J in a condition; `None` without a result, and where the response
     /// cannot be compared.
     fn response_costs_in(&self, id: ConditionId, pair: Pair) -> Option<ResponseCosts> {
         let result = self.condition(id)?;

@@ -1,4 +1,4 @@
-//! Responses of the physics representative before and after the physics parameters, without their
+//! The physics representative's responses before and after the physics parameters, without their
 //! differences in gain and delay.
 //!
 //! ```text
@@ -6,7 +6,7 @@
 //! ```
 //!
 //! H is the physics representative, H_ref the identified one. Gains and delays belong to the
-//! correction of the channels; a physics parameter should improve what they cannot.
+//! channel correction; a physics parameter should improve what they cannot.
 
 use std::sync::Arc;
 
@@ -25,18 +25,18 @@ pub struct ResponseShapes {
     pub pair: Pair,
     /// J after G and D.
     pub cost: WithoutAndWith<f64>,
-    /// The identified representative at the frequencies of the comparison.
+    /// The identified representative at the comparison's frequencies.
     pub identified: ResponseShape,
     /// The physics representative after G and D; NaN at frequencies that do not count (M4a).
     pub physics: WithoutAndWith<ResponseShape>,
 }
 
-/// Both representatives of a condition, compared without and with the parameters.
+/// A condition's two representatives, compared without and with the parameters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShapeSources<'a> {
-    /// Frequencies of the comparisons \[rad/s\].
+    /// Comparison frequencies \[rad/s\].
     pub(crate) omega: &'a [f64],
-    /// Response of the identified representative at these frequencies.
+    /// The identified representative's response at these frequencies.
     pub(crate) identified: &'a FrequencyResponse,
     pub(crate) without: &'a Comparison,
     pub(crate) with: &'a Comparison,
@@ -74,7 +74,7 @@ impl ShapeSources<'_> {
         })
     }
 
-    /// Returns the physics representative of a comparison after G and D; `None` where these are
+    /// Returns a comparison's physics representative after G and D; `None` where these are
     /// undefined.
     fn shaped(
         &self,

@@ -16,11 +16,11 @@ const NO_DELAY_S: f64 = 5e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelayedChannel {
     pub channel: Channel,
-    /// Delay of the channel in each such condition, longest first.
+    /// The channel's delay in each such condition, longest first.
     pub delays: Vec<OwnDelay>,
 }
 
-/// Delay of a channel in a condition's own correction.
+/// A channel's delay in a condition's own correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnDelay {
     pub condition: ConditionId,
@@ -76,9 +76,9 @@ pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution
     cautions
 }
 
-/// Returns J of a condition under the schedule and under its own correction: J of the nominal
-/// model, or of the representative where the nominal model is rejected. `None` without a schedule,
-/// and where no on-axis response can be compared.
+/// Returns a condition's J under the schedule and under its own correction: for the nominal model,
+/// or for the representative where the nominal model is rejected. `None` without a schedule, and
+/// where no on-axis response can be compared.
 fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<ScheduledCost> {
     let schedule = analysis.schedule.as_ref().ok()?;
     let condition = &result.condition;
@@ -118,7 +118,7 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     })
 }
 
-/// Returns J of a model in a response under a correction.
+/// Returns a model's J in a response under a correction.
 fn cost_of(
     analysis: &Analysis,
     models: &ModelMismatch,

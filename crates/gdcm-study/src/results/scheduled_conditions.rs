@@ -34,8 +34,8 @@ impl Analysis {
         Schedule::fit(&scheduled_points(&others, &self.conditions), settings)
     }
 
-    /// Compares the forms of the schedule; lists are in the order of [`Analysis::scheduled`] (M11).
-    /// Solves several hundred small least-squares problems.
+    /// Compares the schedule's possible forms; lists are in the order of [`Analysis::scheduled`]
+    /// (M11). Solves several hundred small least-squares problems.
     ///
     /// # Errors
     /// [`ScheduleError`] where there is no schedule.
@@ -56,7 +56,7 @@ impl Analysis {
     }
 }
 
-/// Returns airspeed and correction of each scheduled condition, to which the schedule is fitted.
+/// Returns each scheduled condition's airspeed and correction, to which the schedule is fitted.
 pub(crate) fn scheduled_points<'a>(
     study: &Study,
     outcomes: &'a Outcomes,
@@ -75,8 +75,8 @@ pub(crate) fn scheduled_points<'a>(
         .collect()
 }
 
-/// Returns the settings of the schedule; `DelayScheduling::Automatic` is resolved from the results
-/// of the scheduled conditions (M11).
+/// Returns the schedule settings; `DelayScheduling::Automatic` is resolved from the scheduled
+/// conditions' results (M11).
 pub(crate) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleSettings {
     let delays = match study.settings.schedule_delays {
         DelayScheduling::Always => true,
@@ -97,8 +97,8 @@ fn has_notable_delay(result: &ConditionAnalysis) -> bool {
         .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
-/// Returns the results of the scheduled conditions, in the order of the dataset. Every list of this
-/// file is derived from it.
+/// Returns the scheduled conditions' results, in dataset order. Every list in this file is derived
+/// from it.
 pub(crate) fn in_schedule<'a>(
     study: &Study,
     outcomes: &'a Outcomes,

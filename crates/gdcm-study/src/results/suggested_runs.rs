@@ -1,5 +1,5 @@
-//! What to run first: reruns of the physics model with one parameter moved that the observed pattern
-//! of couplings, leads and gains suggests (M18.4).
+//! Suggests which physics parameters to move first in reruns, from the observed pattern in
+//! couplings, leads and gains (M18.4).
 //!
 //! | pattern | parameters |
 //! |---|---|
@@ -9,7 +9,8 @@
 //! | pedal gain with yaw damping | tail rotor, fin, fuselage |
 //! | pitch gain that changes with airspeed | tail lift, wake on the tail |
 //!
-//! A pattern only says what is worth trying: parameters of like effect show the same one.
+//! A pattern only says what is worth trying: parameters with similar effects produce the same
+//! pattern.
 
 use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares};
 use gdcm_method::physics::OfferedParameter;
@@ -20,28 +21,28 @@ use super::coupling_remark_search::is_rate;
 use super::couplings_assessment::CouplingsAssessment;
 use crate::decisions::settings::PhaseCorrection;
 
-/// Least mixing of the cyclic inputs, and least share of the stick used by a feedback.
+/// Minimum mixing between the cyclic inputs, and minimum share of the stick used by a feedback.
 const NOTABLE_SHARE: f64 = 0.01;
-/// Least mean lead of a group of channels \[s\].
+/// Minimum mean lead in a channel group \[s\].
 const NOTABLE_LEAD_S: f64 = 0.005;
-/// Greatest standard deviation of equal leads over their mean.
+/// Maximum ratio of standard deviation to mean at which leads count as equal.
 const EQUAL_LEADS: f64 = 0.5;
-/// Least mean magnitude of ln G of the pedals' rate.
+/// Minimum mean `|ln G|` for the rate commanded by the pedals.
 const NOTABLE_LN_GAIN: f64 = 0.1;
-/// Least difference of ln G between fast and slow conditions.
+/// Minimum difference in ln G between fast and slow conditions.
 const NOTABLE_LN_CHANGE: f64 = 0.08;
 
 /// The observed pattern that suggests runs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunPattern {
-    /// Each cyclic input receives a share of the other, with opposite signs.
+    /// Each cyclic input receives a share from the other, with opposite signs.
     CrossedCyclic {
         /// The cyclic inputs.
         inputs: [usize; 2],
-        /// Share of the second input that the first receives, and the reverse.
+        /// Share that the first input receives from the second, and the reverse.
         shares: [f64; 2],
     },
-    /// A rate of the one cyclic axis is fed to the other cyclic input.
+    /// A rate on one cyclic axis is fed to the other cyclic input.
     CrossedRate {
         input: usize,
         output: usize,
@@ -56,8 +57,8 @@ pub enum RunPattern {
         /// Standard deviation over the channels \[s\].
         deviation_s: f64,
     },
-    /// The rate of the pedals needs another gain, and its damping a feedback where couplings are
-    /// assessed.
+    /// The rate commanded by the pedals needs another gain and, where couplings are assessed, a
+    /// damping feedback.
     PedalGainAndYawDamping {
         pair: Pair,
         /// Mean G over the conditions.
@@ -65,12 +66,12 @@ pub enum RunPattern {
         /// Peak share of the stick; `None` without assessed couplings.
         damping_share: Option<f64>,
     },
-    /// G of the pitch rate differs between fast and slow conditions.
+    /// The pitch rate's G differs between fast and slow conditions.
     PitchGainOverAirspeed {
         pair: Pair,
-        /// Mean G of the slow half of the conditions.
+        /// Mean G in the slower half of the conditions.
         slow: f64,
-        /// Mean G of the fast half.
+        /// Mean G in the faster half.
         fast: f64,
     },
 }
@@ -123,13 +124,12 @@ impl RunPattern {
     }
 }
 
-/// A parameter worth a run, with a step of usual size.
+/// A parameter worth a run, with a usual step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunParameter {
     /// Proposed name in the dataset.
     pub name: &'static str,
     pub meaning: &'static str,
-    /// Step of the run.
     pub step: f64,
     pub unit: &'static str,
 }
@@ -186,15 +186,15 @@ static PITCH: [RunParameter; 2] = [
     },
 ];
 
-/// A suggestion: a pattern, and the parameters that the dataset has no run of yet.
+/// A suggestion: a pattern, and the parameters for which the dataset has no run yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuggestedRuns {
     pub pattern: RunPattern,
     pub parameters: Vec<RunParameter>,
 }
 
-/// Lists the runs worth making first, in the order of the table above; patterns for whose parameters
-/// the dataset already has runs are omitted.
+/// Lists the runs worth making first, in the order of the table above, without parameters for which
+/// the dataset already has runs.
 pub fn suggested_runs(
     analysis: &Analysis,
     couplings: Option<&CouplingsAssessment>,
@@ -265,7 +265,7 @@ impl PatternSearch<'_> {
         }
     }
 
-    /// Finds the largest feedback of the rate of one cyclic axis to the other cyclic input.
+    /// Finds the largest feedback from a rate on one cyclic axis to the other cyclic input.
     fn crossed_rate(&self) -> Option<RunPattern> {
         let couplings = self.couplings?;
         let cyclic = self.cyclic()?;
@@ -291,7 +291,7 @@ impl PatternSearch<'_> {
         None
     }
 
-    /// Finds equal leads: of the channels where leads are requested, otherwise of the on-axis
+    /// Finds equal leads: in the channels where leads are requested, otherwise in the on-axis
     /// responses.
     fn equal_leads(&self) -> Vec<RunPattern> {
         let mut found = Vec::new();
@@ -359,7 +359,7 @@ impl PatternSearch<'_> {
         })
     }
 
-    /// Returns half the range of ln G over the conditions; 0 without values.
+    /// Returns half the range that ln G spans over the conditions; 0 without values.
     fn spread_of_gain(&self, pair: Pair) -> f64 {
         let gains = self.ln_gains(pair);
         let least = gains.iter().copied().fold(f64::INFINITY, f64::min);
@@ -401,7 +401,7 @@ impl PatternSearch<'_> {
         })
     }
 
-    /// Returns ln G of a response in the conditions that have it.
+    /// Returns a response's ln G in the conditions that have it.
     fn ln_gains(&self, pair: Pair) -> Vec<f64> {
         let mut gains = Vec::new();
         for result in &self.results {
@@ -411,7 +411,7 @@ impl PatternSearch<'_> {
     }
 }
 
-/// ln G of a condition at its airspeed.
+/// A condition's ln G at its airspeed.
 struct GainAtAirspeed {
     airspeed_kt: f64,
     ln_gain: f64,
@@ -425,7 +425,7 @@ fn mean(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Returns the pattern of signed delays that are all leads of nearly the same size.
+/// Returns the pattern if all signed delays are leads and nearly equal.
 fn equal_lead(side: LeadSide, delays_s: &[f64]) -> Option<RunPattern> {
     let mean_s = mean(delays_s)?;
     let squares: Vec<f64> = delays_s

@@ -1,4 +1,4 @@
-//! Responses of the models of a condition to a test input, for plots (M17.2); there is no measurement
+//! Responses to a test input from a condition's models, for plots (M17.2); there is no measurement
 //! to compare them with.
 
 use nalgebra::DMatrix;
@@ -11,7 +11,7 @@ use gdcm_model::executor::{Executor, each};
 use super::analysis::{Analysis, NoResult};
 use super::requirement_role::{RequirementRole, RoleModelError};
 
-/// Displayed time, as a multiple of the duration of the test input.
+/// Displayed time, as a multiple of the test input's duration.
 const SHOWN: f64 = 5.0;
 
 /// Minimum displayed time \[s\].
@@ -37,7 +37,7 @@ impl NoTestAnswer {
     }
 }
 
-/// Responses of a condition's models to a test input, starting from rest.
+/// Responses to a test input, from a condition's models starting at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswers {
     pub condition: ConditionId,
@@ -48,7 +48,7 @@ pub struct TestAnswers {
     pub sample_time_s: f64,
     /// The input at every sample, in its unit.
     pub signal: Vec<f64>,
-    /// Outputs of each model, samples x outputs, in their units.
+    /// Each model's outputs, samples x outputs, in their units.
     pub models: Vec<(RequirementRole, Result<DMatrix<f64>, NoTestAnswer>)>,
 }
 
@@ -56,7 +56,7 @@ impl TestAnswers {
     /// Simulates a condition's models with a test input in an input channel.
     ///
     /// # Errors
-    /// [`NoResult`] without a result of the condition.
+    /// [`NoResult`] without a result for the condition.
     pub(crate) fn new(
         analysis: &Analysis,
         condition: ConditionId,

@@ -1,5 +1,5 @@
-//! Comparisons of the models of every condition with flight records, within tolerances (M17.2); they
-//! are computed by `record_simulations::time_histories_of`.
+//! Comparisons between every condition's models and its flight records, within tolerances (M17.2);
+//! `record_simulations::time_histories_of` computes them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -34,7 +34,7 @@ pub struct HistoryRecords {
 }
 
 impl HistoryRecords {
-    /// Collects those `records` of a condition that are in use, with their preparation.
+    /// Collects a condition's `records` that are in use, with their preparation.
     pub fn from_used<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
@@ -56,35 +56,34 @@ impl HistoryRecords {
         }
     }
 
-    /// Returns the step count of
-    /// `record_simulations::time_histories_of`: one step to prepare each record, and one
-    /// for each simulation of a model with it.
+    /// Returns the step count for `record_simulations::time_histories_of`: one step to prepare each
+    /// record, and one for each role's simulation with it.
     pub fn steps(records: &[Self]) -> usize {
         (1 + RequirementRole::ALL.len()) * records.iter().map(|of| of.records.len()).sum::<usize>()
     }
 }
 
-/// Result of a model for a record and a row of the tolerance table.
+/// A model's result for a record and a tolerance row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ToleranceFinding {
-    /// Name of the compared quantity ("bank angle").
+    /// Compared quantity ("bank angle").
     pub quantity: String,
     /// Output from which the quantity is computed.
     pub output: String,
     /// Whether the output is integrated from the start of each window.
     pub integrated: bool,
-    /// Unit of the compared quantity.
+    /// The quantity's unit.
     pub unit: String,
     /// Share of time inside the tolerance, 0 to 1.
     pub share_inside: f64,
     /// Maximum distance beyond the corridor, in `unit`; negative where all samples are inside.
     pub largest_excess: f64,
-    /// Time of the largest excess, on the time axis of the record \[s\].
+    /// Time of the largest excess, on the record's time axis \[s\].
     pub largest_excess_at_s: f64,
     /// Maximum error as a multiple of the tolerance at the same sample; above 1 where a sample is
     /// outside.
     pub peak_error: f64,
-    /// Time of the peak error, on the time axis of the record \[s\].
+    /// Time of the peak error, on the record's time axis \[s\].
     pub peak_error_at_s: f64,
     /// Correlation of simulated and measured signal about their means; `None` where either is
     /// constant.
@@ -111,11 +110,11 @@ impl ToleranceFinding {
     }
 }
 
-/// Result of a model for a record.
+/// A model's result for a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
     pub condition: ConditionId,
-    /// True airspeed of the condition \[kt\].
+    /// The condition's true airspeed \[kt\].
     pub airspeed_kt: f64,
     pub record: String,
     /// Whether the record was excluded from the models' identification.
@@ -128,7 +127,7 @@ pub struct HistoryFinding {
     pub samples: usize,
     /// Number of windows that contain these samples.
     pub windows: usize,
-    /// Length of the longest window \[s\].
+    /// The longest window's length \[s\].
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
@@ -138,13 +137,13 @@ pub struct HistoryFinding {
     pub j_rms_left_out: Vec<String>,
     /// Theil's coefficient by output name, 0 to 1; constant outputs have none.
     pub theil: BTreeMap<String, f64>,
-    /// Result for each applicable row of the tolerance table.
+    /// Result for each applicable tolerance row.
     pub tolerances: Vec<ToleranceFinding>,
 }
 
 impl HistoryFinding {
-    /// Returns the peak error of the quantity of a tolerance row, as a multiple of the tolerance;
-    /// `None` where the quantity was not compared.
+    /// Returns the peak error in a tolerance row's quantity, as a multiple of the tolerance; `None`
+    /// where the quantity was not compared.
     pub fn peak_error(&self, tolerance: &Tolerance) -> Option<f64> {
         let found = self.tolerances.iter().find(|found| {
             found.quantity == tolerance.quantity && found.output == tolerance.channel
@@ -153,7 +152,7 @@ impl HistoryFinding {
     }
 }
 
-/// Comparisons of simulations with all flight records, in the format of the export.
+/// Comparisons between simulations and all flight records, in the export format.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimeHistories {
     pub tolerance_table: ToleranceTable,
@@ -163,7 +162,7 @@ pub struct TimeHistories {
 }
 
 impl TimeHistories {
-    /// Returns the conditions with records, and the number of records of each.
+    /// Returns the conditions with records, and each condition's record count.
     pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
         let mut conditions = Vec::new();
         for findings in self.records.chunk_by(|a, b| a.condition == b.condition) {
@@ -190,7 +189,7 @@ impl TimeHistories {
             .filter(move |finding| finding.condition == condition && finding.role == role)
     }
 
-    /// Returns the share of time inside a tolerance over all records of a condition, 0 to 1.
+    /// Returns the share of time inside a tolerance over a condition's records, 0 to 1.
     pub fn share_inside(
         &self,
         condition: ConditionId,
@@ -206,14 +205,14 @@ impl TimeHistories {
         })
     }
 
-    /// Returns `J_rms` over all records of a condition: the root mean square over the samples.
+    /// Returns `J_rms` over a condition's records: the root mean square over the samples.
     pub fn j_rms(&self, condition: ConditionId, role: RequirementRole) -> Option<f64> {
         self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2)))
             .map(f64::sqrt)
     }
 
-    /// Returns the Theil coefficient of an output over all records of a condition: the mean
-    /// weighted by the number of samples.
+    /// Returns an output's Theil coefficient over a condition's records: the mean, weighted by
+    /// sample count.
     pub fn theil(
         &self,
         condition: ConditionId,
@@ -225,8 +224,7 @@ impl TimeHistories {
         })
     }
 
-    /// Averages a quantity over those records of a condition that have it, weighted by the number
-    /// of samples.
+    /// Averages a quantity over a condition's records that have it, weighted by sample count.
     fn mean(
         &self,
         condition: ConditionId,
@@ -257,12 +255,12 @@ impl TimeHistories {
             .collect()
     }
 
-    /// Returns the quantities of the applied tolerance rows, in the order of the table.
+    /// Returns the quantities in the applied tolerance rows, in table order.
     pub fn quantities(&self) -> impl Iterator<Item = &str> {
         self.applied_rows().map(|row| row.quantity.as_str())
     }
 
-    /// Returns the quantities of the applied tolerance rows without integrated outputs.
+    /// Returns the quantities in the applied tolerance rows without integrated outputs.
     pub fn measured_quantities(&self) -> impl Iterator<Item = &str> {
         self.quantities().filter(|quantity| {
             let rows = self.tolerance_table.rows();

@@ -1,4 +1,4 @@
-//! Uncertainty of the results of an analysis, components of their scatter over the conditions, and
+//! Uncertainty of an analysis's results, components of their scatter over the conditions, and
 //! consequences for the schedule (M13).
 
 use std::collections::BTreeMap;
@@ -16,28 +16,28 @@ use super::model_swap::ConditionSwaps;
 /// Maximum difference between airspeeds that count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
 
-/// Uncertainty of the results of an analysis.
+/// Uncertainty of an analysis's results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Confidence level of all error bars, intervals and tests.
+    /// Confidence level for all error bars, intervals and tests.
     pub level: f64,
-    /// Error bars of each analysed condition.
+    /// Error bars in each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
     /// Differences in on-axis net gain between every two conditions at equal airspeed.
     pub differences: Vec<AirspeedDifference>,
     /// Number of differences, if it exceeds the maximum; no differences are then computed.
     pub too_many_differences: Option<usize>,
-    /// Scatter components of each on-axis net gain.
+    /// Scatter components for each on-axis net gain.
     pub scatter: Vec<PairScatter>,
     /// Confidence bands of the schedule, where it schedules `ln k` and has degrees of freedom left.
     pub bands: Option<ScheduleBands>,
-    /// Test of each second scheduling variable for each on-axis response.
+    /// Test for each second scheduling variable and each on-axis response.
     pub second_variables: Vec<SecondVariableTest>,
 }
 
 impl Uncertainty {
-    /// Returns, for each airspeed, the largest difference of a net gain relative to the expected
-    /// difference; empty where the differences have no spread.
+    /// Returns, for each airspeed, the difference in a net gain that is largest relative to the
+    /// expected difference; empty where the differences have no spread.
     pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
         let mut greatest: Vec<&AirspeedDifference> = Vec::new();
         for found in &self.differences {
@@ -58,19 +58,19 @@ impl Uncertainty {
         greatest
     }
 
-    /// Returns the error bar of a value in a condition.
+    /// Returns a value's error bar in a condition.
     pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
         self.conditions.get(&condition)?.bars[figure].as_ref()
     }
 }
 
-/// Uncertainty of the results of a condition.
+/// Uncertainty of a condition's results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionUncertainty {
-    /// Error bar of each value that exists.
+    /// Error bar for each value that exists.
     pub bars: ScalarTable<Option<Bar>>,
-    /// Half-width `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` between the
-    /// representatives: the mismatch that remains after a gain correction.
+    /// Half-width `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` between the representatives, over the
+    /// band: the mismatch that remains after a gain correction.
     pub left_in_band: PairTable<Option<f64>>,
     /// Swaps from which the error bars are computed.
     pub swaps: ConditionSwaps,
@@ -91,7 +91,7 @@ pub struct PairScatter {
 pub struct SecondVariableTest {
     pub pair: Pair,
     pub variable: SecondVariable,
-    /// Effect of the variable, or why it cannot be determined.
+    /// The variable's effect, or why it cannot be determined.
     pub effect: Result<SecondVariableEffect, SecondVariableError>,
     /// Probability that the effect is at least as large under the null hypothesis, after Holm's
     /// correction over all responses and variables.
@@ -102,14 +102,14 @@ pub struct SecondVariableTest {
 /// Confidence bands where `ln k` is scheduled (M13.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBands {
-    /// Confidence band of each scheduled value.
+    /// Confidence band about each scheduled value.
     pub(crate) bands: Vec<(Scalar, ScheduleBand)>,
 }
 
 impl ScheduleBands {
     /// Returns the half-widths about a scheduled value (`ln k` of a channel or net gain) at an
     /// airspeed \[kt\]; `None` without a band, and for a schedule with another number of terms than
-    /// that of the bands.
+    /// the bands have.
     pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
         let (_, band) = self.bands.iter().find(|(scalar, _)| *scalar == figure)?;
         let widths = band.at(&schedule.design_row(airspeed_kt));
@@ -126,7 +126,7 @@ impl ScheduleBands {
 pub struct AirspeedDifference {
     pub pair: Pair,
     pub conditions: [ConditionId; 2],
-    /// Mean airspeed of the two conditions \[kt\].
+    /// The two conditions' mean airspeed \[kt\].
     pub airspeed_kt: f64,
     /// The difference in `ln k_o k_i`.
     pub difference: Difference,

@@ -1,4 +1,5 @@
-//! Verdict on the held responses: how many are matched in gain and in phase, and what remains.
+//! Verdict on the constrained responses: how many are matched in gain and in phase, and what
+//! remains.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::conflict::ConflictKind;
@@ -11,7 +12,7 @@ use crate::decisions::settings::PhaseCorrection;
 use crate::decisions::study::Study;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
 
-/// Number of held responses, and how many of them are matched, in gain or in phase.
+/// Number of constrained responses, and how many of them are matched, in gain or in phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MatchCount {
     pub matched: usize,
@@ -19,12 +20,12 @@ pub struct MatchCount {
 }
 
 impl MatchCount {
-    /// Counts the held responses whose gain is matched.
+    /// Counts the constrained responses whose gain is matched.
     pub fn of_gains(result: &ConditionAnalysis) -> Self {
         Self::of_solution(result, &result.gains)
     }
 
-    /// Counts the held responses whose delay or lead is matched.
+    /// Counts the constrained responses whose delay or lead is matched.
     pub fn of_phases(result: &ConditionAnalysis) -> Self {
         Self::of_solution(result, &result.delays)
     }
@@ -49,13 +50,13 @@ impl MatchCount {
     }
 }
 
-/// Verdict on the gains of the held responses of a condition.
+/// Verdict on the constrained responses' gains in a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainVerdict {
-    /// No response is held.
+    /// No response is constrained.
     NoneHeld,
     Matched,
-    /// A bound of the gains keeps a response from being matched.
+    /// A gain bound keeps a response from being matched.
     StopsAtBound {
         pair: Pair,
     },
@@ -64,14 +65,14 @@ pub enum GainVerdict {
         unmatched: usize,
         channel: Channel,
     },
-    /// Held responses contradict one another.
+    /// Constrained responses contradict one another.
     Disagree {
         entries: usize,
     },
 }
 
 impl GainVerdict {
-    /// Judges the gains of a condition.
+    /// Judges a condition's gains.
     pub fn new(result: &ConditionAnalysis) -> Self {
         if result.held().marked().next().is_none() {
             return Self::NoneHeld;
@@ -131,12 +132,12 @@ pub fn shared_channel(pairs: &[Pair]) -> Option<Channel> {
     }
 }
 
-/// Verdict on the phases of the held responses of a condition.
+/// Verdict on the constrained responses' phases in a condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PhaseVerdict {
     /// The study leaves the phase as it is.
     NotCorrected,
-    /// No response is held.
+    /// No response is constrained.
     NoneHeld,
     Matched,
     /// The correction leaves a lag or a lead.
@@ -144,7 +145,7 @@ pub enum PhaseVerdict {
 }
 
 impl PhaseVerdict {
-    /// Judges the phases of a condition.
+    /// Judges a condition's phases.
     pub fn new(study: &Study, result: &ConditionAnalysis) -> Self {
         if study.settings.phase == PhaseCorrection::None {
             return Self::NotCorrected;
@@ -180,13 +181,12 @@ pub enum RemainingLag {
     Equal(f64),
     /// The lags are about equal (by the criterion for a common lead); their median.
     AboutEqual(f64),
-    /// The lag nearest to zero and the farthest; a range of lags that begins with a lead begins
-    /// with the lead.
+    /// Smallest and largest lag; in reverse order if the median is a lead.
     Range([f64; 2]),
 }
 
 impl RemainingLag {
-    /// Summarises the lags of all responses \[ms\], of which there is at least one. Sorts them.
+    /// Summarises the lags of all responses \[ms\] (at least one), and sorts them.
     pub fn new(left_ms: &mut [f64]) -> Self {
         let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
         let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -203,8 +203,8 @@ impl RemainingLag {
     }
 }
 
-/// Mean J of the held responses of a condition that have a J, of all responses in the objective if
-/// none is held.
+/// Mean J over a condition's constrained responses that have a J, or over all responses in the
+/// objective if none is constrained.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeanCost {
     pub before: f64,
@@ -212,7 +212,7 @@ pub struct MeanCost {
 }
 
 impl MeanCost {
-    /// Averages the costs of the representative; `None` if no response has one.
+    /// Averages the representative's costs; `None` if no response has one.
     pub fn new(study: &Study, result: &ConditionAnalysis) -> Option<Self> {
         let mut pairs: Vec<Pair> = result.held().marked().collect();
         if pairs.is_empty() {

@@ -1,4 +1,4 @@
-//! A result without and with a correction of the physics models.
+//! A result without and with a correction to the physics models.
 
 /// A result without and with the physics parameters.
 #[derive(Clone, Debug, PartialEq)]

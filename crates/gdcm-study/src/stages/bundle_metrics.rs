@@ -1,4 +1,4 @@
-//! Distances within each bundle, and discontinuity ratios of the physics bundle (M5).
+//! Distances within each bundle, and discontinuity ratios for the physics bundle (M5).
 
 use std::sync::Arc;
 
@@ -69,16 +69,16 @@ impl BundleMetrics {
     }
 }
 
-/// Frequency responses of a bundle's models in polar form, and the output-input pairs in which the
-/// models are compared.
+/// A bundle's frequency responses in polar form, and the output-input pairs in which the models are
+/// compared.
 pub(crate) struct MeasuredBundle {
     polar: Vec<PolarResponse>,
     pub(crate) measured: MeasuredPairs,
 }
 
 impl MeasuredBundle {
-    /// Selects the marked responses of every model, or all responses if no model has a marked
-    /// response; reports one progress step per model.
+    /// Selects each model's marked responses, or all responses if no model has a marked response;
+    /// reports one progress step per model.
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
@@ -103,7 +103,7 @@ impl MeasuredBundle {
     }
 }
 
-/// Computes the distances between all pairs of models of a bundle; reports two progress steps per
+/// Computes the distances between all model pairs in a bundle; reports two progress steps per
 /// model.
 fn bundle_distance(
     responses: &[Arc<FrequencyResponse>],
@@ -123,7 +123,7 @@ fn bundle_distance(
     let rows = execution.each(compared.len(), 1, |index| {
         distances_from(index, &compared, &measured.compared)
     })?;
-    // Models set aside have no row of distances, but count as a step too.
+    // Models set aside have no distance row, but count as a step too.
     execution.step(polar.len() - compared.len());
     Ok(BundleDistance::from_rows(rows, measured))
 }

@@ -1,4 +1,4 @@
-//! A model prepared for comparison with a model of the other bundle.
+//! A model prepared for comparison with a model from the other bundle.
 
 use nalgebra::Complex;
 
@@ -11,11 +11,11 @@ use super::condition_responses::ConditionResponses;
 use crate::results::caution::{GainOutOfRange, Undefined};
 use crate::results::comparison::Mismatches;
 
-/// Frequencies of a comparison, and the minimum coherence.
+/// Frequencies at which models are compared, and the minimum coherence.
 #[derive(Clone, Copy)]
 pub struct ComparisonGrid<'a> {
     pub grid: &'a FrequencyGrid,
-    /// Minimum coherence of the frequencies that count; `None` ignores coherence (M4a).
+    /// Minimum coherence at which a frequency counts; `None` ignores coherence (M4a).
     pub coherence: Option<f64>,
 }
 
@@ -48,13 +48,13 @@ pub(crate) struct ComparedModel {
     absent: PairTable<Option<Absence>>,
     /// The numerically zero responses (M6a).
     pub(crate) nothing: PairTable<bool>,
-    /// Weights of the frequencies, where coherence is used.
+    /// Frequency weights, where coherence is used.
     coherence_weights: Option<PairTable<CoherenceWeights>>,
 }
 
 impl ComparedModel {
-    /// Prepares a model of a bundle. An identified model gets coherence weights if a minimum
-    /// coherence is set (M4a).
+    /// Prepares a bundle's model. An identified model gets coherence weights if a minimum coherence
+    /// is set (M4a).
     pub(crate) fn new(
         condition: &Condition,
         responses: &ConditionResponses,
@@ -100,7 +100,7 @@ impl ComparedModel {
     }
 }
 
-/// Returns why a response of two representatives has no G and no D.
+/// Returns why a response has no G and no D.
 pub(crate) fn why_undefined(
     physics: &ComparedModel,
     identified: &ComparedModel,

@@ -1,4 +1,4 @@
-//! Compares the representatives of a condition (M5, M6), independent of constraints, alpha and bounds.
+//! Compares a condition's representatives (M5, M6), whatever the constraints, alpha and bounds.
 //!
 //! ```text
 //! 1  cautions about the kept models of both bundles                            (`model_cautions`)
@@ -21,8 +21,8 @@ use crate::results::caution::Undefined;
 use crate::results::comparison::Comparison;
 
 impl Comparison {
-    /// Selects the representatives among the kept models and compares them, with the coherence
-    /// weights of the identified representative if a minimum coherence is set (M4a).
+    /// Selects the representatives among the kept models and compares them, with the identified
+    /// representative's coherence weights if a minimum coherence is set (M4a).
     ///
     /// # Errors
     /// [`ConditionFailure`] where a bundle has no model to represent it.

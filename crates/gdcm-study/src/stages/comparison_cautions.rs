@@ -1,4 +1,4 @@
-//! Cautions about the representatives of a condition: gains outside the computable range, frequencies
+//! Cautions about a condition's representatives: gains outside the computable range, frequencies
 //! without coherence, numerically zero responses.
 
 use gdcm_method::correction::delta::Delta;
@@ -41,7 +41,7 @@ impl ComparisonInput<'_> {
         })
     }
 
-    /// Returns the caution about the frequencies of the identified representative that coherence
+    /// Returns the caution about the identified representative's frequencies that coherence
     /// excludes from the comparison (M4a).
     pub(super) fn coherence_caution(
         &self,

@@ -1,5 +1,5 @@
-//! Inputs of the comparison of a condition's models, and the parts of the comparison that need only
-//! these inputs: prepared models, cautions, representatives, mismatches.
+//! Inputs for comparing a condition's models, and the parts of the comparison that need only these
+//! inputs: prepared models, cautions, representatives, mismatches.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::caution::Caution;
 use crate::results::comparison::{BundleMetrics, ModelMismatch};
 
-/// Inputs of the comparison of a condition's models.
+/// Inputs for comparing a condition's models.
 #[derive(Clone, Copy)]
 pub(crate) struct ComparisonInput<'a> {
     pub(crate) condition: &'a Condition,
@@ -34,7 +34,7 @@ impl ComparisonInput<'_> {
         &self.condition.bundle(kind)[index]
     }
 
-    /// Prepares a model of a bundle for comparison.
+    /// Prepares a bundle's model for comparison.
     pub(super) fn compared(&self, kind: BundleKind, index: usize) -> ComparedModel {
         ComparedModel::new(self.condition, self.responses, kind, index, self.grid)
     }
@@ -70,7 +70,7 @@ impl ComparisonInput<'_> {
             .ok_or(ConditionFailure::AllSetAside { bundle: kind })
     }
 
-    /// Computes the mismatch of a physics model against the identified representative, and J.
+    /// Computes a physics model's mismatch against the identified representative, and J.
     pub(super) fn mismatch(
         &self,
         physics: &ComparedModel,

@@ -12,7 +12,7 @@ use crate::results::analysis::ConditionAnalysis;
 use crate::results::applied_physics::AppliedPhysics;
 use crate::results::fitted_couplings::FittedCouplings;
 
-/// Number of frequencies of drawn curves.
+/// Number of frequencies in drawn curves.
 pub const CURVE_POINTS: usize = 500;
 /// Factor by which the drawn band extends beyond the comparison band at either end.
 const DISPLAY_MARGIN: f64 = 1.7;
@@ -23,7 +23,7 @@ const KEPT: usize = 4;
 /// A condition's responses on a grid for drawing.
 #[derive(Debug)]
 pub struct ConditionCurves {
-    /// The condition; its models define the order of the responses.
+    /// The condition; the responses are in its model order.
     pub condition: Arc<Condition>,
     pub grid: FrequencyGrid,
     pub physics: Vec<Arc<FrequencyResponse>>,
@@ -32,7 +32,7 @@ pub struct ConditionCurves {
     coupled: Mutex<Vec<CoupledCurve>>,
 }
 
-/// A physics model's response with the physics parameters and couplings of a result.
+/// A physics model's response with the physics parameters and couplings from a result.
 #[derive(Debug)]
 struct CoupledCurve {
     physics: Option<Arc<AppliedPhysics>>,
@@ -61,8 +61,8 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns `H~` of a physics model with the physics parameters and the couplings of `result`;
-    /// `H` without them.
+    /// Returns a physics model's `H~` with the physics parameters and couplings from `result`; `H`
+    /// without them.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
@@ -101,7 +101,7 @@ impl ConditionCurves {
         response
     }
 
-    /// Returns the responses of the models of a bundle, in file order.
+    /// Returns the responses of a bundle's models, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
@@ -121,8 +121,8 @@ pub fn display_band(band: Band) -> Band {
     Band::beyond(band.min() / DISPLAY_MARGIN, band.max() * DISPLAY_MARGIN).unwrap_or(band)
 }
 
-/// Returns the band of the curves of a condition: [`display_band`], extended to ten times the upper
-/// end of the comparison band where leads are requested, to show their effect (M15.6).
+/// Returns the band for a condition's curves: [`display_band`], extended to ten times the
+/// comparison band's upper end where leads are requested, to show their effect (M15.6).
 pub fn curves_band(settings: &Settings) -> Band {
     let usual = display_band(settings.band);
     let top = match settings.phase {

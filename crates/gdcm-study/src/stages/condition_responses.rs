@@ -49,7 +49,7 @@ impl CoupledResponses {
         }
     }
 
-    /// Returns `H~` of a model with the uncoupled response `physics`.
+    /// Returns a model's `H~`; `physics` is its uncoupled response.
     fn response(&self, model: usize, physics: &FrequencyResponse) -> Arc<FrequencyResponse> {
         let coupled = self.made[model].get_or_init(|| {
             let matrices = self.couplings.matrices();
@@ -60,7 +60,7 @@ impl CoupledResponses {
 }
 
 impl ConditionResponses {
-    /// Returns the response of a model for comparison and correction (M16.3): `H` for an identified
+    /// Returns a model's response for comparison and correction (M16.3): `H` for an identified
     /// model, `H~` for a physics model (`H` without couplings).
     pub(crate) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
@@ -78,7 +78,7 @@ impl ConditionResponses {
         }
     }
 
-    /// Computes the responses of every model in the band.
+    /// Computes every model's responses in the band.
     pub fn compute(
         condition: &Arc<Condition>,
         key: GridKey,
@@ -89,7 +89,7 @@ impl ConditionResponses {
         models.responses(Purpose::Comparison, key, &grid, execution)
     }
 
-    /// Returns the responses of the models of a bundle, in file order.
+    /// Returns the responses of a bundle's models, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
@@ -111,7 +111,7 @@ struct HashedModel {
 }
 
 impl ConditionModels {
-    /// Collects the models of a condition; models in `known` keep their cached responses.
+    /// Collects a condition's models; models in `known` keep their cached responses.
     pub(crate) fn new(condition: &Arc<Condition>, known: &KnownModels) -> Self {
         let models = models_of(condition)
             .map(|model| {
@@ -157,7 +157,7 @@ impl ConditionModels {
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Computes the responses of every model in turn; reports one progress step per model.
+    /// Computes the responses model by model; reports one progress step per model.
     pub(crate) fn responses(
         &self,
         purpose: Purpose,

@@ -1,4 +1,4 @@
-//! Analysis stages of a condition, each cached while its inputs stay the same.
+//! Analysis stages for a condition, each cached while its inputs stay the same.
 //!
 //! ```text
 //! 1  responses of every model                                    (dynamics of the model, grid)
@@ -37,8 +37,8 @@ use crate::results::comparison::{BundleMetrics, Comparison};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 use crate::results::model_swap::ConditionSwaps;
 
-/// Proof budget for the gains after a swap: the work limit of the interactive analysis, without a
-/// search for other minima.
+/// Proof budget for the gains after a swap: the interactive analysis's work limit, without a search
+/// for other minima.
 pub(crate) const SWAP_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 0,
@@ -73,14 +73,14 @@ struct ComparisonKey {
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// Inputs on which the responses of coupled models depend, besides the models.
+/// Inputs on which coupled responses depend, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct CoupledKey {
     grid: GridKey,
     couplings: Arc<FittedCouplings>,
 }
 
-/// Last result of each stage of a condition.
+/// A condition's last result at each stage.
 #[derive(Clone, Debug)]
 pub(crate) struct ConditionStages {
     models: ConditionModels,
@@ -97,21 +97,21 @@ pub(crate) struct ConditionStages {
     swaps: SwapMemo,
 }
 
-/// Moved physics models of a condition, with the last result of each stage.
+/// A condition's moved physics models, with the last result at each stage.
 #[derive(Clone, Debug)]
 struct MovedStages {
     models: ConditionModels,
     compared: ComparedStages,
 }
 
-/// Last comparison of the representatives of a condition, and the optima based on it.
+/// Last comparison between a condition's representatives, and the optima based on it.
 #[derive(Clone, Debug, Default)]
 struct ComparedStages {
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     problems: SolvedProblems,
 }
 
-/// Inputs of the comparison and the optimisation of a condition.
+/// Inputs for comparing a condition's models and optimising its correction.
 struct Measured<'a> {
     run: Run<'a>,
     condition: Arc<Condition>,
@@ -146,7 +146,7 @@ impl ConditionStages {
         }
     }
 
-    /// Sets the values that move the physics models of the stages after the distances; results are
+    /// Sets the values that move the physics models for the stages after the distances; results are
     /// kept while the models stay the same (M18.5).
     pub(crate) fn apply_physics(
         &mut self,
@@ -181,7 +181,7 @@ impl ConditionStages {
         }
     }
 
-    /// Returns the number of steps of the analysis of a condition: three for each model, plus one.
+    /// Returns the step count for analysing a condition: three steps for each model, plus one.
     pub(crate) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
     }
@@ -199,7 +199,7 @@ impl ConditionStages {
         self.coupled.problems.take_gains(problem, solution);
     }
 
-    /// Computes responses and distances of the models as in the dataset.
+    /// Computes responses and distances for the models as in the dataset.
     fn measure<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
         let execution = run.execution;
         let condition = Arc::clone(self.models.condition());
@@ -226,13 +226,13 @@ impl ConditionStages {
     }
 
     /// Replaces the physics models by the moved ones, where the condition has any; distances and
-    /// suggested outliers stay those of the models in the dataset.
+    /// suggested outliers still refer to the models in the dataset.
     fn with_moved_models<'a>(&self, measured: Measured<'a>) -> Result<Measured<'a>, Cancelled> {
         let Some(moved) = &self.moved else {
             return Ok(measured);
         };
         let run = measured.run;
-        // The steps of the models are reported by `measure`.
+        // `measure` reports the steps for the models.
         let silent = Execution::new(
             run.execution.executor(),
             run.execution.progress(),
@@ -257,7 +257,7 @@ impl ConditionStages {
         }
     }
 
-    /// Returns the input of the fit of physics parameters from this condition.
+    /// Returns the condition's input to the physics parameter fit.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -272,8 +272,8 @@ impl ConditionStages {
         })
     }
 
-    /// Returns the input of the coupling fit from this condition; `None` where its representatives
-    /// cannot be compared, or it has no optimal delays.
+    /// Returns the condition's input to the coupling fit; `None` where its representatives cannot
+    /// be compared, or it has no optimal delays.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -318,8 +318,8 @@ impl ConditionStages {
         }))
     }
 
-    /// Completes the analysis of the condition, with the couplings applied to the physics models,
-    /// if any.
+    /// Completes the condition's analysis, with the couplings applied to the physics models, if
+    /// any.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled. A condition without a result is not an error.
@@ -381,7 +381,7 @@ impl ConditionStages {
         }
     }
 
-    /// Returns the cautions about the moved models of the condition.
+    /// Returns the cautions about the condition's moved models.
     fn physics_cautions(&self) -> Vec<Caution> {
         let id = self.models.condition().id();
         let moved = match &self.physics {
@@ -394,9 +394,8 @@ impl ConditionStages {
         }
     }
 
-    /// Computes the gains and delays of the condition after other models replace the
-    /// representatives of `analysis` (M13.1); cached results are reused. The couplings are not
-    /// fitted again.
+    /// Computes the condition's gains and delays after other models replace the representatives in
+    /// `analysis` (M13.1); cached results are reused. The couplings are not fitted again.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.

@@ -33,16 +33,15 @@ use crate::execution::Execution;
 use crate::results::comparison::Mismatches;
 use crate::results::convention_doubt::{Convention, ConventionDoubt};
 
-/// Maximum distance of the phase difference from half a turn \[rad\] that indicates a reversed
-/// sign.
+/// A phase difference this close to half a turn \[rad\] indicates a reversed sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
 /// Maximum usual factor between gains, up or down; a larger factor suggests another unit.
 const USUAL_FACTOR: f64 = 5.0;
-/// Maximum ratio between the factor of a single response and the median factor of its channel if a
-/// unit is the cause: models differ by this much for other reasons.
+/// Maximum ratio between a single response's factor and its channel's median factor if a unit is
+/// the cause: models differ by this much for other reasons.
 const MOST_SPREAD: f64 = 2.0;
 
-/// Mismatches of a condition.
+/// A condition's mismatches.
 struct Sample<'a> {
     condition: ConditionId,
     mismatch: &'a Mismatches,
@@ -79,18 +78,18 @@ impl Sample<'_> {
             .collect()
     }
 
-    /// Returns whether the reversed sign of a response is attributed to this channel rather than to
-    /// the other channel of the response. The channel with the larger share of opposed responses is
-    /// chosen; the output if the shares are equal.
+    /// Returns whether a response's reversed sign is attributed to this channel rather than to the
+    /// response's other channel. The channel with the larger share of opposed responses is chosen;
+    /// the output if the shares are equal.
     fn blames_sign_on(&self, channel: Channel, pair: Pair) -> bool {
         let here = self.opposed_share(channel);
         let there = self.opposed_share(other_channel(channel, pair));
         here > there || (here == there && matches!(channel, Channel::Output(_)))
     }
 
-    /// Returns whether the unusual factor of a response is attributed to a unit of this channel
-    /// rather than of the other channel of the response. The channel whose median factor is nearer
-    /// is chosen; the output if both are equally near.
+    /// Returns whether a response's unusual factor is attributed to this channel's unit rather than
+    /// to that of the response's other channel. The channel whose median factor is nearer is
+    /// chosen; the output if both are equally near.
     fn blames_factor_on(&self, channel: Channel, pair: Pair, ln_gain: f64) -> bool {
         let distance = |channel| (median(&mut self.ln_gains(channel)) - ln_gain).abs();
         let here = distance(channel);
@@ -134,16 +133,16 @@ fn is_turned(mismatch: &Mismatch) -> bool {
     near > 0.5 * weighted_sum(mismatch, |_| 1.0)
 }
 
-/// Evidence of a difference in a channel, from one condition.
+/// Evidence for a difference in a channel, from one condition.
 struct Evidence {
     condition: ConditionId,
     /// The responses that show the difference.
     pairs: Vec<Pair>,
-    /// Whether every response of the channel supports the difference, not only `pairs`.
+    /// Whether all the channel's responses support the difference, not only `pairs`.
     is_everywhere: bool,
 }
 
-/// Collects the suspected sign and unit differences of all conditions, sign differences first.
+/// Collects the suspected sign and unit differences from all conditions, sign differences first.
 pub(crate) fn convention_doubts(
     conditions: &[(ConditionId, &Mismatches)],
     measuring: &PairTable<bool>,

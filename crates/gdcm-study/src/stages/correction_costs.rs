@@ -1,5 +1,5 @@
-//! J of the physics representatives without and with a correction of the physics models (couplings
-//! or physics parameters), averaged over the conditions (M16.4, M18.5).
+//! The physics representatives' J without and with a correction to the physics models (couplings or
+//! physics parameters), averaged over the conditions (M16.4, M18.5).
 
 use gdcm_method::couplings::LeftOutFit;
 use gdcm_method::schedule::CostChange;
@@ -11,25 +11,25 @@ use crate::results::assessment_table::{
 };
 use crate::results::correction_costs::{AxisCost, CorrectionCost, CorrectionCosts};
 
-/// Results of a condition that is left out of the fit of couplings and the schedule.
+/// Results for a condition, with couplings and schedule fitted to the others.
 pub(super) struct LeftOutCondition {
     pub(super) fit: LeftOutFit,
     pub(super) cost: LeftOutCost,
 }
 
-/// J of a condition that is left out of the fits and the schedule.
+/// A condition's J, with the correction assessed and the schedule fitted to the others.
 pub(super) struct LeftOutCost {
     pub(super) condition: ConditionId,
     pub(super) cost: CorrectionCost,
     /// J without the correction assessed, response by response.
     without: PairTable<Option<CostChange>>,
-    /// J with it, response by response.
+    /// J with the correction assessed, response by response.
     with: PairTable<Option<CostChange>>,
 }
 
 impl LeftOutCondition {
-    /// Collects the results of the condition; `None` where couplings or schedule cannot be fitted
-    /// to the other conditions, or the condition cannot be assessed.
+    /// Collects the condition's results; `None` where couplings or schedule cannot be fitted to the
+    /// other conditions, or the condition cannot be assessed.
     pub(super) fn new(
         condition: ConditionId,
         without: &Analysis,
@@ -47,7 +47,7 @@ impl LeftOutCondition {
 }
 
 impl LeftOutCost {
-    /// Computes J of the condition under the schedule of the others, without the correction
+    /// Computes the condition's J under the schedule fitted to the others, without the correction
     /// assessed and with it; `None` where the schedule cannot be fitted to the other conditions, or
     /// the condition cannot be assessed.
     pub(super) fn new(
@@ -68,7 +68,7 @@ impl LeftOutCost {
     }
 }
 
-/// Returns J of the representative before and after a correction.
+/// Returns the representative's J before and after a correction.
 fn changes(
     analysis: &Analysis,
     condition: ConditionId,
@@ -106,13 +106,13 @@ pub(super) fn correction_costs(
     }
 }
 
-/// Averages J of the uncorrected physics representatives of an analysis.
+/// Averages J for an analysis's uncorrected physics representatives.
 pub(super) fn uncorrected_cost(analysis: &Analysis) -> AxisCost {
     cost_sums(analysis, analysis, AssessedCorrection::Own).uncorrected()
 }
 
 /// Sums J under a channel correction over the conditions that can be assessed both without and with
-/// the correction of the physics models.
+/// the correction to the physics models.
 fn cost_sums<'a>(
     without: &'a Analysis,
     with: &Analysis,
@@ -172,8 +172,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Adds the responses of a condition that can be compared both without and with the
-    /// correction.
+    /// Adds a condition's responses that can be compared both without and with the correction.
     fn add(
         &mut self,
         without: &PairTable<Option<CostChange>>,

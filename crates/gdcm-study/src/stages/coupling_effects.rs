@@ -1,6 +1,6 @@
-//! Effects of the couplings on a condition: its poles, the feedback loop, and the response above the
-//! band (M16.4). H is the response of the physics representative, K the feedback of outputs to inputs;
-//! near a singular `I - K H` the closed loop rings.
+//! Effects of the couplings on a condition: its poles, the feedback loop, and the response above
+//! the band (M16.4). H is the physics representative's response, K the feedback from outputs to
+//! inputs; near a singular `I - K H` the closed loop rings.
 
 use gdcm_method::correction::Pade;
 use gdcm_method::correction::lead_price::ABOVE_BAND;
@@ -18,8 +18,8 @@ use crate::results::couplings_assessment::{
 };
 use crate::results::fitted_couplings::CoupledCondition;
 
-/// Numbers of frequencies of the singular values: below the band, and from its lower end to ten
-/// times its upper end (2 % apart for the band of the example).
+/// Numbers of frequencies for the singular values: below the band, and from its lower end to ten
+/// times its upper end (2 % apart for the example's band).
 const MARGIN_POINTS: [usize; 2] = [60, 300];
 
 /// Returns the grid from a tenth of the band's lower end to ten times its upper end; the lower end
@@ -32,13 +32,13 @@ pub(super) fn margin_grid(band: Band) -> FrequencyGrid {
     FrequencyGrid::at(omega)
 }
 
-/// Effect of the couplings on a condition, and its newly unstable poles.
+/// The couplings' effect on a condition, and its newly unstable poles.
 pub(super) struct ConditionEffect {
     pub(super) couplings: ConditionCouplings,
     pub(super) unstable: Vec<UnstablePole>,
 }
 
-/// Computes the effect of the couplings on a condition.
+/// Computes the couplings' effect on a condition.
 pub(super) fn condition_effect(
     study: &Study,
     result: &ConditionAnalysis,
@@ -75,17 +75,17 @@ pub(super) fn condition_effect(
     })
 }
 
-/// Poles of a condition's kept physics models, without and with couplings.
+/// Poles in a condition's kept physics models, without and with couplings.
 struct ConditionPoles {
-    /// Poles of the representative, or why they are unavailable.
+    /// The representative's poles, or why they are unavailable.
     representative: Result<Vec<PoleShift>, NoPoles>,
-    /// Newly unstable poles of every kept model.
+    /// Newly unstable poles in every kept model.
     unstable: Vec<UnstablePole>,
     /// The other kept models with matrices for which the feedback loop cannot be closed.
     refused: Vec<RefusedModel>,
 }
 
-/// Computes the poles of the kept physics models.
+/// Computes the kept physics models' poles.
 fn condition_poles(
     study: &Study,
     result: &ConditionAnalysis,
@@ -135,7 +135,7 @@ fn condition_poles(
     Ok(poles)
 }
 
-/// Returns the poles of a model without and with couplings, or why they cannot be computed.
+/// Returns a model's poles without and with couplings, or why they cannot be computed.
 fn pole_shifts(
     result: &ConditionAnalysis,
     coupled: &CoupledCondition,

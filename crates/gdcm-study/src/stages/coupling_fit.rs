@@ -26,18 +26,18 @@ use crate::results::fitted_couplings::FittedCouplings;
 /// The requested couplings, or why there are none.
 pub(crate) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
 
-/// Input of the coupling fit from a condition: its representatives, and its channel delays without
+/// A condition's input to the coupling fit: its representatives, and its channel delays without
 /// couplings.
 pub(crate) struct CouplingSource {
     pub(crate) condition: Arc<Condition>,
     pub(crate) comparison: Arc<Comparison>,
     /// The channels' signed delays \[s\] (M9, M15).
     pub(crate) delays_s: Channels<f64>,
-    /// Hashes of the representatives, physics first.
+    /// Representatives' hashes, physics first.
     pub(crate) contents: [ContentHash; 2],
-    /// Response of the physics representative.
+    /// The physics representative's response.
     pub(crate) physics: Arc<FrequencyResponse>,
-    /// Response of the identified representative.
+    /// The identified representative's response.
     pub(crate) flight: Arc<FrequencyResponse>,
 }
 
@@ -63,7 +63,7 @@ impl CouplingSource {
 struct ConditionKey {
     id: ConditionId,
     airspeed_kt: f64,
-    /// Hashes of the representatives, physics first.
+    /// Representatives' hashes, physics first.
     contents: [ContentHash; 2],
     usable: PairTable<bool>,
     bands: Option<Arc<ModelBands>>,
@@ -73,7 +73,7 @@ struct ConditionKey {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Averaging {
     averages: Option<f64>,
-    /// Length of a window \[s\].
+    /// Window length \[s\].
     window_s: Option<f64>,
     /// Whether the windows overlap by half.
     half_overlap: bool,
@@ -89,7 +89,7 @@ impl Averaging {
     }
 }
 
-/// All inputs on which the fit depends. The weight and the bounds of the gains are not among them.
+/// All inputs on which the fit depends. The gain weight and bounds are not among them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CouplingFitKey {
     kind: CouplingKind,
@@ -135,7 +135,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Builds the problem of the fit to these conditions (M16.1).
+    /// Builds the fit problem for these conditions (M16.1).
     fn problem(
         &self,
         study: &Study,
@@ -195,8 +195,8 @@ impl CouplingFitKey {
     }
 }
 
-/// Returns the standard deviation of `ln H` from the standard deviations of an identified model, or
-/// from its coherence if that is used (M16.2).
+/// Returns the standard deviation of `ln H` from an identified model's standard deviations, or from
+/// its coherence if that is used (M16.2).
 pub(crate) fn deviation(
     study: &Study,
     identified: &Model,

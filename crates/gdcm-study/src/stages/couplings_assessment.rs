@@ -27,16 +27,16 @@ use crate::results::analysis::{Analysis, ConditionAnalysis};
 use crate::results::couplings_assessment::{AssessedCouplings, CouplingsAssessment};
 use crate::results::fitted_couplings::FittedCouplings;
 
-/// Name of the step in progress reports.
+/// Step name in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
 
-/// Shares of the work in progress reports; together 1. Each of the two analyses.
+/// Share of each of the two analyses in progress reports; the parts sum to 1.
 const ANALYSIS_SHARE: f64 = 0.1;
 
-/// Fits without each condition in turn.
+/// Share of the fits without each condition in turn.
 const LEFT_OUT_SHARE: f64 = 0.6;
 
-/// Effects on the conditions.
+/// Share of the effects on the conditions.
 const EFFECTS_SHARE: f64 = 0.2;
 
 impl Engine {

@@ -1,4 +1,4 @@
-//! Analysis of a study, stage by stage; each stage is cached while its inputs stay the same.
+//! Analyses a study stage by stage; each stage is cached while its inputs stay the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,8 +38,8 @@ use crate::results::scheduled_conditions::{schedule_settings, scheduled_points};
 use crate::results::time_histories::{HistoryRecords, TimeHistories};
 use crate::results::uncertainty::Uncertainty;
 
-/// Computes analyses and caches the last result of each stage, keyed by the numerical content of
-/// its inputs: if a single model changes, only its response is recomputed.
+/// Computes analyses and caches each stage's last result, keyed by the numerical content of its
+/// inputs: if a single model changes, only its response is recomputed.
 ///
 /// ```text
 /// responses                      (dynamics of the model, band, points)
@@ -52,8 +52,8 @@ use crate::results::uncertainty::Uncertainty;
 /// assessment
 /// ```
 ///
-/// Conditions and models are independent of one another: the result is bit-for-bit the same with
-/// any executor.
+/// Conditions and models do not depend on one another: the result is bit-for-bit the same with any
+/// executor.
 #[derive(Clone)]
 pub struct Engine {
     executor: Arc<dyn Executor>,
@@ -66,7 +66,7 @@ pub struct Engine {
     conditions: BTreeMap<ConditionId, ConditionStages>,
     /// The condition drawn last.
     drawn: Option<ConditionId>,
-    /// Curves of the condition drawn last.
+    /// Curves for the condition drawn last.
     curves: Memo<GridKey, Arc<ConditionCurves>>,
 }
 
@@ -117,8 +117,8 @@ impl Engine {
         Self { proofs, ..self }
     }
 
-    /// Shares the responses of models with other engines. Only the last response of each model is
-    /// cached, so that engines should have the same band and number of points.
+    /// Shares model responses with other engines. Only each model's last response is cached, so
+    /// that engines should have the same band and point count.
     pub fn sharing(self, known: &KnownModels) -> Self {
         Self {
             known: known.clone(),
@@ -126,7 +126,7 @@ impl Engine {
         }
     }
 
-    /// Replaces cached gains of the same problem by gains that were proven under a larger budget.
+    /// Replaces cached gains for the same problem by gains that were proven under a larger budget.
     pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         for stages in self.conditions.values_mut() {
             stages.take_gains(problem, solution);
@@ -143,8 +143,8 @@ impl Engine {
         self.analyze_first(study, None, progress)
     }
 
-    /// Works as [`Engine::analyze`], but computes the result of one condition first and passes it
-    /// on before the analysis of the other conditions starts.
+    /// Works as [`Engine::analyze`], but computes one condition's result first and passes it on
+    /// before the other conditions are analysed.
     ///
     /// ```text
     /// 1  models of the dataset, with the responses that are already known
@@ -216,7 +216,7 @@ impl Engine {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        // One step for the response and one for the swap of each model.
+        // One step for each model's response, and one for its swap.
         let total = study
             .dataset
             .conditions()
@@ -263,8 +263,8 @@ impl Engine {
         requirements_of(analysis, known, &execution)
     }
 
-    /// Simulates the models of an analysis with `records`, and compares the results within the
-    /// tolerances of the study; see [`time_histories_of`].
+    /// Simulates an analysis's models with `records`, and compares the results within `tolerances`;
+    /// see [`time_histories_of`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.
@@ -280,8 +280,8 @@ impl Engine {
         time_histories_of(analysis, records, tolerances, &execution)
     }
 
-    /// Returns the curves of all models of a condition, on this number of frequencies in a band;
-    /// `None` where the condition does not exist.
+    /// Returns the curves for a condition's models on `grid`, a band and a number of frequencies in
+    /// it; `None` where the condition does not exist.
     pub fn curves(
         &mut self,
         dataset: &Arc<Dataset>,
@@ -325,7 +325,7 @@ impl Engine {
         {
             return;
         }
-        // Collect all models before dropping any of the last dataset: a model may have moved to
+        // Collect all models before dropping any from the last dataset: a model may have moved to
         // another condition.
         let models: Vec<ConditionModels> = dataset
             .conditions()
@@ -355,12 +355,12 @@ impl Engine {
 #[derive(Clone, Copy)]
 pub struct WantedFirst<'a> {
     pub condition: ConditionId,
-    /// Receives the result of the condition; it is also part of the whole analysis.
+    /// Receives the condition's result, which is also part of the whole analysis.
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
-/// Returns the number of steps of an analysis. Conditions to which couplings are fitted count three
-/// times: for the inputs of the fit, for the fit, and for the analysis. Each counts twice more where
+/// Returns an analysis's step count. Conditions to which couplings are fitted count three times:
+/// for the fit's inputs, for the fit, and for the analysis. Each condition counts twice more where
 /// physics parameters are requested.
 fn steps(study: &Study) -> usize {
     let has_couplings = study.settings.couplings.kind().is_some();
@@ -416,7 +416,7 @@ fn fit_physics(
     Ok(Some(applied))
 }
 
-/// Sets the values that move the physics models of every condition.
+/// Sets the values that move the physics models in every condition.
 fn move_models(
     conditions: &mut BTreeMap<ConditionId, ConditionStages>,
     applied: Option<&Arc<AppliedPhysics>>,
@@ -463,10 +463,10 @@ fn fit_couplings(
     Ok(Some(fit))
 }
 
-/// Reports the progress of a fit as steps of the analysis.
+/// Reports a fit's progress as analysis steps.
 struct FitProgress<'a> {
     execution: &'a Execution<'a>,
-    /// Number of steps of the fit.
+    /// The fit's step count.
     steps: usize,
     /// Steps reported so far.
     reported: AtomicUsize,

@@ -1,4 +1,4 @@
-//! Uncertainty of an analysis, computed from swaps of its models (M13).
+//! Computes an analysis's uncertainty from model swaps (M13).
 //!
 //! ```text
 //! 1  error bar of every gain and delay, from swaps and standard errors             (M13.2, M13.3)
@@ -32,11 +32,11 @@ use crate::results::uncertainty::{
     SecondVariableTest, Uncertainty,
 };
 
-/// Maximum number of differences that are computed.
+/// Maximum number of differences; with more, none is computed.
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
-    /// Computes the uncertainty from the swaps of the conditions.
+    /// Computes the uncertainty from the conditions' swaps.
     pub(crate) fn new(analysis: &Analysis, swaps: &[(ConditionId, ConditionSwaps)]) -> Self {
         let study = &analysis.study;
         let level = study.settings.uncertainty.level;
@@ -88,8 +88,8 @@ fn condition_bars(
     conditions
 }
 
-/// Collects the results of a condition with their spread over the swaps, and with the standard
-/// errors of the identified representative.
+/// Collects a condition's results with their spread over the swaps, and with the identified
+/// representative's standard errors.
 fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -119,7 +119,7 @@ fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
     })
 }
 
-/// The schedule with the error bars of its conditions.
+/// The schedule with its conditions' error bars.
 struct ScheduleEvidence<'a> {
     /// `None` where there is no schedule, or a scheduled condition has no error bars.
     schedule: Option<&'a Schedule>,
@@ -152,8 +152,7 @@ impl<'a> ScheduleEvidence<'a> {
         }
     }
 
-    /// Returns the error bars of a value in the scheduled conditions; `None` if one of them is
-    /// missing.
+    /// Returns a value's error bars in the scheduled conditions; `None` if one is missing.
     fn bars(&self, scalar: Scalar) -> Option<Vec<Bar>> {
         self.conditions
             .iter()
@@ -161,8 +160,7 @@ impl<'a> ScheduleEvidence<'a> {
             .collect()
     }
 
-    /// Splits the scatter of each net gain into components, at equal airspeed and about the
-    /// schedule.
+    /// Splits each net gain's scatter into components, at equal airspeed and about the schedule.
     fn scatter(&self, pairs: &[Pair]) -> Vec<PairScatter> {
         let same_airspeed = self.schedule.and_then(|schedule| {
             let airspeeds_kt = schedule.airspeeds.values_kt.clone();
@@ -260,7 +258,7 @@ fn judge_together(tests: &mut [SecondVariableTest], level: f64) {
     }
 }
 
-/// Computes the differences of these net gains between all pairs of conditions at equal airspeed.
+/// Computes the differences in these net gains between all pairs of conditions at equal airspeed.
 ///
 /// # Errors
 /// The number of differences, if it exceeds the maximum.

@@ -1,5 +1,5 @@
-//! Responses of the models in use, computed once for each content of a model and cached: the last
-//! response for comparison, and the last for drawing.
+//! Responses of the models in use, computed once per model content and cached: the last response
+//! for comparison, and the last for drawing.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -10,10 +10,10 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
 use super::memo::Memo;
 
-/// Band and number of frequencies, on which a response depends besides the dynamics of its model.
+/// Band and number of frequencies, on which a response depends besides its model's dynamics.
 pub type GridKey = (Band, usize);
 
-/// Purpose of a response. The last response for each purpose is cached.
+/// Use of a response. The last response for each use is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// Comparing models, in the comparison band.
@@ -22,7 +22,7 @@ pub(crate) enum Purpose {
     Drawing,
 }
 
-/// Last responses of a model, and the model prepared for their computation.
+/// A model's last responses, and the model prepared for computing them.
 #[derive(Debug, Default)]
 pub(super) struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
@@ -56,8 +56,8 @@ impl ModelResponses {
     }
 }
 
-/// Responses of the models in use, keyed by the content of the model: a model keeps its responses
-/// when it is renamed or moved to another condition. Engines that share them
+/// Responses of the models in use, keyed by model content: a model keeps its responses when it is
+/// renamed or moved to another condition. Engines that share them
 /// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each response only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {

@@ -1,5 +1,5 @@
-//! G as the geometric mean over all pairs of a kept physics and a kept identified model (M6), instead of
-//! G of the two representatives.
+//! G as the geometric mean over all pairs of a kept physics and a kept identified model (M6),
+//! instead of the two representatives' G.
 
 use gdcm_method::correction::delta::delta_gains;
 use gdcm_method::fidelity::representative::Representative;
@@ -29,7 +29,8 @@ impl Comparison {
             }
         }
         self.delta.gain = self.delta.gain.map(|pair, gain| {
-            // Where the representatives have G, they count themselves: the count is positive.
+            // Where the representatives have G, they are among the counted pairs: the count is
+            // positive.
             gain.as_ref()?;
             Some(means[pair].value())
         });
@@ -52,7 +53,7 @@ fn kept_models(
     models
 }
 
-/// Geometric mean of gains.
+/// Accumulator for a geometric mean of gains.
 #[derive(Default)]
 struct MeanLogarithm {
     sum: f64,

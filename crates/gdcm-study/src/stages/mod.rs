@@ -1,5 +1,5 @@
-//! Stages of the analysis, each cached while its inputs stay the same; and assessments that need
-//! further analyses.
+//! Analysis stages, each cached while its inputs stay the same; and assessments that need further
+//! analyses.
 
 pub mod bundle_metrics;
 pub mod compared_model;

@@ -12,14 +12,14 @@ use crate::decisions::study::Study;
 use crate::execution::Execution;
 use crate::results::caution::{BundleModel, Caution, GainOutOfRange, NotFinite};
 
-/// Bundle of a condition and the data from which its cautions are derived.
+/// A condition's bundle and the data from which its cautions are derived.
 pub(crate) struct BundleCautions<'a> {
     pub(crate) condition: &'a Condition,
     pub(crate) kind: BundleKind,
     pub(crate) choice: &'a BundleChoice,
     pub(crate) responses: &'a ConditionResponses,
     pub(crate) measured: &'a MeasuredPairs,
-    /// Upper end of the band \[rad/s\].
+    /// The band's upper end \[rad/s\].
     pub(crate) band_top: f64,
 }
 

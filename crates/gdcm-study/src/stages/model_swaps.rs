@@ -8,7 +8,7 @@
 //! 4  spread of the results over the swaps of each bundle
 //! ```
 //!
-//! "Figures" are the gains, as logarithms, and the delays \[s\] of a pair of models.
+//! "Figures" are a model pair's gains, as logarithms, and its delays \[s\].
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ struct ModelPair {
 }
 
 impl ModelPair {
-    /// Returns the pair with the model of one bundle replaced.
+    /// Returns the pair with one bundle's model replaced.
     fn with(self, kind: BundleKind, model: usize) -> Self {
         match kind {
             BundleKind::Physics => Self {
@@ -53,7 +53,7 @@ impl ModelPair {
     }
 }
 
-/// Inputs of the swaps of a condition.
+/// Inputs to a condition's swaps.
 #[derive(Clone, Copy)]
 pub(crate) struct SwapInput<'a> {
     pub(crate) run: Run<'a>,
@@ -62,7 +62,7 @@ pub(crate) struct SwapInput<'a> {
     pub(crate) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
-/// Optimal correction of a pair of models, with its G and D.
+/// A model pair's optimal correction, with its G and D.
 #[derive(Clone, Debug)]
 pub(crate) struct SwapOptimum {
     pub(crate) correction: ChannelCorrection,
@@ -93,7 +93,7 @@ impl SwapOptimum {
     }
 }
 
-/// Returns the gains and delays of the representatives themselves.
+/// Returns the representatives' gains and delays.
 pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     let optimum = SwapOptimum {
         correction: analysis.correction.clone(),
@@ -108,7 +108,7 @@ pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
 /// Inputs on which a swap depends, besides the two models.
 #[derive(Clone, Debug, PartialEq)]
 struct SwapKey {
-    /// Settings of the analysis, except those that affect no swap.
+    /// The analysis's settings, except those that affect no swap.
     settings: Settings,
     measuring: PairTable<bool>,
     /// The representatives, which determine the phase branches.
@@ -116,8 +116,8 @@ struct SwapKey {
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// Last swaps, by their models: rejecting or restoring a model does not affect the swaps of the
-/// others.
+/// Last swaps, by their models: rejecting or restoring a model does not affect the other models'
+/// swaps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SwapMemo {
     key: Option<SwapKey>,
@@ -132,7 +132,7 @@ impl SwapInput<'_> {
         }
     }
 
-    /// Returns the other kept models of a bundle in file order, without models set aside (M5b).
+    /// Returns a bundle's other kept models in file order, without models set aside (M5b).
     /// Identical models count once, because they add no information. A copy of the representative
     /// counts only if the bundle has no different model.
     fn others(&self, kind: BundleKind) -> Vec<usize> {
@@ -209,8 +209,8 @@ impl SwapMemo {
             }
         }
         let representatives = input.representatives();
-        // With the mean over all pairs, the values of the pair of representatives differ from the
-        // values of the analysis: this pair is computed too, as the reference of the changes.
+        // With the mean over all pairs, the values for the two representatives differ from the
+        // analysis's values: this pair is computed too, as the reference for the changes.
         let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
         let mut wanted: Vec<ModelPair> = replacements
             .iter()
@@ -241,7 +241,7 @@ impl SwapMemo {
         Ok(ConditionSwaps { spread, swaps })
     }
 
-    /// Computes the results of the pairs that are not cached; `swaps` is the number of pairs that
+    /// Computes the results for the pairs that are not cached; `swaps` is the number of pairs that
     /// count as steps.
     fn compute_missing(
         &mut self,
@@ -257,7 +257,7 @@ impl SwapMemo {
         Ok(())
     }
 
-    /// Returns the cached results of a pair.
+    /// Returns a pair's cached results.
     fn figures(&self, pair: ModelPair) -> Option<Arc<Figures>> {
         self.kept.get(&pair).cloned().flatten()
     }
@@ -272,7 +272,7 @@ fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figure
         .collect()
 }
 
-/// Computes the results of each pair of models.
+/// Computes the results for each model pair.
 fn swap_figures(
     input: &SwapInput<'_>,
     pairs: &[ModelPair],
@@ -300,8 +300,8 @@ fn swap_figures(
             let other = input.compared(BundleKind::Identified, pair.identified);
             physics.mismatches(&other)
         };
-        // As for pinned models, each phase difference is on the branch nearest to the phase
-        // difference of the representatives (M13.1).
+        // As for pinned models, each phase difference is on the branch nearest to the
+        // representatives' phase difference (M13.1).
         for (pair, entry) in mismatch.iter_mut() {
             if let Some(median_phase) = median_phases[pair] {
                 *entry = entry

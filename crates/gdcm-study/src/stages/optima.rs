@@ -1,4 +1,4 @@
-//! Optimal gains and delays of a condition (M8, M9, M15).
+//! A condition's optimal gains and delays (M8, M9, M15).
 //!
 //! ```text
 //! 1  delays, or signed delays for leads, from D                     eq. (11), M15.4
@@ -29,7 +29,7 @@ use crate::results::comparison::Mismatches;
 use crate::results::lead_compensation::LeadCompensated;
 use crate::results::lead_offer::LeadOffer;
 
-/// Solution of a problem, or why there is none.
+/// A problem's solution, or why there is none.
 pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;
 
 /// Solves a problem, and proves optimality within a budget.
@@ -47,7 +47,7 @@ pub(crate) fn solved(
     }
 }
 
-/// The two optima of a condition, with their problems.
+/// A condition's two optima, with their problems.
 pub(crate) struct Optima {
     pub(crate) gain_problem: Arc<Problem>,
     pub(crate) delay_problem: Arc<Problem>,
@@ -195,7 +195,7 @@ fn delay_failure(error: &ProblemError) -> ConditionFailure {
     ConditionFailure::Delays(error.clone())
 }
 
-/// Inputs of a condition's optimisation problems.
+/// Inputs to a condition's optimisation problems.
 pub(crate) struct SolveInput<'a> {
     run: Run<'a>,
     /// Responses from which the bounds are computed: the on-axis responses, or all responses if
@@ -232,7 +232,7 @@ impl<'a> SolveInput<'a> {
         &self.run.study.settings
     }
 
-    /// Solves a problem, and proves optimality within the budget of the run.
+    /// Solves a problem, and proves optimality within the run's budget.
     fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
         solved(problem, self.run.proofs, self.run.execution.progress())
     }
@@ -246,7 +246,7 @@ impl<'a> SolveInput<'a> {
             })
     }
 
-    /// Returns the common design of the lead filters; `None` where leads are not requested.
+    /// Returns the lead filters' common design; `None` where leads are not requested.
     pub(crate) fn lead_design(&self) -> Option<Arc<LeadDesign>> {
         if self.settings().phase != PhaseCorrection::Lead {
             return None;
@@ -255,7 +255,7 @@ impl<'a> SolveInput<'a> {
         Some(Arc::new(LeadDesign::new(self.settings().lead, omega)))
     }
 
-    /// Builds the problem of the gains, from the difference that remains after the leads, if any.
+    /// Builds the gain problem, from the difference that remains after the leads, if any.
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
         let settings = self.settings();
         let (mismatch, gain) = match compensated {
@@ -278,7 +278,7 @@ impl<'a> SolveInput<'a> {
         }
     }
 
-    /// Builds the problem of the delays for the chosen D, or of signed delays for the band delay.
+    /// Builds the delay problem for the chosen D, or the signed delay problem for the band delay.
     /// Without phase correction nothing is constrained, and the upper bound is zero.
     pub(crate) fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
         let settings = self.settings();

@@ -32,16 +32,16 @@ use crate::results::physics_assessment::{AssessedPhysics, ConditionPhysics, Phys
 use crate::results::response_shapes::{ResponseShapes, ShapeSources};
 use crate::results::without_and_with::WithoutAndWith;
 
-/// Name of the step in progress reports.
+/// Step name in progress reports.
 const LEAVING_OUT: &str = "physics parameters without each condition";
 
-/// Shares of the work in progress reports; together 1. Analysis without the parameters.
+/// Share of the analysis without the parameters in progress reports; the parts sum to 1.
 const WITHOUT_SHARE: f64 = 0.1;
 
-/// Fit, and analysis with the parameters.
+/// Share of the fit, and of the analysis with the parameters.
 const WITH_SHARE: f64 = 0.3;
 
-/// Analyses without each condition in turn.
+/// Share of the analyses without each condition in turn.
 const LEFT_OUT_SHARE: f64 = 0.6;
 
 impl Engine {
@@ -86,8 +86,9 @@ impl Engine {
         }))))
     }
 
-    /// Assesses each condition of the fit with the values found without it, and the schedule of the
-    /// other conditions; empty with fewer than three conditions, and where no parameter is moved.
+    /// Assesses each fitted condition with the values found without it, and the schedule fitted to
+    /// the other conditions; empty with fewer than three conditions, and where no parameter is
+    /// moved.
     fn leave_out_values(
         &self,
         without: &Analysis,
@@ -168,7 +169,7 @@ fn condition_effects(
     effects
 }
 
-/// Returns the poles of the physics representative without and with the parameters.
+/// Returns the physics representative's poles without and with the parameters.
 fn representative_poles(result: &ConditionAnalysis) -> Result<Vec<PoleShift>, NoPoles> {
     let index = result.comparison.physics.model;
     let before = &result.file_condition().bundle(BundleKind::Physics)[index];
@@ -179,8 +180,8 @@ fn representative_poles(result: &ConditionAnalysis) -> Result<Vec<PoleShift>, No
     }
 }
 
-/// Returns the responses of the physics representative without and with the parameters; empty if
-/// they do not move it.
+/// Returns the physics representative's responses without and with the parameters; empty if they do
+/// not move it.
 fn response_shapes(
     result: &ConditionAnalysis,
     omega: &Arc<[f64]>,

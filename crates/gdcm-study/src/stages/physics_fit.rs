@@ -35,7 +35,7 @@ use crate::results::physics_findings::{
 /// The diagnosis, or why there is none.
 pub(crate) type FindingsOutcome = Result<Arc<PhysicsFindings>, PhysicsFailure>;
 
-/// A condition with the comparison of its models as in the dataset.
+/// A condition, and its models compared as in the dataset.
 #[derive(Clone)]
 pub(crate) struct PhysicsSource {
     pub(crate) condition: Arc<Condition>,
@@ -100,7 +100,7 @@ impl PartialEq for ConditionKey {
     }
 }
 
-/// The compared models of a condition, by index.
+/// A condition's compared models, by index.
 #[derive(Clone, Debug, PartialEq)]
 struct Representatives {
     physics: usize,
@@ -191,7 +191,7 @@ pub(crate) fn find_parameters(
     })))
 }
 
-/// Collects the data of the fit from each condition.
+/// Collects the fit data from each condition.
 struct Fitting<'a> {
     study: &'a Study,
     /// The parameters that are on.
@@ -201,7 +201,7 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// Returns the data of a condition; notes why it, or a run of it, is left out.
+    /// Returns a condition's data; notes why the condition, or one of its runs, is left out.
     fn condition(&mut self, source: &PhysicsSource) -> Option<PhysicsCondition> {
         let id = source.condition.id();
         let is_used = |model: &Model| source.uses(self.study, model);
@@ -292,7 +292,7 @@ impl Fitting<'_> {
     }
 }
 
-/// Returns the kept models of a bundle besides its representative.
+/// Returns a bundle's kept models besides its representative.
 fn other_models(representative: &Representative) -> Vec<usize> {
     let mut others = Vec::new();
     for (index, score) in representative.scores.iter().enumerate() {

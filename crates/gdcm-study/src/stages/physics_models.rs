@@ -1,5 +1,5 @@
-//! Moves the physics models of a study by the values of its parameters (M18.5). Nothing else changes
-//! a physics model for the stages that follow.
+//! Moves a study's physics models by its parameters' values (M18.5). Nothing else changes a physics
+//! model for the stages that follow.
 //!
 //! ```text
 //! 1  values: of the named parameters, fitted again with the others off; of all; or set by hand
@@ -113,7 +113,7 @@ impl Application<'_> {
         Ok(Arc::new(self.applied(values)))
     }
 
-    /// Moves the models by the fitted values: of the named parameters, or of all.
+    /// Moves the models by the fitted values of the named parameters, or of all.
     fn fitted(&self, findings: Arc<PhysicsFindings>) -> Result<PhysicsOutcome, Cancelled> {
         let mut refit = None;
         if self.study.settings.physics == PhysicsCorrection::Named {
@@ -162,7 +162,7 @@ impl Application<'_> {
         })))
     }
 
-    /// Moves the models of every condition by `values`.
+    /// Moves every condition's models by `values`.
     fn applied(&self, mut values: Vec<AppliedValue>) -> AppliedPhysics {
         values.retain(|value| value.z != 0.0);
         let mut conditions = BTreeMap::new();
@@ -200,7 +200,7 @@ impl Application<'_> {
         }
     }
 
-    /// Moves the physics models of a condition.
+    /// Moves a condition's physics models.
     ///
     /// # Errors
     /// Why the condition keeps its models.
@@ -247,7 +247,7 @@ struct MovedOutcome {
     outcome: MovedModels,
 }
 
-/// The physics models of a condition after the move, and those that keep their response.
+/// A condition's physics models after the move, and those that keep their response.
 struct MovedBundle {
     models: Vec<Model>,
     kept: Vec<UnmovedModel>,

@@ -1,4 +1,4 @@
-//! Compares reruns with the prediction of the runs (M18.6).
+//! Compares reruns with the prediction from the runs (M18.6).
 //!
 //! ```text
 //! 1  base: the physics model of the condition with the perturbation of the rerun
@@ -17,7 +17,7 @@ use crate::decisions::study::Study;
 use crate::results::correction_costs::AxisCost;
 use crate::results::rerun_check::{RerunCheck, RerunCost, RerunRefusal};
 
-/// Compares every rerun of the dataset with the prediction for its values.
+/// Compares every rerun in the dataset with the prediction for its values.
 pub(super) fn check_reruns(study: &Study, grid: &FrequencyGrid) -> Vec<RerunCheck> {
     let parameters = study.settings.physics_parameters.parameters(&study.dataset);
     let mut checks = Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn check_reruns(study: &Study, grid: &FrequencyGrid) -> Vec<RerunChec
     checks
 }
 
-/// Data of the comparison of a condition's reruns.
+/// Data for comparing a condition's reruns.
 struct RerunComparison<'a> {
     study: &'a Study,
     condition: &'a Condition,
@@ -83,7 +83,7 @@ impl RerunComparison<'_> {
         }
     }
 
-    /// Returns the parameter of a change.
+    /// Returns the parameter that a change moves.
     fn parameter(&self, change: &ParameterChange) -> Result<&OfferedParameter, RerunRefusal> {
         let Some(parameter) = self
             .parameters
@@ -105,8 +105,8 @@ impl RerunComparison<'_> {
         }
     }
 
-    /// Returns the mean J of a model against a reference, on and off axis; structurally zero
-    /// responses do not count (M6a).
+    /// Returns a model's mean J against a reference, on and off axis; structurally zero responses
+    /// do not count (M6a).
     fn mean_cost(&self, model: &Dynamics, reference: &Dynamics) -> AxisCost {
         let mut compared = [model, reference].map(|dynamics| {
             let mut polar = PolarResponse::new(&PreparedModel::new(dynamics).response(self.grid));
@@ -136,7 +136,7 @@ impl RerunComparison<'_> {
     }
 }
 
-/// Mean of J over responses.
+/// Accumulator for the mean J over responses.
 #[derive(Default)]
 struct MeanCost {
     count: usize,

@@ -1,4 +1,4 @@
-//! Context of a computation on a study's conditions.
+//! Context for a computation on a study's conditions.
 
 use gdcm_method::correction::ProofBudget;
 use gdcm_model::response::FrequencyGrid;
@@ -8,7 +8,7 @@ use super::known_models::GridKey;
 use crate::decisions::study::Study;
 use crate::execution::Execution;
 
-/// Study, grid, proof budget and execution of an analysis.
+/// An analysis's study, grid, proof budget and execution.
 #[derive(Clone, Copy)]
 pub(crate) struct Run<'a> {
     pub(crate) study: &'a Study,

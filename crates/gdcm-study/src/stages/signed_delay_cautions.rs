@@ -9,13 +9,13 @@ use crate::decisions::study::Study;
 use crate::results::analysis::Outcomes;
 use crate::results::scheduled_conditions::in_schedule;
 
-/// Maximum distance \[s\] of a signed delay from the mean over the conditions that a schedule can
-/// reproduce.
+/// Maximum distance \[s\] between a signed delay and its mean over the conditions that a schedule
+/// can reproduce.
 const APART_S: f64 = 0.02;
 /// Signed delays smaller than this \[s\] have no significant sign.
 const NOTHING_S: f64 = 2e-3;
 
-/// Returns cautions about the channels for which no schedule can reproduce the signed delays of all
+/// Returns cautions about the channels for which no schedule can reproduce the signed delays in all
 /// conditions.
 pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCaution> {
     let mut leads = Vec::new();

@@ -1,6 +1,6 @@
-//! Faults in the content of the program's own files, each with its place in the file.
+//! Content faults in the program's own files, each with its place in the file.
 //!
-//! A fault does not know the path of the file; [`FileError`](crate::file_error::FileError) adds it.
+//! A fault does not contain the file path; [`FileError`](crate::file_error::FileError) adds it.
 
 use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_model::dataset::band::BandError;
@@ -55,7 +55,7 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// Reading ended at the entry after the permitted number of entries.
+    /// A list has more entries than permitted; reading ended at the first surplus entry.
     #[error("expected at most {most} entries, found more (line {line}, column {column})")]
     TooLong {
         most: usize,
@@ -77,7 +77,7 @@ pub enum ContentFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany {
         most: usize,
-        /// Number of entries.
+        /// Number of entries in the list.
         found: usize,
     },
     /// A string is not one of the permitted words.

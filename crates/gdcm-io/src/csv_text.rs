@@ -11,7 +11,7 @@ use gdcm_words::table::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Writes records of equal length, one per line; each cell passes through [`safe_cell`].
+/// Writes equally long records, one per line; each cell passes through [`safe_cell`].
 pub(crate) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -28,8 +28,8 @@ where
     table.flush()
 }
 
-/// Returns the system error inside an error of the CSV writer, so that causes such as a full disk
-/// are reported as such.
+/// Returns the system error inside a CSV writer's error, so that causes such as a full disk are
+/// reported as such.
 fn io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,

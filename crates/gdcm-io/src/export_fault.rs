@@ -27,7 +27,7 @@ pub enum ExportFault {
         one"
     )]
     Breakpoints,
-    /// The file name of a MATLAB function is not a valid function name.
+    /// The file name for a MATLAB function is not a valid function name.
     #[error(
         "invalid name for the file of a MATLAB function: use a letter, then letters, digits and \
         _, at most 63 characters, and neither a keyword nor a name used inside the file; found {}",
@@ -55,7 +55,7 @@ pub enum ExportFault {
         set the physics parameters to off"
     )]
     NoPhysics { why: String },
-    /// A condition has no result of its own.
+    /// A condition lacks its own result.
     #[error("condition {condition}: {why}")]
     NoResult { condition: ConditionId, why: String },
     #[error("the dataset has no condition {condition}")]
@@ -87,7 +87,7 @@ pub enum ExportFault {
 }
 
 impl ExportFault {
-    /// Returns the fault of contents that cannot be written.
+    /// Wraps the error for contents that cannot be written.
     pub(crate) fn contents(error: &io::Error) -> Self {
         Self::Contents {
             reason: error.to_string(),

@@ -1,4 +1,4 @@
-//! Cautions about the text of a file: something in it is not used, or looks unusual.
+//! Cautions about a file's text: something in it is not used, or looks unusual.
 
 use gdcm_model::dataset::draft_fault::Warning;
 use gdcm_model::message_text::quoted;
@@ -8,24 +8,24 @@ use gdcm_model::message_text::quoted;
 /// Its text is the sentence shown to the engineer; [`Self::code`] is for programs and tests.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileCaution {
-    /// A key that the program does not know, the first of `count` like it.
+    /// An unknown key, the first of `count` like it.
     #[error("{place}the key {} is not known and not used{}", quoted(key), more(*count))]
     UnknownKey {
-        /// Place of the first such key, before the sentence: empty, or ending with a colon.
+        /// Where the first such key is, with a colon at the end; empty for the whole file.
         place: String,
         key: String,
         count: usize,
     },
-    /// An entry of a list that the program does not use, the first of `count` like it.
+    /// A list entry that the program does not use, the first of `count` like it.
     #[error("{place}this entry is not known and not used{}", more(*count))]
     UnknownEntry { place: String, count: usize },
     /// Further unknown keys, which are only counted.
     #[error("{} not known and not used", others(*count))]
     MoreUnknownKeys { count: usize },
-    /// A key that belongs to models of the other kind.
+    /// A key that is only valid in the other kind of model.
     #[error("{place}the key \"{key}\" has no meaning here and is not used")]
     MisplacedKey { place: String, key: String },
-    /// An unusual property of a model.
+    /// An unusual model property.
     #[error("{}{}", .0.place.before(), .0.oddity)]
     Oddity(Warning),
 }
@@ -43,7 +43,8 @@ impl FileCaution {
     }
 }
 
-/// Counts what is like the first: ", and 2 more like it"; empty for a single occurrence.
+/// Returns the words for further occurrences: ", and 2 more like it"; empty for a single
+/// occurrence.
 fn more(count: usize) -> String {
     if count > 1 {
         format!(", and {} more like it", count - 1)

@@ -82,7 +82,7 @@ pub enum FileError {
     )]
     Format {
         path: PathBuf,
-        /// Names of the permitted formats.
+        /// Permitted format names.
         expected: &'static str,
         /// Stated format, as displayed in the message.
         found: String,
@@ -132,14 +132,14 @@ pub enum FileError {
         sanitized_path(path)
     )]
     TooManyFiles { path: PathBuf, most: usize },
-    /// The dataset of a study cannot be read.
+    /// The study's dataset cannot be read.
     #[error(
         "{}: the study's dataset cannot be opened: {dataset}; give its current path with --dataset",
         sanitized_path(path)
     )]
     StudyDataset {
         path: PathBuf,
-        /// Reason, with the path of the dataset.
+        /// Reason, with the dataset's path.
         dataset: Box<FileError>,
     },
     /// A directory cannot be created because a file has its name.
@@ -245,7 +245,7 @@ impl FileError {
         }
     }
 
-    /// Returns the path of the file that cannot be read or written; the first of several.
+    /// Returns the path that cannot be read or written; with several, the first.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::Missing { path }
@@ -276,7 +276,7 @@ impl FileError {
         }
     }
 
-    /// Returns the line of the file at which the fault is, counted from 1, if it is known.
+    /// Returns the line with the fault, counted from 1, if it is known.
     pub fn line(&self) -> Option<usize> {
         match self {
             Self::CutOff { line, .. } | Self::NotJson { line, .. } => Some(*line),
@@ -285,7 +285,7 @@ impl FileError {
         }
     }
 
-    /// Returns the place in the content of a file; `None` if the error concerns the whole file.
+    /// Returns the place within the file content; `None` if the error concerns the whole file.
     pub fn place(&self) -> Option<&Location> {
         match self {
             Self::CutOff { place, .. }
@@ -323,8 +323,8 @@ impl FileError {
         }
     }
 
-    /// Creates the same error as [`FileError::content`], with the line of the JSON text at which
-    /// the condition or the model begins.
+    /// Creates the same error as [`FileError::content`], and adds the line at which the condition
+    /// or the model begins in the JSON text.
     pub(super) fn content_of(path: &Path, error: ContentError, text: &[u8]) -> Self {
         FileError::Content {
             path: path.to_owned(),
@@ -335,7 +335,7 @@ impl FileError {
     }
 }
 
-/// Returns the message of a fault; its remedy mentions the file name.
+/// Returns the message for a fault; its remedy mentions the file name.
 fn variables_words(path: &Path, fault: &VariableFault) -> String {
     let file = file_name(path);
     let stem = file_name(&path.with_extension(""));

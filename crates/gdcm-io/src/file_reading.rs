@@ -1,5 +1,5 @@
-//! Reading of files within limits: their bytes, their decompressed text without a byte order mark,
-//! and the SHA-256 of the bytes.
+//! Reads files within limits: their bytes, their decompressed text without a byte order mark, and
+//! the SHA-256 of the bytes.
 
 use std::borrow::Cow;
 use std::fs;
@@ -16,13 +16,13 @@ use crate::file_error::FileError;
 use crate::gzip::{GZIP_MAGIC, check_length, unpack};
 use crate::reading_budget::ReadingBudget;
 
-/// UTF-8 byte order mark, which some editors write at the beginning of a text.
+/// UTF-8 byte order mark, which some editors put before a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Number of bytes read or hashed between two queries of the budget.
+/// Number of bytes read or hashed between two budget queries.
 const CHUNK: usize = 1 << 16;
 
-/// Text of a file and hash of its bytes.
+/// A file's text and the hash of its bytes.
 #[derive(Debug)]
 pub(super) struct Source<'b> {
     /// SHA-256 of the stored bytes, in lower-case hexadecimal.
@@ -73,7 +73,7 @@ pub(super) fn without_mark(text: &[u8]) -> &[u8] {
 /// Opens a file for reading and returns its length \[bytes\].
 ///
 /// # Errors
-/// The path is missing or leads to something else than a file, which is not opened: opening a pipe
+/// The path is missing, or does not lead to a file and is therefore not opened: opening a pipe
 /// would wait for a writer, and some systems permit opening a directory.
 fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
@@ -105,7 +105,7 @@ pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     }
 }
 
-/// Reads a file.
+/// Reads a whole file into memory.
 ///
 /// # Errors
 /// The file is longer than `most` bytes.
@@ -131,7 +131,7 @@ pub(super) fn read_bytes(
     Ok(bytes)
 }
 
-/// Returns the kind of a path that is neither a file nor a directory; `None` for those.
+/// Describes a path that is neither a file nor a directory; `None` for files and directories.
 pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
     if kind.is_file() || kind.is_dir() || kind.is_symlink() {
         return None;

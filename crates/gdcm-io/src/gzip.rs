@@ -1,4 +1,4 @@
-//! Decompression of gzip files (RFC 1952) within the limits on length and memory.
+//! Decompresses gzip files (RFC 1952) within limits on length and memory.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -10,16 +10,16 @@ use gdcm_model::dataset::limits::LARGEST_TEXT;
 use crate::file_error::FileError;
 use crate::reading_budget::ReadingBudget;
 
-/// First two bytes of every gzip file (RFC 1952, section 2.3.1).
+/// First two bytes in every gzip file (RFC 1952, section 2.3.1).
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
-/// Number of bytes decompressed between two queries of the budget.
+/// Number of bytes decompressed between two budget queries.
 const CHUNK: usize = 1 << 16;
 
 /// Decompresses incrementally, and no further than the limit: a few kilobytes can expand to
 /// gigabytes.
 ///
-/// A file may have several members (RFC 1952), and zeros after the last, with which tapes and
-/// copying programs fill their blocks.
+/// A file may have several members (RFC 1952), and trailing zeros, with which tape drives and copy
+/// programs fill their blocks.
 pub(super) fn unpack(
     bytes: &[u8],
     path: &Path,

@@ -1,5 +1,5 @@
-//! Rectangular arrays of numbers in JSON: matrices and response tables as nested lists. An array that
-//! exceeds a limit is rejected before it occupies memory.
+//! Rectangular arrays of numbers in JSON: matrices and response tables as nested lists. An array
+//! that exceeds a limit is rejected before it occupies memory.
 
 use std::fmt;
 
@@ -12,25 +12,25 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 
 use crate::json_lists::too_long;
 
-/// Text between the expected and the found length in the message about lists of different lengths,
-/// from which `json_errors.rs` recognises it.
+/// Text between the expected and the found length in the message about list lengths that differ;
+/// `json_errors.rs` recognises the message by it.
 pub(super) const DIFFERENT_LENGTHS: &str = " entries, as in the first of these lists, found ";
 
 /// A rectangular array with `DEPTH` dimensions; the last index runs fastest: `[[1, 2], [3, 4]]` has
 /// the shape 2 x 2.
 ///
 /// The values are stored in a flat vector, so that a file with empty lists cannot take more memory
-/// than its own length. The dimensions of a matrix are limited by the maximum number of states,
-/// those of a response table by the maximum numbers of channels and frequencies.
+/// than its own length. The state limit bounds a matrix's dimensions; the channel and frequency
+/// limits bound a response table's.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nested<const DEPTH: usize> {
-    /// Length of each dimension; 0 if a previous dimension is empty.
+    /// Length per dimension; 0 if a previous dimension is empty.
     pub(super) shape: [usize; DEPTH],
     pub(super) values: Vec<f64>,
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// Returns the maximum number of entries in a list at a depth, 0 being the outermost.
+    /// Returns the maximum list length at a depth, 0 being the outermost.
     const fn most(depth: usize) -> usize {
         match (DEPTH, depth) {
             (2, _) => MOST_STATES,

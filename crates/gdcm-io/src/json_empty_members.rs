@@ -1,4 +1,4 @@
-//! Omission of empty members from JSON objects that are written.
+//! Omits empty members from JSON objects before they are written.
 
 use serde_json::Value;
 

@@ -1,9 +1,8 @@
 //! Translates serde_json errors into terms familiar to engineers.
 //!
-//! serde_json gives most details only in the texts of its messages, such as "missing field `name`",
-//! so this file depends on their wording; `tests/suite/dataset_file/wrong_text.rs` and
-//! `wrong_content.rs` of this crate fail if it changes. A text with another wording is reported as
-//! it is.
+//! serde_json gives most details only in its message texts, such as "missing field `name`", so this
+//! file depends on their wording; this crate's tests in `tests/suite/dataset_file/wrong_text.rs`
+//! and `wrong_content.rs` fail if it changes. A text with another wording is reported as it is.
 
 use std::path::Path;
 
@@ -57,7 +56,7 @@ pub(super) fn json_error(
     }
 }
 
-/// Translates a syntax error, a number outside the range of JSON, or nesting that is too deep.
+/// Translates a syntax error, a number that is out of range, or nesting that is too deep.
 fn syntax_error(
     text: &[u8],
     path: &Path,
@@ -178,7 +177,7 @@ struct ListLengths {
     found: usize,
 }
 
-/// Parses the message of `json_arrays.rs` about lists of different lengths.
+/// Parses the message from `json_arrays.rs` about list lengths that differ.
 fn list_lengths(reason: &str) -> Option<ListLengths> {
     let rest = reason.strip_prefix("expected ")?;
     let (expected, found) = rest.split_once(DIFFERENT_LENGTHS)?;
@@ -188,7 +187,7 @@ fn list_lengths(reason: &str) -> Option<ListLengths> {
     })
 }
 
-/// Parses the message of [`BandError`], which serde returns as text.
+/// Parses a [`BandError`] message, which serde returns as text.
 fn band_error(reason: &str) -> Option<BandError> {
     let rest = reason.strip_prefix("the frequency band must be ")?;
     let (_, ends) = rest.split_once(", found min ")?;
@@ -199,8 +198,8 @@ fn band_error(reason: &str) -> Option<BandError> {
     })
 }
 
-/// Splits a message about a value of the wrong type, value or length: "invalid type: string "x",
-/// expected f64". Returns the value found, in JSON terms, and serde's words for the expected value.
+/// Splits a message about a wrong type, value or length: "invalid type: string "x", expected f64".
+/// Returns the value found, in JSON terms, and serde's words for the expected value.
 fn mismatch(reason: &str) -> Option<(String, &str)> {
     if let Some(rest) = reason.strip_prefix("invalid length ") {
         let (length, expected) = rest.rsplit_once(", expected ")?;

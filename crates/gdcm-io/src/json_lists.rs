@@ -100,7 +100,7 @@ where
     }
 }
 
-/// Numbers by name, at most `MOST`; of numbers with the same name, the last is kept.
+/// Numbers by name, at most `MOST`; for a repeated name, the last is kept.
 pub(super) struct Numbers<const MOST: usize>(pub(super) BTreeMap<String, f64>);
 
 impl<'de, const MOST: usize> Deserialize<'de> for Numbers<MOST> {

@@ -38,7 +38,7 @@ pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     location
 }
 
-/// Returns the kind of bundle that a condition stores under a key; `None` for other keys.
+/// Returns the bundle kind that a condition stores under a key; `None` for other keys.
 fn bundle_with_key(key: &str) -> Option<BundleKind> {
     match key {
         PHYSICS_MODELS => Some(BundleKind::Physics),
@@ -59,7 +59,7 @@ fn bundle_key(bundle: BundleKind) -> &'static str {
 /// 2, entry 5".
 fn entry_words(steps: &[Step]) -> String {
     let mut words: Vec<String> = Vec::new();
-    // Names of the indices that follow.
+    // Names for the indices that follow.
     let mut index_names: &[&str] = &[];
     for step in steps {
         match step {
@@ -100,7 +100,7 @@ fn is_response_table(key: &str) -> bool {
     )
 }
 
-/// Returns the line at which the condition or the model in a place begins, counted from 1.
+/// Returns the line at which the condition or the model named by `place` begins, counted from 1.
 pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     let condition = place.condition.as_ref()?;
     let mut value = entry(
@@ -115,7 +115,7 @@ pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// Returns an entry of the list under `key` in an object; `position` is counted from 1.
+/// Returns an entry from the list under `key`; `position` is counted from 1.
 fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
     let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
     let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;

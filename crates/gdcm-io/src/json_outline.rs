@@ -1,5 +1,5 @@
 //! Labels in a dataset or a study (format, version, condition ids, model names), read without the
-//! rest of the text and even if the text has an error. Messages name places by them.
+//! rest of the text and even if the text has an error. Messages use them to name places.
 
 use std::collections::BTreeMap;
 
@@ -20,23 +20,23 @@ const DEEPEST: usize = 100;
 /// after it are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline {
-    /// Value of "format" as stated in messages: a string in quotation marks, a number, or only the
+    /// Value for "format", as messages state it: a string in quotation marks, a number, or only the
     /// type.
     pub(super) format: Option<String>,
-    /// Value of "version", in the same form.
+    /// Value for "version", in the same form.
     pub(super) version: Option<String>,
     /// Condition ids, by condition index.
     ids: BTreeMap<usize, i64>,
     names: BTreeMap<ModelIndex, String>,
 }
 
-/// Position of a model in a file.
+/// A model's position in a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ModelIndex {
     condition: usize,
-    /// Key of the bundle in the condition.
+    /// Bundle key in the condition.
     bundle: String,
-    /// Index of the model in the bundle.
+    /// Model index in the bundle.
     model: usize,
 }
 
@@ -48,8 +48,8 @@ impl Outline {
         })
     }
 
-    /// Returns the value of "format" in a file. Reads no further than that, and stops when the
-    /// budget is exhausted.
+    /// Returns a file's "format". Reads no further than that, and stops when the budget is
+    /// exhausted.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
         let outline = Self::read_until(text, |outline| {
             outline.format.is_some() || budget.work(0, "").is_err()
@@ -57,8 +57,8 @@ impl Outline {
         outline.format
     }
 
-    /// Returns the values of "format" and "version" in a file. Reads no further than these, and
-    /// stops when the budget is exhausted.
+    /// Returns a file's "format" and "version". Reads no further than these, and stops when the
+    /// budget is exhausted.
     pub(super) fn format_and_version(
         text: &[u8],
         budget: &ReadingBudget<'_>,
@@ -70,7 +70,7 @@ impl Outline {
         (outline.format, outline.version)
     }
 
-    /// Returns the id of a condition, given its index.
+    /// Returns a condition's id, given its index.
     pub(super) fn id(&self, condition: usize) -> Option<i64> {
         self.ids.get(&condition).copied()
     }
@@ -170,8 +170,8 @@ fn end_value(steps: &mut [Step]) {
     }
 }
 
-/// Describes a value: a string in quotation marks, the digits of a number, only the type of a list
-/// or an object.
+/// Describes a value: a string in quotation marks, a number's digits, only the type for a list or
+/// an object.
 fn words(value: &JsonEvent<'_>) -> String {
     match value {
         JsonEvent::String(text) => quoted(text),

@@ -1,4 +1,4 @@
-//! Reading of this program's JSON files, with the places of errors and unknown keys.
+//! Reads this program's JSON files and locates errors and unknown keys in them.
 
 use std::path::Path;
 
@@ -19,11 +19,11 @@ pub(super) use crate::json_arrays::Nested;
 pub(super) use crate::json_errors::json_error;
 pub(super) use crate::json_lists::{Limited, Numbers, list, list_while};
 
-/// Maximum memory per byte of a JSON file \[bytes\]: a number takes at least two bytes in the file
+/// Maximum memory per byte in a JSON file \[bytes\]: a number takes at least two bytes in the file
 /// (a digit and a comma) and eight in memory, in a list with up to twice the necessary capacity.
 const MEMORY_PER_BYTE: u64 = 8;
 
-/// A file format: the expected values of "format" and "version".
+/// A file format: the expected values for "format" and "version".
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Format {
     pub(super) name: &'static str,

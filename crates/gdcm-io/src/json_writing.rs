@@ -1,4 +1,4 @@
-//! Writing of JSON files, with line breaks or on one line, and without invisible characters.
+//! Writes JSON files, with line breaks or on one line, and without invisible characters.
 
 use std::io::{self, Write};
 
@@ -19,14 +19,14 @@ pub(super) fn write_compact(value: &impl Serialize, file: &mut dyn Write) -> io:
 }
 
 /// Writes JSON with escaped control characters, except DEL, which has no effect on a terminal, and
-/// with escaped invisible characters, including those that JSON permits. A
-/// file shown on a terminal can thus not affect the terminal, and two different names never look
-/// alike because of invisible characters.
+/// with escaped invisible characters, including those that JSON permits. Showing a file on a
+/// terminal thus cannot affect the terminal, and invisible characters cannot make two different
+/// names look alike.
 struct EscapingWriter<W>(W);
 
 impl<W: Write> Write for EscapingWriter<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // serde_json writes pieces of strings that end at character boundaries; everything outside
+        // serde_json writes string pieces that end at character boundaries; everything outside
         // strings is ASCII.
         match std::str::from_utf8(bytes) {
             Ok(text) if !text.is_ascii() && text.contains(is_unprintable) => {

@@ -3,8 +3,8 @@
 //!
 //! `formats` reads single file formats into variables and columns; `import` recognises models and
 //! flight records in them. `files` holds the program's own formats (dataset, study, corrections),
-//! `export` the formats of other tools, `report` the printed report. Files are written whole or not
-//! at all.
+//! `export` other tools' formats, `report` the printed report. Files are written whole or not at
+//! all.
 //!
 //! ```
 //! let example = gdcm_io::embedded_example()?;

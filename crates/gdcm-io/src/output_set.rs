@@ -20,7 +20,7 @@ use self::temporary_files::{
 use super::file_error::FileError;
 use super::file_reading::kind_of;
 
-/// Treatment of existing files at the paths of new files.
+/// How files that exist at the output paths are treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// Existing files are kept, and nothing is written.
@@ -29,7 +29,7 @@ pub enum Existing {
     Replace,
 }
 
-/// A set of files that are renamed to their paths together, or not at all.
+/// Files that are renamed to their paths together, or not at all.
 ///
 /// ```text
 /// check    reject paths that must not be written to      (before any work)
@@ -42,8 +42,8 @@ pub enum Existing {
 /// No file system renames several files at once. A process killed between two renames leaves new
 /// files beside old ones; checksums, added last, reveal this.
 ///
-/// A set dropped before it is persisted changes nothing. Leftovers of a killed run are removed by
-/// the next write into their directory.
+/// A set dropped before it is persisted changes nothing. The next write into the directory removes
+/// leftovers from a killed run.
 #[derive(Debug)]
 pub struct OutputSet {
     existing: Existing,
@@ -56,7 +56,7 @@ pub struct OutputSet {
 struct Staged {
     /// Requested path, for messages.
     path: PathBuf,
-    /// Target of the link at `path`, or `path` itself if it is no link.
+    /// Where the link at `path` leads; `path` itself if it is not a link.
     target: PathBuf,
     temporary: NamedTempFile,
 }
@@ -136,8 +136,8 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`. This file is renamed
-    /// last; it reveals whether the other files belong together.
+    /// Adds the SHA-256 of every file so far, in `sha256sum` format. This file is renamed last; it
+    /// reveals whether the other files belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let mut lines = String::new();
         for staged in &self.staged {
@@ -177,7 +177,7 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Locks the directories of a set. A single file needs no lock: the last writer wins.
+    /// Locks a set's directories. A single file needs no lock: the last writer wins.
     fn directory_locks(&self) -> Vec<SetLock> {
         if self.staged.len() <= 1 {
             return Vec::new();
@@ -197,8 +197,8 @@ impl OutputSet {
     }
 }
 
-/// Whether an output path leads to the file of an input, through any links. An input that is a pipe
-/// or a device does not count, and is not opened.
+/// Whether an output path leads to an input file, through any links. An input that is a pipe or a
+/// device does not count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;
@@ -206,7 +206,7 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
     kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
-/// Returns the line about a file in the format of `sha256sum`.
+/// Returns a file's line in `sha256sum` format.
 fn checksum(name: &str, bytes: &[u8]) -> String {
     format!("{:x}  {name}\n", Sha256::digest(bytes))
 }

@@ -13,9 +13,10 @@ pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 /// comparisons.
 pub(crate) const MOST_WORK: u64 = 4_000_000_000;
 
-/// Counts the memory and the work of a reader. Anything beyond the limits is rejected before it is
+/// Counts a reader's memory and work. Anything beyond the limits is rejected before it is
 /// allocated, and a cancelled reader stops. Every reader queries the budget in its inner loops,
-/// even for elements without content: a file of a few bytes may claim to hold 10^18 such elements.
+/// even for elements without content: a file with a few bytes may claim to hold 10^18 such
+/// elements.
 pub struct ReadingBudget<'p> {
     most_memory: u64,
     most_work: u64,
@@ -79,7 +80,7 @@ impl<'p> ReadingBudget<'p> {
     }
 
     /// Counts `count` elements that are about to be read for `variable`, each with `size` bytes and
-    /// one work step. `variable` is named in the error; it is empty if none was begun.
+    /// one work step. `variable` is named in the error; it is empty if no variable was begun.
     ///
     /// # Errors
     /// A limit would be exceeded, or the reader was cancelled.
@@ -101,7 +102,7 @@ impl<'p> ReadingBudget<'p> {
     /// Checks for cancellation in a loop over elements that are already counted. To be called for
     /// each `element`; only one call in some thousands queries the flag.
     pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
-        /// Number of elements between two queries; it takes less than 0.01 s to read them.
+        /// Number of elements between two queries, read in less than 0.01 s.
         const BETWEEN: usize = 1 << 14;
         if element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);

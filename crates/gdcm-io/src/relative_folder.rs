@@ -3,9 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// Returns the relative path from the directory of `file` to `folder`, with `/` as the separator.
-/// An empty `folder` is the current directory; without a relative path, `folder` itself is
-/// returned.
+/// Returns the relative path from `file`'s directory to `folder`, with `/` as the separator. An
+/// empty `folder` is the current directory; without a relative path, `folder` itself is returned.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
@@ -18,7 +17,7 @@ pub fn relative_folder(folder: &Path, file: &Path) -> String {
         .replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Returns the relative path from the directory of `file` to `folder`; `None` if there is none.
+/// Returns the relative path from `file`'s directory to `folder`; `None` if there is none.
 fn relative_path(folder: &Path, file: &Path) -> Option<PathBuf> {
     let folder = std::path::absolute(folder).ok()?;
     let file = std::path::absolute(file).ok()?;

@@ -1,14 +1,14 @@
-//! Name, version and commit of the program, as every file that it writes states them.
+//! The program's name, version and commit, as stated in every file that it writes.
 //!
-//! The version has one source, the workspace's `Cargo.toml`. The commit is known to the program
-//! alone, which sets it at its start: the libraries are not compiled again for every commit, and
-//! what tests write does not depend on it.
+//! The version has one source, the workspace's `Cargo.toml`. Only the program knows the commit, and
+//! sets it when it starts: the libraries need not be recompiled for every commit, and test output
+//! does not depend on it.
 
 use std::sync::OnceLock;
 
-/// Version of the program, from the workspace's `Cargo.toml`.
+/// Program version, from the workspace's `Cargo.toml`.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// Statement of a program whose build had no commit to name.
+/// Commit statement if the build did not know its commit.
 pub const UNKNOWN_COMMIT: &str = "commit unknown";
 
 static COMMIT: OnceLock<&'static str> = OnceLock::new();

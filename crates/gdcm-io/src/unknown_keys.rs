@@ -14,9 +14,9 @@ const MOST_KEYS: usize = 50;
 /// Keys unknown to the program; keys whose paths differ only in indices are counted together.
 #[derive(Debug, Default)]
 pub(super) struct UnknownKeys {
-    /// First occurrence and count, for each path of keys without the indices.
+    /// First occurrence and count for each key path without indices.
     found: BTreeMap<Vec<String>, UnknownKey>,
-    /// Number of further keys, which are only counted because there are too many.
+    /// Number of further keys beyond [`MOST_KEYS`], which are only counted.
     beyond: usize,
 }
 
@@ -29,7 +29,7 @@ struct UnknownKey {
 }
 
 impl UnknownKeys {
-    /// Adds the path of a key or an entry that serde has skipped.
+    /// Adds the path to a key or an entry that serde has skipped.
     pub(super) fn add(&mut self, path: &serde_ignored::Path<'_>) {
         let mut steps = Vec::new();
         collect_steps(path, &mut steps);
@@ -82,7 +82,7 @@ impl UnknownKey {
     }
 }
 
-/// Appends the steps of a path, from the top level on.
+/// Appends the steps of a path, from the top level down.
 fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     use serde_ignored::Path as Ignored;
     let (parent, step) = match path {

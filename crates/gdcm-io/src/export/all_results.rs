@@ -1,5 +1,5 @@
-//! Exports of all analysis results: `corrections.json`, `corrections.csv`, `assessment.csv`,
-//! `physics.csv`, and a MATLAB struct with the content of `corrections.json`.
+//! Exports all analysis results: `corrections.json`, `corrections.csv`, `assessment.csv`,
+//! `physics.csv`, and a MATLAB struct with the same content as `corrections.json`.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::Variable;
 
-/// Options of the files with results of conditions.
+/// Options for files with condition results.
 const OPTIONS: &[&str] = &["--condition"];
 
 /// Export as `corrections.json`.

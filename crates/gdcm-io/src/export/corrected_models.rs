@@ -71,7 +71,7 @@ fn check_models_format(path: &Path, expected: ModelsFormat) -> Result<(), Export
     }
 }
 
-/// Returns the requested corrected models as the text of a file in the format `gdcm-models`.
+/// Returns the requested corrected models as text in the format `gdcm-models`.
 ///
 /// # Errors
 /// The analysis lacks a requested model or correction, or a model cannot be written as matrices.
@@ -121,7 +121,6 @@ fn export_models<'e>(export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
     Ok(exported.with(remarks).with_notes(notes))
 }
 
-/// File format for corrected models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ModelsFormat {
     Mat,
@@ -145,9 +144,9 @@ impl ModelsFormat {
     }
 }
 
-/// Returns the models in the form of `gdcm-models`, each with a block `contains` that states the
-/// parts of its correction. Names are of the form "condition 10, nominal"; the notes describe the
-/// correction and its accuracy.
+/// Returns the models in the form of `gdcm-models`, each with a block `contains` that states its
+/// correction parts. Names have the form "condition 10, nominal"; the notes describe the correction
+/// and its accuracy.
 fn models_with_contents(models: &[ExportedModel], dataset: &Dataset) -> Vec<ModelWithContents> {
     let mut containing = Vec::with_capacity(models.len());
     for model in models {
@@ -159,7 +158,7 @@ fn models_with_contents(models: &[ExportedModel], dataset: &Dataset) -> Vec<Mode
     containing
 }
 
-/// Returns a corrected model in the form of the models that are found in files.
+/// Returns a corrected model in the form used for models found in files.
 fn found_model(model: &ExportedModel, dataset: &Dataset) -> FoundModel {
     let name = format!("condition {}, {}", model.condition, model.name);
     FoundModel {

@@ -15,15 +15,14 @@ use super::json_to_matlab::Layout;
 use super::matlab_values::cell_of_texts;
 use crate::formats::variables::Value;
 
-/// Channel values become arrays, in the order of the dataset's `inputs` and `outputs`.
+/// Channel values become arrays, ordered as in the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
     by_name: &["discontinuity"],
     columns: &["table"],
 };
 
-/// Members of `corrections.json` that the MATLAB struct repeats under the names of earlier
-/// versions.
+/// Members of `corrections.json` that the MATLAB struct repeats under names from earlier versions.
 const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("gain_objective", "gain_solution", "objective"),
     EarlierName::new("gain_lower_bound", "gain_solution", "lower_bound"),
@@ -33,7 +32,7 @@ const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("delay_matched", "delay_solution", "matched"),
 ];
 
-/// Name in earlier versions of a member of a solution.
+/// Name of a solution member in earlier versions.
 struct EarlierName {
     name: &'static str,
     solution: &'static str,
@@ -50,9 +49,9 @@ impl EarlierName {
     }
 }
 
-/// Returns the members of `corrections.json` as a struct. Lists of responses become logical
-/// matrices with a row per output and a column per input. `net_gains` becomes several matrices; its
-/// original form is kept as `net_gain_table`. Names from earlier versions are kept.
+/// Returns the members of `corrections.json` as a struct. Response lists become logical matrices
+/// with a row per output and a column per input. `net_gains` becomes several matrices; its original
+/// form is kept as `net_gain_table`. Names from earlier versions are kept.
 pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Value {
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
@@ -67,7 +66,7 @@ pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Va
             restructure_condition(condition, dataset);
         }
     }
-    // Names and units of the channels are added as separate columns below.
+    // Channel names and units are added as separate columns below.
     if let Some(members) = corrections.as_object_mut() {
         members.shift_remove("inputs");
         members.shift_remove("outputs");
@@ -95,7 +94,7 @@ pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Va
     value
 }
 
-/// Changes the members of a condition as described at [`corrections_struct`].
+/// Changes a condition's members as described at [`corrections_struct`].
 fn restructure_condition(condition: &mut Json, dataset: &Dataset) {
     condition["held"] = marked_responses(&condition["held"], dataset);
     condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
@@ -121,8 +120,7 @@ fn restructure_condition(condition: &mut Json, dataset: &Dataset) {
     }
 }
 
-/// Returns the values of all responses as a list of rows, one per output; each row has a value for
-/// each input.
+/// Returns all response values as rows, one per output; each row has a value for each input.
 fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Json) -> Json {
     let mut rows = Vec::new();
     for output in dataset.outputs() {
@@ -147,8 +145,8 @@ fn marked_responses(pairs: &Json, dataset: &Dataset) -> Json {
     })
 }
 
-/// Returns the member `key` of the net gain of a response or, if `place` is given, the entry of
-/// that member at this index; null if missing.
+/// Returns the member `key` of a response's net gain or, if `place` is given, that member's entry
+/// at this index; null if missing.
 fn net_gain_value(
     net_gains: &[Json],
     output: &str,
@@ -168,7 +166,7 @@ fn net_gain_value(
     }
 }
 
-/// Adds the delays of a schedule row as lists in channel order.
+/// Adds a schedule row's delays as lists in channel order.
 fn add_delay_lists(row: &mut Json) {
     for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
         if let Some(delays) = row

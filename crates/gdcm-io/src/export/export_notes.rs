@@ -1,4 +1,4 @@
-//! What exported files omit or approximate, as far as several formats have it in common.
+//! Notes on omissions and approximations in exported files, shared by several formats.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ use gdcm_study::{AssessedCorrection, PhaseCorrection};
 use super::Export;
 use super::exported_model::ExportedModel;
 
-/// Phase error \[deg\] of a corrected model below which it is not worth a note.
+/// Phase error \[deg\] below which a corrected model needs no note.
 const NOTABLE_ERROR_DEG: f64 = 0.005;
 
 impl Export<'_> {
-    /// Returns the notes on a file with results of conditions.
+    /// Returns the notes on a file with condition results.
     pub(super) fn result_notes(&self) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = self.choice_notes();
@@ -204,7 +204,7 @@ fn price_note(price: Option<LeadPrice>) -> Option<ExportNote> {
     Some(ExportNote::NotValidAbove { price })
 }
 
-/// Returns the maximum gain of each channel over the models; `None` without lead filters.
+/// Returns each channel's maximum gain over the models; `None` without lead filters.
 fn greatest_price(models: &[ExportedModel]) -> Option<LeadPrice> {
     let mut greatest: Option<LeadPrice> = None;
     for model in models {

@@ -1,5 +1,5 @@
-//! A set of exported files with a common prefix in a folder: a dry run computes every file with its
-//! notes, and the same bytes are then written together, or not at all.
+//! Exported files with a common prefix in a folder: a dry run computes every file with its notes,
+//! and the same bytes are then written together, or not at all.
 //!
 //! ```text
 //! names   prefix + stem + number + extension; the number keeps existing files
@@ -21,56 +21,54 @@ use crate::export_fault::ExportFault;
 use crate::file_error::FileError;
 use crate::output_set::{OutputSet, make_directory};
 
-/// File name of the report, without the prefix.
+/// Report file name, without the prefix.
 const REPORT_STEM: &str = "report";
-/// Name of the checksums in lists of formats.
+/// Name for the checksums in format lists.
 pub const CHECKSUMS: &str = "sha256";
-/// Name of the file with the checksums, without the prefix.
+/// Checksum file name, without the prefix.
 const CHECKSUM_STEM: &str = "checksums";
 
-/// Treatment of existing files with the names of the set.
+/// How existing files with the set's names are treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExistingNames {
     /// The set gets names as if no file existed.
     #[default]
     Ignore,
-    /// If a file exists, all names of the set get the same number: "_2", "_3".
+    /// If a file exists, all names in the set get the same number: "_2", "_3".
     Number,
 }
 
-/// Formats, folder and names of a set of files.
+/// Formats, folder and names for a set of files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportSet {
     pub formats: Vec<ExportFormat>,
-    /// Whether a file with the SHA-256 of the others is added.
+    /// Whether a checksum file (SHA-256) is added.
     pub has_checksums: bool,
-    /// Whether the report gets a name of the set; it is written afterwards, by others.
+    /// Whether the report gets a name from the set; the caller writes it afterwards.
     pub has_report: bool,
     pub folder: PathBuf,
     /// Beginning of every file name; may be empty.
     pub prefix: String,
     pub existing: ExistingNames,
-    /// Contents and options of every file; its format is not used.
+    /// Contents and options for every file; the request's own format is not used.
     pub request: ExportRequest,
 }
 
 /// A file computed in a dry run.
 #[derive(Clone, Debug)]
 pub struct PlannedFile {
-    /// File name.
     pub name: String,
-    /// Name of the format.
     pub format: &'static str,
     /// Contents, or why there are none.
     pub contents: Result<PlannedContents, ExportFault>,
 }
 
-/// Contents of a file with facts about them.
+/// File contents with facts about them.
 #[derive(Clone, Debug)]
 pub struct PlannedContents {
     pub bytes: Vec<u8>,
     pub summary: FileSummary,
-    /// First lines of a text, or a description of a binary file.
+    /// First lines of a text file, or a binary file's description.
     pub head: Vec<String>,
     /// Remarks in words, as the file states them.
     pub remarks: Vec<String>,
@@ -83,16 +81,17 @@ pub struct PlannedNote {
     pub files: Vec<usize>,
 }
 
-/// Outcome of a dry run.
+/// Result of a dry run.
 #[derive(Clone, Debug)]
 pub struct ExportPlan {
     pub files: Vec<PlannedFile>,
     pub notes: Vec<PlannedNote>,
     /// Names without a number that exist in the folder.
     pub existing: Vec<String>,
-    /// Number that keeps these files, as in the names: "_2"; empty without a number.
+    /// Number that keeps the new names apart from these files, as in the names: "_2"; empty without
+    /// a number.
     pub number: String,
-    /// File name of the report, which is not part of the dry run.
+    /// Report file name; the dry run does not compute the report.
     pub report: Option<String>,
 }
 
@@ -110,7 +109,7 @@ impl ExportSet {
         (formats, names.contains(&CHECKSUMS))
     }
 
-    /// Returns the file names of the set with this number in each.
+    /// Returns the set's file names with this number in each.
     fn names(&self, number: &str) -> Vec<String> {
         let mut names = Vec::new();
         for format in &self.formats {
@@ -164,7 +163,7 @@ impl ExportSet {
         Ok(())
     }
 
-    /// Returns the paths of the set, as if no file existed.
+    /// Returns the set's paths, as if no file existed.
     pub fn paths(&self) -> Vec<PathBuf> {
         let names = self.names("").into_iter();
         names.map(|name| self.folder.join(name)).collect()
@@ -210,7 +209,7 @@ impl ExportSet {
         {
             plan.add_checksums(name);
         }
-        // What can be changed comes first.
+        // Notes that the user can act on come first.
         plan.notes
             .sort_by_key(|planned| planned.note.remedy().is_none());
         Ok(plan)
@@ -289,7 +288,7 @@ impl ExportPlan {
         });
     }
 
-    /// Adds the file with the SHA-256 of the others, in the format of `sha256sum`.
+    /// Adds the checksum file, in `sha256sum` format.
     fn add_checksums(&mut self, name: String) {
         let mut text = String::new();
         let mut files = 0;
@@ -316,7 +315,7 @@ impl ExportPlan {
         });
     }
 
-    /// Returns the total size of the files \[bytes\].
+    /// Returns the total file size \[bytes\].
     pub fn size(&self) -> usize {
         let mut size = 0;
         for file in &self.files {
@@ -339,7 +338,7 @@ impl ExportPlan {
     ///
     /// # Errors
     /// [`FileError::Export`] if a file has no contents, [`FileError::Exists`] if a file exists and
-    /// `outputs` keeps it, and errors of the disk.
+    /// `outputs` keeps it, and disk errors.
     pub fn write(&self, folder: &Path, mut outputs: OutputSet) -> Result<Vec<PathBuf>, FileError> {
         if let Some((file, fault)) = self.first_fault() {
             return Err(FileError::export(&folder.join(&file.name), fault.clone()));
@@ -366,8 +365,8 @@ fn file_name(prefix: &str, stem: &str, number: &str, extension: &str) -> String 
     format!("{prefix}{stem}{number}.{extension}")
 }
 
-/// Returns a prefix for file names from the name of a study or dataset: letters, digits and
-/// underscores only, beginning with a letter, so that it can begin the name of a function.
+/// Derives a file name prefix from a study or dataset name: letters, digits and underscores only,
+/// beginning with a letter, so that it can begin a function name.
 pub fn proposed_prefix(name: &str) -> String {
     let mut prefix = String::new();
     for letter in name.chars() {

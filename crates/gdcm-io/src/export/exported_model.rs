@@ -12,7 +12,6 @@ pub(super) struct ExportedModel {
     pub(super) condition: ConditionId,
     /// True airspeed \[kt\].
     pub(super) airspeed_kt: f64,
-    /// Name of the physics model.
     pub(super) name: String,
     /// "scheduled" or "own".
     pub(super) correction: &'static str,
@@ -23,23 +22,22 @@ pub(super) struct ExportedModel {
     pub(super) delay_states: usize,
     /// Number of states that represent lead filters.
     pub(super) lead_states: usize,
-    /// Order of the Padé approximants of delays; 0 in discrete time, where delays are exact.
+    /// Order of the Padé approximants for delays; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
-    /// Maximum phase error \[deg\] at the upper end of the band due to the Padé approximants.
+    /// Maximum phase error \[deg\] at the band's upper end due to the Padé approximants.
     pub(super) approximation_error_deg: f64,
-    /// Phase lag \[deg\] at the upper end of the band due to delays in the condition's own
-    /// correction that the schedule omits.
+    /// Phase lag \[deg\] at the band's upper end due to delays in the condition's own correction
+    /// that the schedule omits.
     pub(super) left_out_deg: f64,
-    /// Parts of the correction that the model contains.
+    /// Correction parts that the model contains.
     pub(super) contents: ExportContents,
-    /// Upper end of the band, the highest compared frequency \[rad/s\].
+    /// The band's upper end, the highest compared frequency \[rad/s\].
     pub(super) band_top_rad_s: f64,
-    /// Cost of the lead filters; `None` without lead filters.
+    /// Lead filter cost; `None` without lead filters.
     pub(super) price: Option<DescribedPrice>,
     pub(super) couplings: ModelCouplings,
 }
 
-/// Couplings in an exported model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ModelCouplings {
     None,
@@ -52,8 +50,8 @@ pub(super) enum ModelCouplings {
 }
 
 /// Accuracy of the parts in an exported model. A part is exact unless it is approximated: in
-/// discrete time (`pade_order` 0), lead filters by Tustin's rule; in continuous time, delays by Padé
-/// approximants.
+/// discrete time (`pade_order` 0), lead filters by Tustin's rule; in continuous time, delays by
+/// Padé approximants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ModelAccuracy {
     /// Gains and delays are exact, lead filters follow Tustin's rule.
@@ -72,15 +70,15 @@ pub(super) enum ModelAccuracy {
     PadeOwnDelays,
 }
 
-/// Cost of lead filters, with its description.
+/// Lead filter cost, with its description.
 pub(super) struct DescribedPrice {
     pub(super) price: LeadPrice,
     pub(super) words: String,
 }
 
 impl ExportedModel {
-    /// Returns the maximum phase error \[deg\] at the upper end of the band due to the export, that
-    /// is, to Padé approximants and omitted delays.
+    /// Returns the maximum phase error \[deg\] at the band's upper end due to the export, that is,
+    /// to Padé approximants and omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
     }
@@ -116,7 +114,7 @@ impl ExportedModel {
     }
 
     /// Returns the gain \[dB\] that the leads add to the most affected response at ten times the
-    /// upper end of the band; 0 without leads.
+    /// band's upper end; 0 without leads.
     pub(super) fn gain_above_band_db(&self) -> f64 {
         match &self.price {
             Some(DescribedPrice { price, .. }) => {
@@ -127,7 +125,7 @@ impl ExportedModel {
     }
 }
 
-/// Returns the greatest of some gains \[dB\], and at least 0.
+/// Returns the greatest gain \[dB\], at least 0.
 fn greatest(gains_db: &[f64]) -> f64 {
     gains_db.iter().copied().fold(0.0, f64::max)
 }

@@ -1,9 +1,9 @@
-//! The schedule in the form exported to programs and tables: gain, delay and lead filter of each
-//! channel as curves over airspeed.
+//! The schedule in the form exported to programs and tables: each channel's gain, delay and lead
+//! filter as curves over airspeed.
 //!
-//! A lead filter is `(1 + a s) / (1 + b s)`, or of second order with the same time constants. The
-//! exported curve is the numerator time constant `a` \[s\] (`zero_s`); `b` (`lag_s`) is a constant
-//! of the design.
+//! A lead filter is `(1 + a s) / (1 + b s)`, or second-order with the same time constants. The
+//! exported curve is the numerator time constant `a` \[s\] (`zero_s`); `b` (`lag_s`) is a design
+//! constant.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
@@ -35,11 +35,11 @@ pub(super) struct ExportedSchedule<'e> {
 pub(super) struct Curve {
     /// Dependence on airspeed: a polynomial in the scaled airspeed, or a table.
     pub(super) figures: Regression,
-    /// Coefficient of the scaled second variable; `None` without one.
+    /// Coefficient for the scaled second variable; `None` without one.
     pub(super) slope: Option<f64>,
-    /// Whether `figures` and `slope` give the natural logarithm of the value.
+    /// Whether `figures` and `slope` give the value's natural logarithm.
     pub(super) of_logarithm: bool,
-    /// Upper limit of the value; the lower limit is then zero. `None` if the value is not limited.
+    /// Upper limit for the value; the lower limit is then zero. `None` if the value is not limited.
     pub(super) upper: Option<Regression>,
 }
 

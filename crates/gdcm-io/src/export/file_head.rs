@@ -1,10 +1,10 @@
-//! The beginning of an exported file, as the list of files shows it.
+//! The beginning of an exported file, as shown in the file list.
 
 use crate::formats::variables::{Value, Variable};
 
 /// Maximum number of lines in a head.
 const MOST_LINES: usize = 60;
-/// Maximum number of characters in a line of a head.
+/// Maximum number of characters per head line.
 const LONGEST_LINE: usize = 240;
 
 /// Returns the first lines of a text file.
@@ -21,8 +21,7 @@ pub(super) fn text_head(bytes: &[u8]) -> Vec<String> {
     lines
 }
 
-/// Describes the variables of a binary file: a line for each, and a line for each field of a
-/// struct.
+/// Describes a binary file's variables: a line for each, and a line for each struct field.
 pub(super) fn variables_head(variables: &[Variable]) -> Vec<String> {
     let mut lines = Vec::new();
     for variable in variables {

@@ -1,4 +1,4 @@
-//! Conversion of JSON to MATLAB values with the same structure.
+//! Converts JSON to MATLAB values with the same structure.
 //!
 //! A list of objects with equal members becomes a struct array, which MATLAB shows element by
 //! element, or is *gathered*: a struct with an array for each member, which can be plotted
@@ -14,7 +14,7 @@ use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Valu
 
 static NULL: Json = Json::Null;
 
-/// Names of members that need a special conversion.
+/// Member names that need special conversion.
 pub(super) struct Layout {
     /// Objects with a member for each channel; they become arrays in channel order.
     pub(super) by_channel: &'static [&'static str],
@@ -98,10 +98,10 @@ impl Layout {
         })
     }
 
-    /// Gathers values in an array of this shape; in `leaves`, which holds the value at each index,
-    /// the last index runs fastest. Objects become a struct of arrays, numbers an array, booleans a
-    /// logical array, lists of numbers an array with an additional index, and all other values
-    /// cells.
+    /// Gathers values in an array with this shape; in `leaves`, which holds the value at each
+    /// index, the last index runs fastest. Objects become a struct of arrays, numbers an array,
+    /// booleans a logical array, lists of numbers an array with an additional index, and all other
+    /// values cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);
@@ -178,7 +178,7 @@ fn number(json: &Json) -> f64 {
     json.as_f64().unwrap_or(f64::NAN)
 }
 
-/// Returns the member of an object at an index; null if there is none.
+/// Returns an object's member at an index; null if there is none.
 fn member_at(value: &Json, at: usize) -> &Json {
     match value {
         Json::Object(members) => members.values().nth(at).unwrap_or(&NULL),
@@ -195,8 +195,8 @@ fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
     Some(numbers)
 }
 
-/// Returns the common length of the leaves if all are lists of equally many numbers; null counts as
-/// a missing list.
+/// Returns the leaves' common length if all are equally long lists of numbers; null counts as a
+/// missing list.
 fn row_length(leaves: &[&Json]) -> Option<usize> {
     let length = leaves
         .iter()
@@ -227,8 +227,7 @@ fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     names
 }
 
-/// Returns the dimensions of an array in MATLAB, of which there are at least two; a list becomes a
-/// column.
+/// Returns the dimensions of an array in MATLAB, at least two; a list becomes a column.
 fn sides(shape: &[usize]) -> Vec<usize> {
     if let [length] = shape {
         vec![*length, 1]

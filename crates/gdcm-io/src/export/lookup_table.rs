@@ -1,4 +1,4 @@
-//! Lookup tables of scheduled gains and delays at given airspeeds, for linear interpolation: as
+//! Lookup tables with scheduled gains and delays at given airspeeds, for linear interpolation: as
 //! text, and for MATLAB.
 
 mod csv;
@@ -17,7 +17,7 @@ use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 
-/// Export of the lookup table as text.
+/// Lookup table export as text.
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "table-csv",
     extension: "csv",
@@ -36,7 +36,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     },
 };
 
-/// Export of the lookup table for MATLAB.
+/// Lookup table export for MATLAB.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "table-mat",
     extension: "mat",
@@ -59,14 +59,14 @@ pub(super) const MAT: ExportFormat = ExportFormat {
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
-/// Deviation of a table, in percent or ms, below which it is not worth a note.
+/// Table deviation, in percent or ms, below which no note is needed.
 const NOTABLE_DEVIATION: f64 = 0.05;
 
-/// Quantity of a column: a gain, or a time \[s\].
+/// Quantity in a column: a gain, or a time \[s\].
 #[derive(Debug, PartialEq)]
 struct Quantity {
     name: &'static str,
-    /// Name of the quantity in the names of MATLAB fields.
+    /// The quantity's name within MATLAB field names.
     field: &'static str,
     is_time: bool,
 }
@@ -108,7 +108,7 @@ impl Quantity {
     }
 }
 
-/// Airspeed and value of the second variable of a row.
+/// A row's airspeed and second variable.
 #[derive(Clone, Copy)]
 struct Breakpoint {
     airspeed_kt: f64,
@@ -116,14 +116,14 @@ struct Breakpoint {
     second: Option<f64>,
 }
 
-/// Values of a quantity of a channel at the breakpoints.
+/// Values of one channel quantity at the breakpoints.
 struct Column {
     quantity: &'static Quantity,
     channel: Channel,
     name: String,
-    /// One value for each row of the table.
+    /// One value per table row.
     values: Vec<f64>,
-    /// Maximum deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
+    /// Maximum deviation from the schedule: \[%\] for a gain, \[ms\] for a time.
     deviation: TableDeviation,
 }
 
@@ -134,7 +134,7 @@ struct BreakpointTable<'e> {
     airspeeds_kt: Vec<f64>,
     /// All airspeeds, repeated for each value of the second variable.
     rows: Vec<Breakpoint>,
-    /// Gain, delay and lead filter of each input, then of each output; then the mixing.
+    /// Gain, delay and lead filter for each input, then for each output; then the mixing.
     columns: Vec<Column>,
 }
 
@@ -146,8 +146,8 @@ impl<'e> BreakpointTable<'e> {
         )
     }
 
-    /// Builds the table at the requested airspeeds \[kt\]; by default at the distinct airspeeds of
-    /// the scheduled conditions.
+    /// Builds the table at the requested airspeeds \[kt\]; by default at the scheduled conditions'
+    /// distinct airspeeds.
     ///
     /// # Errors
     /// [`ExportFault::Breakpoints`] if the airspeeds are not finite and increasing, or if there are
@@ -191,7 +191,7 @@ impl<'e> BreakpointTable<'e> {
         Ok(table)
     }
 
-    /// Adds the gain, delay and lead filter of a channel.
+    /// Adds a channel's gain, delay and lead filter.
     fn add_channel(&mut self, channel: Channel, second_values: &[Option<f64>]) {
         let schedule = self.scheduled.schedule;
         let gain = self.column(channel, &GAIN, second_values, |row| {
@@ -212,7 +212,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds the entries of the normalised mixing matrix as columns, in row-major order.
+    /// Adds the normalised mixing matrix's entries as columns, in row-major order.
     fn add_mixing(&mut self, couplings: &CouplingMatrices) {
         let (inputs, _) = self.scheduled.dataset.names_of_channels();
         for (to, receiver) in inputs.iter().enumerate() {
@@ -226,7 +226,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns the column of a channel; `value_at` gives the value at a breakpoint. The maximum
+    /// Returns a channel's column; `value_at` gives the value at a breakpoint. The maximum
     /// deviation is searched over airspeed at each of `second_values`.
     fn column(
         &self,
@@ -274,7 +274,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns the notes on the schedule, followed by the greatest error of a gain and of a time.
+    /// Returns the notes on the schedule, followed by the greatest gain error and time error.
     fn export_notes(&self, export: &Export<'_>) -> Vec<ExportNote> {
         let mut notes = export.schedule_notes();
         if let Some(column) = self.worst_column(|quantity| quantity == &GAIN) {
@@ -296,8 +296,8 @@ impl<'e> BreakpointTable<'e> {
         notes
     }
 
-    /// Returns the column of such a quantity with the greatest deviation, if that deviation is
-    /// notable.
+    /// Returns the column with the greatest deviation among the quantities that `is_meant` selects,
+    /// if that deviation is notable.
     fn worst_column(&self, is_meant: impl Fn(&Quantity) -> bool) -> Option<&Column> {
         let mut worst: Option<&Column> = None;
         for column in &self.columns {
@@ -310,7 +310,7 @@ impl<'e> BreakpointTable<'e> {
     }
 
     /// Returns an airspeed \[kt\] near `airspeed_kt` that the table lacks: a multiple of 5 kt, else
-    /// a whole number, else the tenth of a knot; `None` if the table has all of them.
+    /// a whole number, else a tenth of a knot; `None` if the table has all of them.
     fn next_airspeed_kt(&self, airspeed_kt: f64) -> Option<f64> {
         for per_knot in [0.2, 1.0, 10.0] {
             let rounded_kt = (airspeed_kt * per_knot).round() / per_knot;
@@ -321,7 +321,7 @@ impl<'e> BreakpointTable<'e> {
         None
     }
 
-    /// Returns the remarks on the schedule, followed by the deviations of the table from it.
+    /// Returns the remarks on the schedule, followed by the table's deviations from it.
     fn remarks(&self) -> Vec<String> {
         let mut remarks = self.scheduled.notes();
         for column in &self.columns {
@@ -337,7 +337,7 @@ impl<'e> BreakpointTable<'e> {
     }
 }
 
-/// Returns the distinct airspeeds \[kt\] of the scheduled conditions, increasing.
+/// Returns the scheduled conditions' distinct airspeeds \[kt\], increasing.
 fn distinct_airspeeds_kt(scheduled: &ExportedSchedule<'_>) -> Vec<f64> {
     let mut airspeeds_kt = scheduled.schedule.airspeeds.values_kt.clone();
     airspeeds_kt.sort_by(f64::total_cmp);

@@ -2,10 +2,9 @@
 
 use crate::export_fault::ExportFault;
 
-/// Maximum length of a name in MATLAB (`namelengthmax`).
+/// Maximum name length in MATLAB (`namelengthmax`).
 const LONGEST_NAME: usize = 63;
-/// Reserved words of MATLAB (`iskeyword`) and GNU Octave, and the names of functions in the
-/// exported file.
+/// Reserved words in MATLAB (`iskeyword`) and GNU Octave, and function names in the exported file.
 const KEYWORDS: &str = "break case catch classdef continue do else elseif end end_try_catch end_unwind_protect endfor \
     endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
     until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
@@ -27,7 +26,7 @@ pub(super) fn valid_name(name: &str) -> String {
     valid
 }
 
-/// Rejects a file name that is not a valid name of a MATLAB function.
+/// Rejects a file name that is not a valid MATLAB function name.
 pub(super) fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME

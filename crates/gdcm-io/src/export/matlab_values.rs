@@ -1,23 +1,22 @@
-//! Values of MATLAB built from numbers and strings: structs, cell columns, vectors and matrices.
+//! MATLAB values built from numbers and strings: structs, cell columns, vectors and matrices.
 
 use gdcm_model::dataset::Dataset;
 
 use crate::files::export_contents::ExportContents;
 use crate::formats::variables::{Array, CellArray, StructArray, Value};
 
-/// Fields of a struct, in order.
+/// Struct fields, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {
     fields: Vec<(String, Value)>,
 }
 
 impl Fields {
-    /// Adds a field. `name` must consist of letters, digits and _.
+    /// Adds a field. `name` may contain only letters, digits and _.
     pub(super) fn add(&mut self, name: &str, value: Value) {
         self.fields.push((name.to_owned(), value));
     }
 
-    /// Returns a struct with these fields.
     pub(super) fn record(self) -> Value {
         records(vec![self])
     }
@@ -47,13 +46,11 @@ pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     })
 }
 
-/// Returns a row vector.
 pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(1, values.len(), values)
 }
 
-/// Returns a column vector.
 pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(values.len(), 1, values)
@@ -64,7 +61,7 @@ pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
 }
 
-/// Returns a struct with the source of each correction part in a file, and with the omitted parts.
+/// Returns a struct with each correction part's source in a file, and with the omitted parts.
 pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
     let mut fields = Fields::default();
     for (name, source) in contents.parts() {

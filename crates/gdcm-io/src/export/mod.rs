@@ -43,16 +43,15 @@ use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
 use crate::output_set::OutputSet;
 
-/// Purpose of a format, in display order.
+/// What a format is for, in display order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FormatGroup {
-    /// Results of each condition.
+    /// Results per condition.
     PerCondition,
     /// The schedule as a function in a programming language.
     Function,
     /// The schedule at some airspeeds.
     Table,
-    /// Corrected models.
     Models,
 }
 
@@ -64,7 +63,7 @@ impl FormatGroup {
         Self::Models,
     ];
 
-    /// Returns the heading of the group.
+    /// Returns the group heading.
     pub fn name(self) -> &'static str {
         match self {
             Self::PerCondition => "Per condition",
@@ -148,8 +147,7 @@ pub enum ExportedRole {
 }
 
 impl ExportedRole {
-    /// Returns the role with a name of the command line: "nominal", "representative", or the name
-    /// of a model.
+    /// Returns the role for a command-line name: "nominal", "representative", or a model name.
     pub fn from_name(name: &str) -> Self {
         match name {
             ExportChoices::NOMINAL => Self::Nominal,
@@ -159,36 +157,35 @@ impl ExportedRole {
     }
 }
 
-/// Contents and options of an export; by default nominal models with the scheduled correction and
+/// What to export, with options; by default nominal models with the scheduled correction and
 /// second-order Padé approximants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportRequest {
     pub format: ExportFormat,
-    /// Airspeeds \[kt\] of a lookup table; by default the distinct airspeeds of the scheduled
-    /// conditions.
+    /// Airspeeds \[kt\] for a lookup table; by default the scheduled conditions' distinct
+    /// airspeeds.
     pub breakpoints_kt: Option<Vec<f64>>,
     /// Conditions whose results and models are exported; all conditions if `None`.
     pub conditions: Option<BTreeSet<ConditionId>>,
-    /// Which physics model of a condition is exported.
+    /// Physics model exported for each condition.
     pub role: ExportedRole,
     /// Correction that is applied to exported models.
     pub correction: AssessedCorrection,
-    /// Padé approximant of the delays of exported models.
+    /// Padé approximant for delays in exported models.
     pub pade: Pade,
 }
 
-/// Origin of the exported corrections, stated in the file.
+/// Where the exported corrections come from, as stated in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportSource {
-    /// Name of the study.
     pub name: String,
-    /// SHA-256 of the dataset's file, in hexadecimal.
+    /// SHA-256 of the dataset file, in hexadecimal.
     pub sha256: String,
 }
 
 impl ExportSource {
-    /// Returns the origin of corrections from a file: the study, or the dataset of an unsaved
-    /// study; `None` for the embedded example.
+    /// Returns the origin of corrections from a file: the study, or an unsaved study's dataset;
+    /// `None` for the embedded example.
     pub fn new(file: Option<&Path>, sha256: &str) -> Self {
         let name = match file.and_then(Path::file_name) {
             Some(name) => name.to_string_lossy().into_owned(),
@@ -201,13 +198,12 @@ impl ExportSource {
     }
 }
 
-/// Analysis, origin, request and path of an export.
+/// Everything that an export needs: analysis, origin, request and path.
 #[derive(Clone, Copy)]
 pub struct Export<'e> {
     pub analysis: &'e Analysis,
     pub source: &'e ExportSource,
     pub request: &'e ExportRequest,
-    /// Path of the output file.
     pub path: &'e Path,
 }
 
@@ -222,8 +218,8 @@ impl ExportRequest {
 }
 
 impl<'e> Export<'e> {
-    /// Returns remarks on the cost of the scheduled leads, for files that contain these leads;
-    /// empty without leads.
+    /// Returns remarks on what the scheduled leads cost, for files that contain these leads; empty
+    /// without leads.
     fn price_remarks(&self) -> Vec<String> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -237,7 +233,7 @@ impl<'e> Export<'e> {
         }
     }
 
-    /// Returns the schedule of the study with its couplings.
+    /// Returns the study's schedule with its couplings.
     ///
     /// # Errors
     /// Fails if the study has no schedule, or lacks the couplings that it requests.
@@ -330,7 +326,7 @@ pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportCo
 }
 
 /// Writes the requested export and returns remarks, line by line. [`export_contents`] describes the
-/// contents of the file.
+/// file's contents.
 pub fn write_export(
     analysis: &Analysis,
     source: &ExportSource,

@@ -24,7 +24,7 @@ impl ExportedModel {
         ) + &self.physics_words()
     }
 
-    /// Describes the changes of the physics parameters in the model; empty without any.
+    /// Describes how the physics parameters were moved in the model; empty if they were not.
     fn physics_words(&self) -> String {
         if self.contents.physics.is_empty() {
             return String::new();
@@ -32,8 +32,8 @@ impl ExportedModel {
         format!("; physics model with {}", self.contents.physics.join(", "))
     }
 
-    /// Describes the omitted delays of the condition's own correction, and their phase lag at the
-    /// upper end of the band; empty without omitted delays.
+    /// Describes which delays the model omits from the condition's own correction, and their phase
+    /// lag at the band's upper end; empty without omitted delays.
     fn left_out_words(&self) -> String {
         if self.left_out_deg == 0.0 {
             return String::new();
@@ -62,7 +62,7 @@ impl ExportedModel {
         }
     }
 
-    /// Describes Padé approximants of `approximated`.
+    /// Describes Padé approximants for `approximated`.
     fn pade_words(&self, approximated: &str) -> String {
         let exact = if self.lead_states > 0 {
             "gains and lead filters"
@@ -87,7 +87,7 @@ impl ExportedModel {
 
 /// Formats an upper bound on a phase error \[deg\]; a nonzero bound below 0.001 is given as 0.001.
 fn bound_words(error_deg: f64) -> String {
-    /// Minimum reported bound.
+    /// Minimum reported bound \[deg\].
     const LEAST_DEG: f64 = 1e-3;
     let bound_deg = if error_deg > 0.0 {
         error_deg.max(LEAST_DEG)
@@ -108,7 +108,7 @@ pub(super) fn correction_words(correction: AssessedCorrection) -> &'static str {
 }
 
 impl ModelCouplings {
-    /// Returns the couplings in a model with the matrices `dynamics`.
+    /// Returns how couplings enter a model with the matrices `dynamics`.
     pub(super) fn new(analysis: &Analysis, dynamics: &StateSpace) -> Self {
         let has_delays =
             !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();

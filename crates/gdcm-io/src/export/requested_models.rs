@@ -1,5 +1,5 @@
-//! The corrected models that an export requests: choice of the conditions, the physics model and
-//! the correction, and computation of the corrected model with its accuracy.
+//! Chooses the conditions, physics models and corrections that an export requests, and computes the
+//! corrected models with their accuracy.
 
 use nalgebra::Complex;
 
@@ -19,7 +19,7 @@ use super::{ExportRequest, ExportedRole};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::{ExportContents, LeftOutPart};
 
-/// Returns the requested corrected models, in the order of the dataset.
+/// Returns the requested corrected models, in dataset order.
 pub(super) fn exported_models(
     analysis: &Analysis,
     request: &ExportRequest,
@@ -42,11 +42,11 @@ pub(super) fn exported_models(
     Ok(models)
 }
 
-/// Returns `M_O H~ M_I` at the frequencies `omega` \[rad/s\]: the response of the requested physics
-/// model of a condition with its couplings, and with the requested correction. Delays are exact.
+/// Returns `M_O H~ M_I` at the frequencies `omega` \[rad/s\]: a condition's requested physics model
+/// with its couplings, and with the requested correction. Delays are exact.
 ///
 /// # Errors
-/// The analysis lacks the condition, the model, or a requested part of the correction.
+/// The analysis lacks the condition, the model, or a requested correction part.
 pub fn corrected_response(
     analysis: &Analysis,
     request: &ExportRequest,
@@ -71,7 +71,8 @@ pub fn corrected_response(
         let gain = correction.net_gain(pair);
         let delay_s =
             correction.output_delays_s[pair.output] + correction.input_delays_s[pair.input];
-        // A gain of the schedule may be negative; the factor of gain 1 applies to it too.
+        // A scheduled gain may be negative: only delays and leads enter this factor; the gain is
+        // applied separately.
         let factor = GainDelay::new(1.0, delay_s).with_leads(leads);
         let corrected = curve.iter().zip(omega);
         corrected
@@ -159,7 +160,7 @@ fn exported_model(
     })
 }
 
-/// Returns the phase lag \[deg\] at `omega` \[rad/s\] of the omitted delays: the longest input
+/// Returns the phase lag \[deg\] at `omega` \[rad/s\] due to the omitted delays: the longest input
 /// delay plus the longest output delay over all conditions.
 fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
     let mut input_s = 0.0_f64;
@@ -178,7 +179,7 @@ fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
     (omega * (input_s + output_s)).to_degrees()
 }
 
-/// Returns the physics model of a condition that `role` selects.
+/// Returns the physics model that `role` selects in a condition.
 fn model_of<'c>(
     analysis: &Analysis,
     role: &ExportedRole,
@@ -202,7 +203,7 @@ fn model_of<'c>(
     }
 }
 
-/// Returns the requested correction of a condition.
+/// Returns the own or the scheduled correction of a condition, as requested.
 fn correction_of(
     analysis: &Analysis,
     which: AssessedCorrection,
@@ -231,7 +232,7 @@ fn correction_of(
     }
 }
 
-/// Returns the analysis of a condition.
+/// Returns the analysis of a condition, or why there is none.
 fn result_of<'a>(
     analysis: &'a Analysis,
     condition: &Condition,

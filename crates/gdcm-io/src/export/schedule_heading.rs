@@ -1,4 +1,4 @@
-//! Headings of files with an exported schedule: meaning and units of its quantities, origin,
+//! Headings for files with an exported schedule: its quantities with meaning and units, origin,
 //! contents, and notes.
 
 use gdcm_model::message_text::shortened;
@@ -11,7 +11,7 @@ use super::program_text::{comment, number};
 use crate::software::software;
 
 impl ExportedSchedule<'_> {
-    /// Returns the heading of a file with the schedule, line by line; `notes` are included.
+    /// Returns the heading for a file with the schedule, line by line; `notes` are included.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
         let quantities = if self.schedule.has_delays() {
@@ -82,7 +82,7 @@ impl ExportedSchedule<'_> {
         ]
     }
 
-    /// Returns the remarks on the schedule: missing delays, cost of leads, and cautions.
+    /// Returns the remarks on the schedule: missing delays, lead costs, and cautions.
     pub(super) fn notes(&self) -> Vec<String> {
         let (inputs, outputs) = self.dataset.names_of_channels();
         let mut notes = Vec::new();

@@ -1,10 +1,10 @@
-//! Names of the states of a corrected model.
+//! State names for a corrected model.
 
 use gdcm_method::correction::corrected_model::CorrectedModel;
 use gdcm_model::dataset::{Channel, Dataset, Model};
 
-/// Returns the state names, in this order: "LON lead 1" and "LON delay 1" for inputs, the names of
-/// the model's states, "Q delay 1" and "Q lead 1" for outputs.
+/// Returns the state names, in this order: "LON lead 1" and "LON delay 1" for inputs, the model's
+/// own state names, "Q delay 1" and "Q lead 1" for outputs.
 pub(super) fn state_names(
     dataset: &Dataset,
     model: &Model,
@@ -31,7 +31,7 @@ pub(super) fn state_names(
     names
 }
 
-/// Adds names of the states of `part` ("lead", "delay"), counted from 1 within each channel.
+/// Adds state names for `part` ("lead", "delay"), counted from 1 within each channel.
 fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, counts: &[usize]) {
     for (channel, &count) in channels.iter().zip(counts) {
         for place in 1..=count {

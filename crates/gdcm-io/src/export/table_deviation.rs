@@ -5,19 +5,20 @@ const GRID: usize = 2000;
 /// Number of golden-section steps; each multiplies the interval by 0.618.
 const STEPS: usize = 60;
 
-/// Maximum deviation of a table from its curve, with its position.
+/// A table's maximum deviation from its curve, with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableDeviation {
-    /// Deviation at `airspeed_kt`, in the unit of the `measure` passed to [`Self::greatest`].
+    /// Deviation at `airspeed_kt`, in the unit returned by the `measure` passed to
+    /// [`Self::greatest`].
     pub(super) value: f64,
     /// Airspeed \[kt\] at which the maximum occurs.
     pub(super) airspeed_kt: f64,
 }
 
 impl TableDeviation {
-    /// Finds the maximum deviation within `range_kt` of a table that samples `curve` at the
-    /// airspeeds `points`; `measure` returns the deviation of an interpolated value, given the
-    /// exact value.
+    /// Finds a table's maximum deviation from `curve` within `range_kt`; the table samples the
+    /// curve at the airspeeds `points`. `measure` compares an interpolated value with the exact
+    /// value.
     ///
     /// A grid search is refined by a golden-section search in the two intervals beside the greatest
     /// grid value.
@@ -55,7 +56,7 @@ impl TableDeviation {
         greatest
     }
 
-    /// Returns the larger of two deviations; `self` if they are equal.
+    /// Returns the larger deviation; `self` if they are equal.
     pub(super) fn or_greater(self, other: Self) -> Self {
         if other.value > self.value {
             other

@@ -28,8 +28,7 @@ const GROWTH: usize = 16;
 const LAST: usize = 16 << 20;
 
 /// Checks the beginning of a dataset or a study for structural errors: text that is not JSON,
-/// another format or version, values of a type that their keys do not permit, lists that are too
-/// long.
+/// another format or version, values whose type their keys do not permit, lists that are too long.
 ///
 /// # Errors
 /// Returns the first such error within 16 MiB, or an error if the file cannot be opened.
@@ -53,8 +52,7 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Returns the first error in the beginning of a file, in which the end of the text is not an
-/// error.
+/// Returns the first error in the beginning of a file; the end of the text is no error.
 fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
     // Stop at the last comma: a number or a word that is cut off would be read with another value.
     let Some(comma) = text.iter().rposition(|&byte| byte == b',') else {

@@ -1,4 +1,4 @@
-//! The examples that are part of the program.
+//! Examples embedded in the program.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -8,17 +8,17 @@ use crate::file_reading::Source;
 use crate::output_set::{Existing, OutputSet, make_directory};
 use crate::reading_budget::ReadingBudget;
 
-/// An example that is part of the program: a dataset with its flight records.
+/// An example embedded in the program: a dataset with its flight records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Example {
     /// A synthetic UH-60A-class helicopter at eleven flight conditions.
     Simulated,
-    /// An AscTec Pelican quadrotor: its published physics model and two flights of 2011. The
+    /// An AscTec Pelican quadrotor: its published physics model and two flights from 2011. The
     /// written folder also contains an ANT-X drone, as a second physics model to be corrected.
     RealAircraft,
 }
 
-/// A file of an example, as it is written into a folder.
+/// An example file, as written into a folder.
 struct ExampleFile {
     /// Path in the folder, with `/` between its parts.
     path: &'static str,
@@ -59,7 +59,7 @@ impl ExampleFile {
 }
 
 const SIMULATED_DATASET: &[u8] = include_bytes!("../../../../assets/example-dataset.json.gz");
-/// CSV files with simulated sweeps and a validation record for each of the conditions 3 and 10.
+/// CSV files for conditions 3 and 10, each with simulated sweeps and a validation record.
 const SIMULATED_RECORDS: &[u8] = include_bytes!("../../../../assets/example-records-3-and-10.zip");
 const PELICAN_DATASET: &[u8] =
     include_bytes!("../../../../assets/real-aircraft/pelican/real-aircraft.json.gz");
@@ -71,7 +71,7 @@ const SIMULATED_FILES: [ExampleFile; 1] = [ExampleFile::packed(
     "example-dataset.json",
     SIMULATED_DATASET,
 )];
-/// The data of each aircraft stand beside their licence.
+/// Each aircraft's data are next to their licence.
 const REAL_AIRCRAFT_FILES: [ExampleFile; 8] = [
     ExampleFile::packed("pelican/real-aircraft.json", PELICAN_DATASET),
     ExampleFile::plain(
@@ -105,7 +105,7 @@ impl Example {
     /// Every example, in menu order.
     pub const ALL: [Self; 2] = [Self::Simulated, Self::RealAircraft];
 
-    /// Returns the name by which studies and messages refer to the example.
+    /// Returns the name by which studies and messages refer to it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Simulated => "embedded example",
@@ -113,7 +113,7 @@ impl Example {
         }
     }
 
-    /// Returns the stem of file names that are proposed for studies and results of the example.
+    /// Returns the file name stem proposed for the example's studies and results.
     pub fn file_stem(self) -> &'static str {
         match self {
             Self::Simulated => "example",
@@ -139,7 +139,7 @@ impl Example {
         }
     }
 
-    /// Returns the archive with the flight records of [`Self::record_conditions`].
+    /// Returns the archive with the flight records for [`Self::record_conditions`].
     pub fn records(self) -> &'static [u8] {
         match self {
             Self::Simulated => SIMULATED_RECORDS,
@@ -147,7 +147,7 @@ impl Example {
         }
     }
 
-    /// Returns the ids of the conditions whose flight records are part of the program.
+    /// Returns the ids of the conditions with embedded flight records.
     pub fn record_conditions(self) -> &'static [i64] {
         match self {
             Self::Simulated => &[3, 10],
@@ -162,8 +162,8 @@ impl Example {
         }
     }
 
-    /// Writes the files of the example into a directory, which is created if missing; all of them
-    /// or none. Returns their paths, that of the dataset first.
+    /// Writes the example's files into a directory, which is created if missing; all or none.
+    /// Returns their paths, the dataset's first.
     ///
     /// # Errors
     /// [`FileError`] if a file exists and is to be kept, or cannot be written.

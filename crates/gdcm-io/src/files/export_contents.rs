@@ -1,5 +1,5 @@
-//! Contents of an export: whether its gains, delays, leads and couplings are scheduled or corrected
-//! for each condition alone, and which parts are omitted.
+//! What an export contains: whether its gains, delays, leads and couplings are scheduled or
+//! corrected for each condition alone, and which parts are omitted.
 
 use serde_json::{Value, json};
 
@@ -11,13 +11,13 @@ use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::physics::applied_value_list;
 use gdcm_words::schedule::delayed_channel_text;
 
-/// Source of a part of an exported correction.
+/// Where a part of an exported correction comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartSource {
     Scheduled,
-    /// From the correction of each condition alone.
+    /// From each condition's own correction.
     Own,
-    /// Both: the correction of each condition alone, and the schedule.
+    /// Both: from each condition's own correction, and from the schedule.
     OwnAndScheduled,
     /// The export does not contain the part.
     None,
@@ -46,8 +46,8 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// Combines the source of a part in the corrections of single conditions (`self`) with its
-    /// source in the schedule.
+    /// Combines a part's source in the conditions' own corrections (`self`) with its source in the
+    /// schedule.
     fn beside(self, scheduled: Self) -> Self {
         match (self, scheduled) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
@@ -57,10 +57,10 @@ impl PartSource {
     }
 }
 
-/// A part of the corrections that an export omits.
+/// A correction part that an export omits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// Delays of a channel that some conditions are corrected with, but that the schedule lacks.
+    /// A channel's delays in some conditions' own corrections that the schedule lacks.
     Delay(DelayedChannel),
     /// The scheduled lead filters.
     Leads,
@@ -71,7 +71,7 @@ pub enum LeftOutPart {
 }
 
 impl LeftOutPart {
-    /// Returns the stable code of the omitted part.
+    /// Returns the omitted part's stable code.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Delay(_) => "delay-not-scheduled",
@@ -96,7 +96,7 @@ impl LeftOutPart {
     }
 }
 
-/// Sources of the parts in an export, and the omitted parts.
+/// Where the parts of an export come from, and which are omitted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportContents {
     pub gains: PartSource,
@@ -104,15 +104,15 @@ pub struct ExportContents {
     pub leads: PartSource,
     /// Mixing and feedback, identical for all conditions.
     pub couplings: PartSource,
-    /// Changes of the physics parameters, in words ("Ixx +4 %"); empty if the physics models are
-    /// those of the dataset. The other parts are computed for the moved models.
+    /// Physics parameter changes in words ("Ixx +4 %"); empty if the physics models are the
+    /// dataset's. The other parts are computed for the moved models.
     pub physics: Vec<String>,
     pub left_out: Vec<LeftOutPart>,
 }
 
 impl ExportContents {
-    /// Returns the contents of the result files: the correction of each condition alone, together
-    /// with the schedule if it exists.
+    /// Returns the contents of the result files: each condition's own correction, and the schedule
+    /// if it exists.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
         let Ok(schedule) = &analysis.schedule else {
@@ -144,7 +144,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of a file with the corrected models of these conditions.
+    /// Returns the contents of a file with the corrected models for these conditions.
     ///
     /// # Errors
     /// [`ScheduleError`] if the schedule is requested but does not exist.
@@ -185,7 +185,7 @@ impl ExportContents {
         Ok(contents.for_conditions(analysis, conditions))
     }
 
-    /// Returns the contents without the physics parameters if they move no model of these
+    /// Returns the contents without the physics parameters if they move no model in these
     /// conditions.
     fn for_conditions(mut self, analysis: &Analysis, conditions: &[ConditionId]) -> Self {
         let is_moved = match analysis.applied_physics() {
@@ -198,7 +198,7 @@ impl ExportContents {
         self
     }
 
-    /// Returns the contents of the table of physics parameters, which has no part of the corrections.
+    /// Returns the contents of the physics parameter table, which has no correction parts.
     pub fn of_physics(analysis: &Analysis) -> Self {
         let mut contents = Self::of_none(analysis);
         contents.couplings = PartSource::None;

@@ -1,4 +1,4 @@
-//! Mark that tells the first program start from later ones.
+//! Marker file that distinguishes the first program start from later ones.
 
 use std::fs::{OpenOptions, create_dir_all};
 use std::path::Path;

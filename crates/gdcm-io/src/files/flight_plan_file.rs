@@ -16,17 +16,17 @@ use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
 use crate::software::software;
 
-/// The plan of a condition.
+/// Planned sweeps for one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionPlan {
     /// Condition in the dataset; `None` without a dataset.
     pub condition: Option<ConditionId>,
-    /// A plan for each input.
+    /// One plan per input.
     pub sweeps: Vec<SweepPlan>,
     pub targets: Vec<TargetPlan>,
 }
 
-/// Adds a file with the plans of conditions to `outputs`.
+/// Adds a file with condition plans to `outputs`.
 pub fn add_flight_plans(
     plans: &[ConditionPlan],
     channels: &PlannedChannels,
@@ -135,7 +135,7 @@ fn interval_json(interval: &ResponseInterval) -> Value {
     json!({ "half_width_db": interval.half_db, "half_width_deg": interval.half_deg })
 }
 
-/// Returns the names of output and input.
+/// Returns the output and input names.
 fn pair_json(pair: Pair, channels: &PlannedChannels) -> Value {
     json!([
         channels.outputs.get(pair.output),

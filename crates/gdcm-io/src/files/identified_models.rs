@@ -33,7 +33,7 @@ pub struct IdentifiedModels<'f> {
     /// Identified models, in the units of `channels`.
     pub found: &'f Identification,
     pub channels: &'f RecordChannels,
-    /// Records used, in the order of their indices in the results.
+    /// Records used, ordered by their indices in the results.
     pub records: &'f [ConditionRecord],
     pub cautions: &'f [CautionNote],
     /// Notes on assumptions made while the records were read.
@@ -67,7 +67,7 @@ struct MeasuredText {
 }
 
 /// Adds a file with identification results to `outputs`: the recommended model, then the CT-PBSID
-/// model without refinement, then the other models of the bundle. Non-finite values are written as
+/// model without refinement, then the other models in the bundle. Non-finite values are written as
 /// `null`.
 pub fn add_identified(
     results: &IdentifiedModels<'_>,
@@ -81,7 +81,7 @@ pub fn add_identified(
 /// Returns the contents of a file with identification results, as [`add_identified`] writes it.
 ///
 /// # Errors
-/// None of the values is known to cause one; the JSON writer may return one.
+/// Errors from the JSON writer; no value is known to cause one.
 pub fn identified_json(results: &IdentifiedModels<'_>) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_compact(&identified_text(results), &mut bytes)?;
@@ -135,9 +135,9 @@ fn label(rule: &ChannelRule) -> ChannelLabel {
     }
 }
 
-/// Returns the validation results: the cost per degree of freedom of the fitted records and of the
-/// held-out records, for the held-out records also normalised with the uncertainty of the model; in
-/// the time domain, the fit of each output \[%\] and Theil's coefficient for the held-out records.
+/// Returns the validation results: cost per degree of freedom for the fitted and the held-out
+/// records, for the latter also normalised with the model's uncertainty; in the time domain, for
+/// the held-out records, each output's fit \[%\] and Theil's coefficient.
 fn validation_json(found: &Identification) -> Value {
     let (fit_percent, theil) = match &found.validation {
         Some(in_time) => (json!(in_time.fit_percent), json!(in_time.theil)),
@@ -198,7 +198,7 @@ fn response_array(
     }
 }
 
-/// Converts a caution to JSON, with the name of its record if it concerns a single record.
+/// Converts a caution to JSON, with its record's name if it concerns only one.
 fn caution_json(note: &CautionNote) -> Value {
     let single_record = match note.records.as_slice() {
         [record] => Some(record),
@@ -215,7 +215,7 @@ fn caution_json(note: &CautionNote) -> Value {
     })
 }
 
-/// Returns a pole, with the standard deviation of its position in the complex plane.
+/// Returns a pole, with its standard deviation in the complex plane.
 fn pole_json(estimate: &PoleEstimate) -> Value {
     json!({
         "re": estimate.pole.re,
@@ -225,7 +225,7 @@ fn pole_json(estimate: &PoleEstimate) -> Value {
     })
 }
 
-/// Describes the record at `index`: first and last time \[s\] of the used part and of each used
+/// Describes the record at `index`: first and last time \[s\] in the used part and in each used
 /// segment, and the reasons why other segments were not used.
 fn record_json(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();

@@ -1,5 +1,5 @@
 //! Tables that the engineer supplies as separate files, for use in any study (M17): level
-//! boundaries of bandwidth and phase delay, and tolerances of time histories.
+//! boundaries for bandwidth and phase delay, and tolerances for time histories.
 
 use std::path::Path;
 
@@ -41,7 +41,7 @@ pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
     levels_from_text(source.text(), path)
 }
 
-/// Reads level boundaries from the content of a file; `path` is named in errors.
+/// Reads level boundaries from file content; errors name `path`.
 pub(super) fn levels_from_text(text: &[u8], path: &Path) -> Result<LevelBoundaries, FileError> {
     serde_json::from_slice(text)
         .map_err(|error| json_error(text, path, Location::default(), &error))
@@ -59,7 +59,7 @@ pub fn add_levels(
 /// Reads a tolerance table, with cautions about unknown keys.
 ///
 /// # Errors
-/// [`FileError`] if the file cannot be read, or any part of it is invalid.
+/// [`FileError`] if the file cannot be read, or anything in it is invalid.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<FileCaution>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;

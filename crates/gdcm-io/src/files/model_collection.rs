@@ -25,7 +25,7 @@ use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 use crate::software::software;
 
-/// Format and version of a model file.
+/// Model file format and version.
 pub(crate) const MODELS: Format = Format {
     name: "gdcm-models",
     version: 1,
@@ -41,7 +41,7 @@ struct ModelsText {
     format: String,
     #[serde(deserialize_with = "whole")]
     version: u64,
-    /// Program that wrote the file; empty in files of earlier versions.
+    /// Program that wrote the file; empty in older files.
     #[serde(default)]
     software: String,
     #[serde(deserialize_with = "list::<MOST_MODELS_IN_ALL, _, _>")]
@@ -67,7 +67,7 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     write_compact(&text, file)
 }
 
-/// A corrected model with a description of the applied parts of the correction.
+/// A corrected model with a description of the applied correction parts.
 pub(crate) struct ModelWithContents {
     pub(crate) model: FoundModel,
     /// JSON object written under the key `contains`.
@@ -162,9 +162,9 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
 /// Reads the models from a file in one of this program's model formats, with cautions about unknown
 /// keys.
 ///
-/// Returns `None` for any other file, and if the name of an unknown key suggests a delay: such a
-/// file is read as general JSON instead, which supports more notations of delays and asks the
-/// engineer about the rest.
+/// Returns `None` for any other file, and if an unknown key's name suggests a delay: such a file is
+/// read as general JSON instead, which supports more delay notations and asks the engineer about
+/// the rest.
 pub(crate) fn found_models(
     text: &[u8],
     path: &Path,
@@ -201,7 +201,7 @@ fn names_delay(caution: &FileCaution) -> bool {
     contains || ["tau", "td"].iter().any(|word| key.starts_with(word))
 }
 
-/// Returns labels with the names and units of channels.
+/// Returns labels with channel names and units.
 pub(crate) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
     let mut labels = Vec::with_capacity(channels.len());
     for channel in channels {
@@ -270,7 +270,7 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// Returns the labels of `count` channels from their names and units; either list may be empty.
+/// Returns labels for `count` channels from their names and units; either list may be empty.
 /// Returns `None` if another length differs from `count`.
 fn labels_from_texts(
     count: usize,

@@ -1,4 +1,4 @@
-//! A dataset or a study, opened depending on the content of its file.
+//! A dataset or a study, opened depending on its file's content.
 
 use std::fs::File;
 use std::io::Read;
@@ -14,7 +14,7 @@ use crate::file_reading::Source;
 use crate::json_outline::Outline;
 use crate::reading_budget::ReadingBudget;
 
-/// Content of a file opened by the user.
+/// Content of a file that the user opened.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -26,7 +26,7 @@ pub enum Opened {
 }
 
 impl Opened {
-    /// Returns the study, its dataset and the changes of the dataset. For a dataset, the study is
+    /// Returns the study, its dataset and the changes in the dataset. For a dataset, the study is
     /// new and there are no changes.
     pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
         match self {
@@ -51,14 +51,14 @@ pub fn holds_models(path: &Path) -> bool {
     path.is_dir() || path.is_file() && !is_json && !begins_an_object(path)
 }
 
-/// Returns whether the first character of a file other than blanks opens a JSON object.
+/// Returns whether a file's first non-blank character opens a JSON object.
 fn begins_an_object(path: &Path) -> bool {
     let mut first = Vec::new();
     let read = File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));
     read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
-/// Opens a dataset or a study, depending on the content of the file.
+/// Opens a dataset or a study, depending on the file's content.
 pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
     let source = Source::read(path, budget)?;
     match Outline::format_of(source.text(), budget).as_deref() {

@@ -1,4 +1,4 @@
-//! List of recently opened and saved files.
+//! Recently opened and saved files.
 
 use std::path::{Path, PathBuf};
 

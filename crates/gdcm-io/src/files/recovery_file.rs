@@ -1,4 +1,4 @@
-//! Recovery files: unsaved decisions that survive a crash.
+//! Recovery files: unsaved decisions saved to survive a crash.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{Read, Seek, Write};
@@ -13,14 +13,14 @@ use super::study_file::{STUDY_EXTENSION, dataset_of_study, save_recovery};
 use crate::file_error::FileError;
 use crate::output_set::make_directory;
 
-/// Extension of lock files; the file is locked while its process runs.
+/// Extension for lock files; the file is locked while its process runs.
 const LOCK_EXTENSION: &str = "lock";
 /// Age below which a lock file may belong to a process that has not locked it yet.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// Recovery file of an open window: a study file named `PROCESS-NUMBER.gdcm-study.json`. A lock
-/// file of the same name is locked while the process runs, and contains the path under which the
-/// user last saved the study.
+/// An open window's recovery file: a study file named `PROCESS-NUMBER.gdcm-study.json`. A lock file
+/// with the same name is locked while the process runs, and contains the path under which the user
+/// last saved the study.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -34,7 +34,7 @@ impl RecoveryFile {
     /// # Errors
     /// [`FileError`] if the directory or the lock file cannot be created.
     pub fn claim(directory: &Path) -> Result<Self, FileError> {
-        /// Number of the next recovery file, which distinguishes the windows of a process.
+        /// Number of the next recovery file, which distinguishes the windows of one process.
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
@@ -61,7 +61,7 @@ impl RecoveryFile {
         }
     }
 
-    /// Returns the path of the recovery file.
+    /// Returns the recovery file's path.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -112,7 +112,7 @@ impl Drop for RecoveryFile {
     }
 }
 
-/// Recovery file of a window that ended without saving. Its lock prevents other windows from
+/// Recovery file from a window that ended without saving. Its lock prevents other windows from
 /// finding it.
 #[derive(Debug)]
 pub struct LostStudy {
@@ -121,14 +121,14 @@ pub struct LostStudy {
     _lock: File,
     /// Time at which the recovery file was written.
     pub kept_at: SystemTime,
-    /// File name of the dataset, for display.
+    /// Dataset file name, for display.
     pub dataset: String,
     /// Path under which the user last saved the study, if any.
     pub saved_as: Option<PathBuf>,
 }
 
 impl LostStudy {
-    /// Returns the path of the recovery file.
+    /// Returns the recovery file's path.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -27,8 +27,7 @@ use crate::reading_budget::ReadingBudget;
 
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
-/// Returns the path of the rules file beside a dataset: "week.gdcm-rules.json" beside
-/// "week.json.gz".
+/// Returns the rules file path beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
 pub fn rules_path(dataset: &Path) -> PathBuf {
     let name = match dataset.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -41,7 +40,7 @@ pub fn rules_path(dataset: &Path) -> PathBuf {
 /// Reads a rules file, with cautions about unknown keys.
 ///
 /// # Errors
-/// [`FileError`] if the file cannot be read, or any part of it is invalid.
+/// [`FileError`] if the file cannot be read, or anything in it is invalid.
 pub fn load_rules(path: &Path) -> Result<(Rules, Vec<FileCaution>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -58,23 +57,23 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
     outputs.add(path, |file| write_pretty(&text, file))
 }
 
-/// Returns the rules as the text of a rules file.
+/// Returns the rules as text for a rules file.
 ///
 /// # Errors
-/// None of the values is known to cause one; the JSON writer may return one.
+/// Errors from the JSON writer; no value is known to cause one.
 pub fn rules_json(rules: &Rules) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_pretty(&RulesText::from_rules(rules), &mut bytes)?;
     Ok(bytes)
 }
 
-/// Format and version of a rules file.
+/// Rules file format and version.
 pub(crate) const FORMAT: Format = Format {
     name: "gdcm-rules",
     version: 1,
 };
 
-/// Maximum number of patterns, and maximum number of conversions, in a rules file.
+/// Maximum number of patterns, and of conversions, in a rules file.
 const MOST_PATTERNS: usize = 200;
 
 /// Maximum number of declarations in a rules file.
@@ -95,7 +94,7 @@ pub(crate) struct RulesText {
     #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(crate) on_axis: Vec<(String, String)>,
     pub(crate) band_rad_s: [f64; 2],
-    /// Named parameters of the physics model.
+    /// The physics model's named parameters.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -109,7 +108,7 @@ pub(crate) struct RulesText {
     /// Channel signs that apply to all files.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) signs: Signs,
-    /// Channel signs that apply to the models of a role, "identified" or "physics".
+    /// Channel signs that apply to models with a role, "identified" or "physics".
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) role_signs: BTreeMap<String, Signs>,
     /// Channel units, factors and signs that apply to a role, a folder or a file.
@@ -122,7 +121,7 @@ pub(crate) struct RulesText {
     /// Sample time \[s\] for models without a sample time; 0 for continuous time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
-    /// Column headings of tables, by file name.
+    /// Column headings for tables, by file name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) headings: BTreeMap<String, Vec<String>>,
     /// Rules for single models, by file and variable.

@@ -1,7 +1,7 @@
-//! Level boundaries of ADS-33E-PRF that are part of the program (M17.1).
+//! Level boundaries from ADS-33E-PRF, embedded in the program (M17.1).
 //!
-//! The standard is a public document of the US Army. Only the boundaries of a public copy of a
-//! figure are here; each boundary names its source and the error of reading it.
+//! The standard is a public US Army document. Only boundaries read from a publicly available figure
+//! are here; each names its source and the reading error.
 
 use std::path::Path;
 
@@ -12,14 +12,14 @@ use gdcm_model::names::channel_alias::same_channel;
 use super::levels_and_tolerances::levels_from_text;
 use crate::file_error::FileError;
 
-/// Boundaries of one axis for one category of mission task elements.
+/// Boundaries for one axis and one category of mission task elements.
 #[derive(Debug, PartialEq, Eq)]
 pub struct StandardLevels {
     /// Name on the command line.
     pub name: &'static str,
     /// Axis and tasks, in words.
     pub title: &'static str,
-    /// Rate and attitude of the axis, under any of the names by which files call them.
+    /// Rate and attitude of the axis, under any name that files use for them.
     axis: [&'static str; 2],
     /// File in the format of [`read_levels`](super::levels_and_tolerances::read_levels).
     text: &'static str,
@@ -47,8 +47,8 @@ impl StandardLevels {
         STANDARD_LEVELS.iter().find(|levels| levels.name == name)
     }
 
-    /// Returns the boundaries for the first of the `outputs` that is the rate or the attitude of the
-    /// axis; under the standard name of the axis if there is none.
+    /// Returns the boundaries for the first of the `outputs` that is the rate or the attitude of
+    /// the axis; if there is none, under the axis's standard name.
     ///
     /// # Errors
     /// [`FileError`] if the embedded file is invalid, which a test excludes.
@@ -60,7 +60,7 @@ impl StandardLevels {
         })
     }
 
-    /// Returns the output to which the boundaries apply.
+    /// Returns the first output to which the boundaries apply.
     pub fn output<'a>(&self, outputs: &'a [Channel]) -> Option<&'a Channel> {
         outputs.iter().find(|output| {
             AttitudeOutput::classify(output).is_ok()

@@ -6,22 +6,22 @@
 //! places 0 3 1 4 2 5. The strides are 3 and 1: the distances between neighbours along each
 //! dimension.
 
-/// Iterator over the places of array elements in a file, in column-major order.
+/// Iterates over the places where a file stores array elements, in column-major order.
 pub(crate) struct Places {
     shape: Vec<usize>,
-    /// Distance in the file between neighbours along each dimension, in elements.
+    /// Distance between neighbours along each dimension in the file \[elements\].
     strides: Vec<usize>,
     /// Indices of the next element.
     index: Vec<usize>,
-    /// Place of the next element in the file, counted in elements from 0.
+    /// Where the file stores the next element, counted in elements from 0.
     place: usize,
     /// Number of remaining elements.
     left: usize,
 }
 
 impl Places {
-    /// Creates the places for a file in row-major order (last index fastest); `None` if the number
-    /// of elements overflows.
+    /// Creates the places for a file in row-major order (last index fastest); `None` if the element
+    /// count overflows.
     pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
         let left = element_count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -32,7 +32,7 @@ impl Places {
     }
 
     /// Creates the places for a file in column-major order (first index fastest); `None` if the
-    /// number of elements overflows.
+    /// element count overflows.
     pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
         let left = element_count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -53,7 +53,7 @@ impl Places {
     }
 }
 
-/// Returns the number of elements; `None` on overflow.
+/// Returns the element count; `None` on overflow.
 ///
 /// The product of the nonzero dimensions must not overflow even if another dimension is zero.
 pub(crate) fn element_count(shape: &[usize]) -> Option<usize> {

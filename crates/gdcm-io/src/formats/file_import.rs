@@ -1,4 +1,4 @@
-//! Import of files and folders: each file is read in the format of its bytes and passed on.
+//! Imports files and folders: each file is read in the format that its bytes show, and passed on.
 //!
 //! [`import`] reads files and all files in folders, [`import_file`] a single file, and
 //! [`import_bytes`] a file whose bytes are in memory.
@@ -16,12 +16,11 @@ use crate::reading_budget::ReadingBudget;
 /// Maximum file size \[bytes\].
 pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 
-/// Receives the progress of reading files, and can cancel it.
+/// Receives progress while files are read, and can cancel it.
 pub trait FolderProgress {
-    /// Called when the reading of a file begins, with its number, counted from 1, the number of
-    /// files, and its name.
+    /// Called before a file is read, with its number (from 1), the number of files, and its name.
     fn reading(&self, number: usize, count: usize, name: &str);
-    /// Receives the memory taken for the contents of a file \[bytes\].
+    /// Receives the memory taken for a file's contents \[bytes\].
     fn taken(&self, _bytes: u64) {}
     /// Returns the flag that cancels the reading when set.
     fn stop(&self) -> Arc<AtomicBool> {
@@ -29,7 +28,7 @@ pub trait FolderProgress {
     }
 }
 
-/// A file that was read.
+/// A file that was read, with its contents.
 pub(crate) struct ImportedFile<'f> {
     pub(crate) path: &'f Path,
     /// Path relative to the requested folder; for a file given by itself, its name.
@@ -39,7 +38,7 @@ pub(crate) struct ImportedFile<'f> {
     pub(crate) contents: Contents,
 }
 
-/// Reads a file whose bytes are in memory, in the format of the bytes.
+/// Reads a file whose bytes are in memory, in the format that they show.
 pub(crate) fn import_bytes<'f>(
     bytes: &[u8],
     path: &'f Path,
@@ -55,7 +54,7 @@ pub(crate) fn import_bytes<'f>(
     })
 }
 
-/// Reads a file in the format of its bytes.
+/// Reads a file in the format that its bytes show.
 ///
 /// # Errors
 /// [`FileError`] if the file exceeds `LARGEST_FILE`, or cannot be read.

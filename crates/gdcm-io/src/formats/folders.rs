@@ -71,7 +71,7 @@ pub(super) fn list_files(
     Ok(files)
 }
 
-/// State of listing the files below a folder.
+/// State while the files below a folder are listed.
 struct Listing<'p> {
     root: &'p Path,
     /// Files found so far, including those from other given paths.
@@ -80,7 +80,7 @@ struct Listing<'p> {
 }
 
 impl Listing<'_> {
-    /// Adds the files in a folder and in its subfolders, down to `deeper` levels of subfolders; each
+    /// Adds the files in a folder and in its subfolders, down to `deeper` subfolder levels; each
     /// recursion lowers `deeper` by 1.
     ///
     /// # Errors
@@ -176,13 +176,13 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     if !digits.is_empty() {
         parts.push(text_and_number(&mut text, &mut digits));
     }
-    // With a NUL character, the end of a name sorts before any letter.
+    // With a NUL character, a shorter name sorts before its continuations.
     text.push('\0');
     parts.push((text, 0));
     parts
 }
 
-/// Returns a part of a name and the number after it, and clears both.
+/// Returns a name part and the number after it, and clears both.
 fn text_and_number(text: &mut String, digits: &mut String) -> TextAndNumber {
     let number = digits.parse().unwrap_or(u64::MAX);
     digits.clear();

@@ -7,7 +7,7 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// An unsupported format, with export instructions.
 struct Foreign {
-    /// First bytes of a file; several alternatives are possible.
+    /// Alternative first bytes by which the format is recognised.
     signatures: &'static [&'static [u8]],
     name: &'static str,
     /// How to export the data; `{file}` and `{stem}` represent the file name with and without its
@@ -101,7 +101,7 @@ pub(super) const FOREIGN_FORMAT: Importer = Importer {
     read: |bytes, path, _| Err(FileError::variables(path, unsupported(bytes))),
 };
 
-/// Returns the error for a file of an unsupported format.
+/// Returns the error for a file in an unsupported format.
 fn unsupported(bytes: &[u8]) -> VariableFault {
     match find_foreign(bytes) {
         Some(Foreign { name, remedy, .. }) => foreign_file(name, remedy),

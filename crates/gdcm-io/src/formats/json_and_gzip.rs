@@ -1,8 +1,8 @@
-//! Importer of JSON and of gzip-compressed files.
+//! Importer for JSON and gzip-compressed files.
 //!
-//! JSON is read as a dataset or as models if its member "format" names one of this program's
-//! formats, otherwise as variables. Any other gzip-compressed content is passed to the importer of
-//! its format.
+//! JSON is read as a dataset or as models if its member "format" names a format of this program,
+//! otherwise as variables. Any other gzip-compressed content is passed to the importer for its
+//! format.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::gzip::GZIP_MAGIC;
 use crate::json_outline::Outline;
 use crate::reading_budget::ReadingBudget;
 
-/// Importer of JSON, and of any gzip-compressed file.
+/// Importer for JSON, and for any gzip-compressed file.
 pub(crate) const JSON: Importer = Importer {
     name: "JSON",
     endings: &["json", "gz"],
@@ -42,7 +42,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
         .map_err(|fault| FileError::variables(path, fault))?;
     match format.as_deref() {
         Some("\"gdcm-dataset\"") => {
-            // Pass on the compressed bytes: `Source::of` decompresses them again.
+            // Pass on the compressed bytes: `Source::from_bytes` decompresses them again.
             let source = Source::from_bytes(bytes, path, budget)?;
             let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
             let dataset = loaded.dataset.as_ref().clone();

@@ -1,4 +1,4 @@
-//! JSON of any structure, read within a memory budget.
+//! JSON with any structure, read within a memory budget.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -8,7 +8,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
 
-/// Overhead per allocation, and the initial capacity of a list \[bytes\].
+/// Overhead per allocation, and a list's initial capacity \[bytes\].
 const ALLOCATION: usize = 64;
 
 /// Any JSON value.
@@ -19,7 +19,7 @@ pub(super) enum Tree {
     Number(f64),
     Text(String),
     List(Vec<Tree>),
-    /// Members sorted by name; of members with equal names, only the last is kept.
+    /// Members sorted by name; among members with equal names, only the last is kept.
     Object(Vec<(String, Tree)>),
 }
 
@@ -51,19 +51,19 @@ impl Tree {
     }
 }
 
-/// Reads any JSON value and counts its memory, because a list, an object or a name of a few bytes
+/// Reads any JSON value and counts its memory, because a list, an object or a name with a few bytes
 /// in the text needs its own allocation.
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
     budget: &'r ReadingBudget<'r>,
-    /// Error of the budget if it ended the reading; serde passes on only its own error.
+    /// Budget error that ended the reading, if any; serde passes on only its own error.
     refused: &'r RefCell<Option<VariableFault>>,
 }
 
 impl TreeReader<'_> {
-    /// Takes the memory of a value, `size` bytes, from the budget.
+    /// Takes a value's memory, `size` bytes, from the budget.
     fn take<E: Error>(self, size: usize) -> Result<(), E> {
-        // Lists grow by doubling, hence the factor 2; each value is one step of work.
+        // Lists grow by doubling, hence the factor 2; each value is one work step.
         self.budget.take(1, 2 * size as u64, "").map_err(|fault| {
             *self.refused.borrow_mut() = Some(fault);
             E::custom("refused")
@@ -128,7 +128,7 @@ impl<'de> Visitor<'de> for TreeReader<'_> {
             self.take(size_of::<(String, Tree)>() + ALLOCATION + name.len())?;
             members.push((name, entries.next_value_seed(self)?));
         }
-        // A stable sort of the members in reverse order puts the last of equal names first, which
+        // Sorting the reversed members with a stable sort puts the last of equal names first, which
         // `dedup_by` keeps.
         members.reverse();
         members.sort_by(|(name, _), (other_name, _)| name.cmp(other_name));

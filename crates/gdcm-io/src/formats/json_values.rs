@@ -1,4 +1,4 @@
-//! Conversion of JSON of any structure to variables.
+//! Converts JSON with any structure to variables.
 
 use crate::formats::element_order::Places;
 use crate::formats::json_tree::Tree;
@@ -7,8 +7,8 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Estimated memory of a single value \[bytes\]: the value, and the three allocations for shape,
-/// name and number.
+/// Estimated memory per value \[bytes\]: the value, and the three allocations for shape, name and
+/// number.
 const VALUE_MEMORY: u64 = size_of::<Value>() as u64 + 3 * 64;
 /// Maximum number of array dimensions.
 const MOST_DIMENSIONS: usize = 3;
@@ -33,7 +33,6 @@ pub(super) fn read_variables(
     Ok(variables)
 }
 
-/// Converts a JSON value.
 fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     budget.take(1, VALUE_MEMORY, "")?;
     Ok(match json {
@@ -111,8 +110,7 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
     }))
 }
 
-/// Returns the length of each dimension, from the length of the list, of its first entry, and so
-/// on.
+/// Returns the length along each dimension, from the list, its first entry, and so on.
 fn shape_of(list: &[Tree]) -> Vec<usize> {
     let mut shape = vec![list.len()];
     let mut inner = list;
@@ -137,7 +135,7 @@ fn append_numbers(
     if list.len() != length {
         return Ok(false);
     }
-    // Take 16 bytes for a number of 8: lists grow by doubling.
+    // Take 16 bytes per 8-byte number: lists grow by doubling.
     budget.take(length as u64, 16, "")?;
     for item in list {
         match item {

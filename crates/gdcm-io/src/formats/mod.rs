@@ -1,5 +1,5 @@
-//! Formats of files from other programs: the interface of a format, the list of all formats, and
-//! the choice among them. `file_import.rs` reads files and folders with them.
+//! File formats from other programs: the interface for a format, the list of formats, and the
+//! choice among them. `file_import.rs` reads files and folders with them.
 //!
 //! ```text
 //! bytes -> format, by the first bytes         (the ending decides only between text formats)
@@ -8,10 +8,10 @@
 //! ```
 //!
 //! Readers take memory and work from a `ReadingBudget` before they use it. The last argument is the
-//! name of the variable in an error; where it is empty, a caller adds the name or there is none. A
-//! factor of 2 allows for vectors, which grow by doubling.
+//! variable name for errors; where it is empty, a caller adds the name or there is none. A factor
+//! of 2 allows for vectors, which grow by doubling.
 //!
-//! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
+//! A new format is an `Importer` in its own file in this folder, and an entry in `FORMATS`.
 
 pub mod element_order;
 mod file_import;

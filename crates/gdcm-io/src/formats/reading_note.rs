@@ -8,9 +8,9 @@ use gdcm_sysid::records::ModeSpan;
 use crate::formats::reading_reason::{QuantityReason, UnitReason};
 use crate::variable_fault::column_place::ColumnPlace;
 
-/// Maximum number of numbered words that are listed in a note.
+/// Maximum number of numbered words listed in a note.
 const SHOWN_WORDS: usize = 12;
-/// Maximum number of flight modes that are listed in a note.
+/// Maximum number of flight modes listed in a note.
 const SHOWN_MODES: usize = 8;
 
 /// Note for the user on a choice made while a file was read, or on a part that was skipped.
@@ -42,7 +42,7 @@ pub enum ReadingNote {
     #[error("{column} has words, which are numbered: {}", word_list(words))]
     NumberedWords {
         column: NamedColumn,
-        /// The words in the order of their numbers, which begin at 1.
+        /// The words ordered by their numbers, which begin at 1.
         words: Vec<String>,
     },
     #[error("line {line} gives the units")]
@@ -68,7 +68,7 @@ pub enum ReadingNote {
     },
     #[error("{place} is ignored: its name is not recognised")]
     UnknownName { place: ColumnPlace },
-    /// A column of a complex number is not used because the other column is missing.
+    /// A column with part of a complex number is not used because the other column is missing.
     #[error(
         "{place} is ignored: the matching column is missing (real and imaginary part, or magnitude \
         and phase, are both needed)"
@@ -79,9 +79,9 @@ pub enum ReadingNote {
         parts, which are used"
     )]
     FormsAgree {
-        /// Column of the magnitude, from 1.
+        /// Magnitude column, from 1.
         magnitude: usize,
-        /// Column of the phase, from 1.
+        /// Phase column, from 1.
         phase: usize,
     },
     #[error(
@@ -89,9 +89,9 @@ pub enum ReadingNote {
         parts, which are used (line {line})"
     )]
     FormsDiffer {
-        /// Column of the magnitude, from 1.
+        /// Magnitude column, from 1.
         magnitude: usize,
-        /// Column of the phase, from 1.
+        /// Phase column, from 1.
         phase: usize,
         /// First line with a difference.
         line: usize,
@@ -115,7 +115,7 @@ pub enum ReadingNote {
         reason: SkippedStatement,
     },
 
-    // Logs of autopilots.
+    // Autopilot logs.
     #[error("a PX4 log; time in seconds since the start of the autopilot")]
     Px4Log,
     #[error("an ArduPilot log; time in seconds since the start of the autopilot")]
@@ -130,7 +130,7 @@ pub enum ReadingNote {
     )]
     DocumentedChannels {
         assignments: Vec<ChannelAssignment>,
-        /// Sign conventions of the logging system.
+        /// Sign conventions in the logging system.
         signs: &'static str,
     },
     #[error("{}", modes_words(.0))]
@@ -187,7 +187,7 @@ pub enum ReadingNote {
     DelaysSplit { name: String },
 }
 
-/// What a column of a frequency response is read as.
+/// Interpretation of a column in a frequency response table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ColumnReading {
     #[error("the frequency in {unit}")]
@@ -227,12 +227,12 @@ pub enum SkippedStatement {
     NotUnderstood,
     #[error("is not executed")]
     NotExecuted,
-    /// The beginning of a condition or a loop.
+    /// A condition or a loop begins.
     #[error("is not executed, and values set in it are not read")]
     Block,
 }
 
-/// Channel of a logged column, according to the documentation of the logging system.
+/// Channel for a logged column, according to the logging system's documentation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelAssignment {
     pub channel: &'static str,

@@ -1,6 +1,6 @@
-//! Reasons for the interpretation of a column in a table of frequency responses.
+//! Reasons for how a column in a frequency response table was interpreted.
 
-/// Reason for the quantity of a column.
+/// Reason for choosing the quantity of a column.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QuantityReason {
     #[error("its name is \"{0}\"")]
@@ -20,10 +20,10 @@ pub enum QuantityReason {
     Unknown,
 }
 
-/// Reason for the unit of a column, appended to the reason for its quantity.
+/// Reason for choosing the unit of a column, appended to the reason for its quantity.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnitReason {
-    /// The interpretation does not depend on the unit.
+    /// The unit does not affect the interpretation.
     #[error("")]
     NotNeeded,
     #[error(", its unit is {0}")]

@@ -1,4 +1,4 @@
-//! Columns of a flight record as read from a file, without the name and the hash of the file.
+//! Columns of a flight record as read from a file, without the file's name and hash.
 
 use crate::formats::reading_note::{ReadingNote, note_texts};
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
@@ -6,12 +6,12 @@ use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 /// Maximum number of records in a file.
 pub(crate) const MOST_RECORDS: usize = 1000;
 
-/// Columns of a flight record, without the name and the hash of the file.
+/// A flight record's columns, without the file's name and hash.
 pub(crate) struct Columns {
     /// Variable in the file that holds the record, such as "rec(2)"; empty for the whole file.
     pub(crate) variable: String,
     pub(crate) columns: Vec<RecordColumn>,
-    /// Whether the file gives the names of the columns.
+    /// Whether the file gives column names.
     pub(crate) named: bool,
     /// Sample time \[s\]; `None` if the file does not give it.
     pub(crate) sample_time_s: Option<f64>,

@@ -8,12 +8,12 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Nonzero elements of a matrix, with their indices.
 pub(crate) struct SparseEntries {
-    /// Numbers of rows and columns.
+    /// Number of rows, then number of columns.
     pub(crate) shape: [usize; 2],
     pub(crate) kind: ElementKind,
-    /// Row index of each element, from 0.
+    /// Row index for each element, from 0.
     pub(crate) rows: Vec<usize>,
-    /// Column index of each element, from 0.
+    /// Column index for each element, from 0.
     pub(crate) columns: Vec<usize>,
     pub(crate) re: Vec<f64>,
     /// Imaginary parts; `None` for real numbers.
@@ -46,8 +46,8 @@ impl SparseEntries {
         })
     }
 
-    /// Returns a full matrix in column-major order with `values` at the indices of the elements;
-    /// `None` if an index is outside the matrix.
+    /// Returns a full matrix in column-major order with `values` at the elements' indices; `None`
+    /// if an index is outside the matrix.
     fn expand(&self, values: &[f64]) -> Option<Vec<f64>> {
         let [height, width] = self.shape;
         let mut full = vec![0.0; height.saturating_mul(width)];
@@ -64,12 +64,12 @@ impl SparseEntries {
 
 /// Sparse matrix in compressed sparse column format, as stored by MATLAB and GNU Octave.
 pub(crate) struct CompressedColumns {
-    /// Numbers of rows and columns.
+    /// Number of rows, then number of columns.
     pub(crate) shape: [usize; 2],
     pub(crate) kind: ElementKind,
-    /// Row index of each element, from 0.
+    /// Row index for each element, from 0.
     pub(crate) rows: Vec<usize>,
-    /// Index of the first element of each column, then the number of elements.
+    /// Index of each column's first element, then the element count.
     pub(crate) starts: Vec<usize>,
     /// Real parts; there may be unused numbers at the end.
     pub(crate) re: Vec<f64>,

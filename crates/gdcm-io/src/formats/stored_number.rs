@@ -2,7 +2,7 @@
 
 use crate::formats::variables::ElementKind;
 
-/// Interpretation of the bits of a number.
+/// How the bits represent a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberClass {
     /// True if any bit is set.
@@ -55,7 +55,7 @@ impl StoredNumber {
         self.size
     }
 
-    /// Returns the kind of an array with such numbers.
+    /// Returns the element kind for an array of such numbers.
     pub(crate) fn kind(self) -> ElementKind {
         match self.class {
             NumberClass::Logical => ElementKind::Logical,
@@ -109,8 +109,8 @@ impl StoredNumber {
     }
 }
 
-/// Decodes a 16-bit float (IEEE 754, binary16): a sign bit, 5 bits of exponent with a bias of 15,
-/// and 10 bits of fraction. The powers of 2 include the division of the fraction by 2^10.
+/// Decodes a 16-bit float (IEEE 754, binary16): a sign bit, 5 exponent bits with bias 15, and 10
+/// fraction bits. The powers of 2 include dividing the fraction by 2^10.
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let exponent = i32::from(bits >> 10 & 31);

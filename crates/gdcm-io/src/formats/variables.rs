@@ -1,4 +1,4 @@
-//! Named variables from files of other programs.
+//! Named variables from other programs' files.
 //!
 //! All readers of such files (MATLAB, NumPy, text) return these values; what they mean for models
 //! and records is determined elsewhere.
@@ -11,7 +11,7 @@ pub(crate) const RECORD_MEMORY: u64 = 64;
 /// Memory charged for a field in addition to its name and values \[bytes\].
 const FIELD_MEMORY: usize = 48;
 
-/// Kind of the elements of an array.
+/// Kind of the elements in an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
     /// Floating-point numbers with 16, 32 or 64 bits.
@@ -24,11 +24,11 @@ pub enum ElementKind {
 /// Array of numbers in column-major order (first index fastest).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
-    /// Length of each dimension; there are at least two dimensions (a scalar is 1 x 1).
+    /// Length along each dimension; there are at least two dimensions (a scalar is 1 x 1).
     pub shape: Vec<usize>,
     pub kind: ElementKind,
-    /// Numbers, or the real parts of complex numbers. NaN and infinities are kept; code that uses
-    /// the numbers reports their positions.
+    /// Numbers, or real parts for complex numbers. NaN and infinities are kept; code that uses the
+    /// numbers reports their positions.
     pub re: Vec<f64>,
     /// Imaginary parts, as many as real parts; `None` for real numbers.
     pub im: Option<Vec<f64>>,
@@ -46,7 +46,7 @@ impl Array {
         }
     }
 
-    /// Returns the number of elements.
+    /// Returns the element count.
     pub fn len(&self) -> usize {
         self.re.len()
     }
@@ -64,7 +64,7 @@ pub struct Variable {
     pub value: Value,
 }
 
-/// Value of a variable.
+/// A variable's value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Numbers; a sparse matrix is expanded to a full matrix.
@@ -77,7 +77,7 @@ pub enum Value {
     Object(Object),
     /// Value that could not be read.
     Opaque {
-        /// Class name, or a description of the value.
+        /// Class name, or a description.
         class: String,
         /// Reason why the value could not be read.
         why: Box<Unread>,
@@ -87,7 +87,7 @@ pub enum Value {
 /// Array of strings, for example the rows of a character array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextArray {
-    /// Length of each dimension; there are at least two dimensions.
+    /// Length along each dimension; there are at least two dimensions.
     pub shape: Vec<usize>,
     /// Strings in column-major order. Rows of a character array keep blanks at their ends.
     pub texts: Vec<String>,
@@ -96,7 +96,7 @@ pub struct TextArray {
 /// Array of values of any kind, in column-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellArray {
-    /// Length of each dimension; there are at least two dimensions.
+    /// Length along each dimension; there are at least two dimensions.
     pub shape: Vec<usize>,
     pub values: Vec<Value>,
 }
@@ -104,7 +104,7 @@ pub struct CellArray {
 /// Array of records with the same fields, in column-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructArray {
-    /// Length of each dimension; there are at least two dimensions.
+    /// Length along each dimension; there are at least two dimensions.
     pub shape: Vec<usize>,
     /// Fields in file order: name, and a value for each record.
     pub fields: Vec<(String, Vec<Value>)>,
@@ -176,8 +176,8 @@ impl Value {
             .chain(fields.iter().flat_map(|(_, values)| values))
     }
 
-    /// Returns an upper bound of the memory of this value without the values that it contains
-    /// \[bytes\].
+    /// Returns an upper bound for this value's memory \[bytes\], without the values that it
+    /// contains.
     pub(crate) fn own_memory(&self) -> u64 {
         let bytes = match self {
             Self::Array(array) => {
@@ -228,19 +228,19 @@ impl Value {
     }
 }
 
-/// Returns the memory of a string \[bytes\].
+/// Returns a string's memory \[bytes\].
 fn text_memory(text: &str) -> usize {
     size_of::<String>() + text.len()
 }
 
-/// Formats the dimensions of an array: "3 x 4".
+/// Formats array dimensions: "3 x 4".
 fn dimensions(shape: &[usize]) -> String {
     let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
     sides.join(" x ")
 }
 
 impl StructArray {
-    /// Creates a 1 x 1 array from the fields of a record.
+    /// Creates a 1 x 1 array from a record's fields.
     pub fn one(fields: Vec<(String, Vec<Value>)>) -> Self {
         Self {
             shape: vec![1, 1],
@@ -248,8 +248,7 @@ impl StructArray {
         }
     }
 
-    /// Returns the values of a field, in the order of the records; `None` if there is no such
-    /// field.
+    /// Returns a field's values, in record order; `None` if there is no such field.
     pub fn field(&self, name: &str) -> Option<&[Value]> {
         self.fields
             .iter()

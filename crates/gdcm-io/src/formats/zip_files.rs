@@ -21,10 +21,10 @@ const LARGEST_RATIO: u64 = 1032;
 /// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// End of the names of NumPy arrays.
+/// File name ending for NumPy arrays.
 const ARRAY_ENDING: &str = ".npy";
 
-/// Importer of zip archives: NumPy archives (`.npz`), and archives of files with any other format.
+/// Importer for zip archives: NumPy archives (`.npz`), and archives with files in any other format.
 pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
@@ -48,10 +48,10 @@ pub(crate) fn read_archive(
     })
 }
 
-/// State of reading an archive.
+/// State while an archive is read.
 #[derive(Default)]
 struct ArchiveReading {
-    /// Names of the arrays, to detect duplicates.
+    /// Array names so far, to detect duplicates.
     names: HashSet<String>,
     variables: Vec<Variable>,
     files: Vec<(String, Result<Contents, FileError>)>,
@@ -65,8 +65,8 @@ impl ArchiveReading {
         file: &ZipFile<'_, '_>,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        // Each entry needs memory for a variable or a file, whereas a few bytes in the directory of
-        // the archive suffice to create it.
+        // Each entry needs memory for a variable or a file, whereas a few bytes in the archive's
+        // directory suffice to create it.
         let overhead = size_of::<Variable>() + size_of::<Contents>() + file.path.len();
         budget.take(1, overhead as u64, "")?;
         if let Some(name) = file.path.strip_suffix(ARRAY_ENDING) {
@@ -104,7 +104,7 @@ impl ArchiveReading {
         Ok(())
     }
 
-    /// Stores the contents of a file, or the error from reading it.
+    /// Stores a file's contents, or the error from reading it.
     ///
     /// # Errors
     /// Only an exhausted budget.
@@ -125,7 +125,6 @@ impl ArchiveReading {
 
 /// A file in a zip archive (APPNOTE 6.3).
 struct ZipFile<'z, 'b> {
-    /// Path in the archive.
     path: &'z str,
     /// Offset of the file in the archive \[bytes\].
     offset: u64,
@@ -228,7 +227,7 @@ fn read_whole(
     let mut reader = reader.take(length.saturating_add(1));
     let mut unpacked = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
     loop {
-        // No step of work, but an error if the reading is cancelled.
+        // No work step, but an error if the reading is cancelled.
         budget.work(0, "")?;
         match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
             Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),

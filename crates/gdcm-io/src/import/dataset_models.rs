@@ -11,8 +11,8 @@ use gdcm_model::dataset::{BundleKind, Condition, Dataset};
 
 use crate::files::model_collection::labels;
 
-/// Returns every model of a dataset with its provenance and flight condition, those with moved
-/// parameters included. `name` is the path of the dataset file, relative to the folder that is read.
+/// Returns every model in a dataset with its provenance and flight condition, including those with
+/// moved parameters. `name` is the dataset file's path, relative to the folder that is read.
 pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     let mut models = Vec::new();
     for condition in dataset.conditions() {
@@ -53,8 +53,8 @@ pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel
     models
 }
 
-/// Returns the flight condition with its records. The paths of the records, which are relative to
-/// the dataset's folder, become relative to the folder that is read.
+/// Returns the flight condition with its records. The record paths, which are relative to the
+/// dataset's folder, become relative to the folder that is read.
 fn facts_of(condition: &Condition, name: &str) -> Facts {
     let state = condition.flight_state();
     let mut records = Vec::new();

@@ -10,10 +10,9 @@ use super::recognise::{Found, recognise};
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::ReadingBudget;
 
-/// A matrix that is the only variable of its file.
+/// A matrix that is the only variable in its file.
 pub(super) struct LooseMatrix {
-    /// Folder, and file name without the letter of the matrix; the matrices of a group form a
-    /// model.
+    /// Folder, and file name without the matrix letter; the matrices in a group form a model.
     group: String,
     file: String,
     sha256: String,
@@ -23,7 +22,7 @@ pub(super) struct LooseMatrix {
 
 impl LooseMatrix {
     /// Takes the matrix from a file; `None` unless it is the only variable and the file name ends
-    /// in the letter of a matrix.
+    /// in a matrix letter.
     pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
@@ -52,7 +51,7 @@ impl LooseMatrix {
     }
 }
 
-/// Splits a file name without extension into the letter of a matrix at its end and the part before:
+/// Splits a file name without extension into the matrix letter at its end and the part before:
 /// "nominal_A" is the matrix A of "nominal".
 pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last()?;
@@ -66,7 +65,7 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
 }
 
-/// Builds a model from each group of matrices; the group is the stated file of the model.
+/// Builds a model from each group of matrices; the group is stated as the model's file.
 pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {

@@ -1,4 +1,4 @@
-//! Recognition of models and records in files of any format.
+//! Recognises models and records in files, whatever their format.
 
 mod dataset_models;
 mod loose_matrices;

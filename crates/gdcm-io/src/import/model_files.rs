@@ -1,4 +1,4 @@
-//! Reading of models from files of any format, and from folders.
+//! Reads models from files in any format, and from folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Key in [`Headings`] for all tables with as many columns as there are headings; any other key is
 /// a file.
 pub const EVERY_TABLE: &str = "*";
-/// Number of lines at the beginning of a text that are searched for a named matrix.
+/// Number of lines at the start of a text that are searched for a named matrix.
 const HEADING_LINES: usize = 50;
 /// Maximum number of unused variables listed for each file.
 const MOST_LISTED: usize = 20;
@@ -33,13 +33,13 @@ const MOST_LISTED: usize = 20;
 /// Results of reading model files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundModels {
-    /// Models in the order of the files.
+    /// Models in file order.
     pub models: Vec<FoundModel>,
     /// Files that could not be read and invalid models, each with its place and the reason.
     pub faults: Vec<String>,
     /// Descriptions of contents that are not models.
     pub ignored: Vec<String>,
-    /// Names of the variables that no model uses, by file.
+    /// Variables that no model uses, by file.
     pub unused: BTreeMap<String, Vec<String>>,
     /// Tables of columns, by file, with the headings that were used.
     pub tables: Headings,
@@ -101,14 +101,14 @@ pub fn models_of_bytes(
     })
 }
 
-/// Name and hash of a file; for a file in an archive, the hash of the archive.
+/// A file's name and hash; for a file in an archive, the archive's hash.
 #[derive(Clone, Copy)]
 struct FileIdentity<'f> {
     name: &'f str,
     sha256: &'f str,
 }
 
-/// State of reading model files.
+/// State while model files are read.
 struct ModelReading<'h> {
     headings: &'h Headings,
     found: FoundModels,
@@ -125,7 +125,6 @@ impl<'h> ModelReading<'h> {
         }
     }
 
-    /// Adds the models in a file.
     fn add_file(
         &mut self,
         file: ImportedFile<'_>,
@@ -188,7 +187,7 @@ impl<'h> ModelReading<'h> {
         Ok(())
     }
 
-    /// Adds the models in a file of an archive. A file that cannot be read is recorded in `faults`.
+    /// Adds the models in an archived file. A file that cannot be read is recorded in `faults`.
     ///
     /// # Errors
     /// Only a cancellation.
@@ -265,7 +264,7 @@ impl<'h> ModelReading<'h> {
         Ok(models.found)
     }
 
-    /// Adds models with their provenance; the first model of a file lists the unused variables.
+    /// Adds models with their provenance; the first model in a file lists the unused variables.
     fn add_found(&mut self, mut found: Found<FoundModel>, identity: FileIdentity<'_>) {
         let FileIdentity { name, sha256 } = identity;
         for (index, model) in found.items.iter_mut().enumerate() {
@@ -311,8 +310,8 @@ enum TextContents {
     Table(TextTable),
 }
 
-/// Reads a single matrix if the file name ends in the letter of a matrix, named matrices if the
-/// text begins with one, and otherwise a table.
+/// Reads a single matrix if the file name ends in a matrix letter, named matrices if the text
+/// begins with one, and otherwise a table.
 fn read_text(
     text: &str,
     path: &Path,
@@ -342,7 +341,7 @@ fn read_text(
     Ok(TextContents::Table(table))
 }
 
-/// Returns whether a line is the heading of a matrix, such as "A =", "B:" or "C = [".
+/// Returns whether a line is a matrix heading, such as "A =", "B:" or "C = [".
 fn is_matrix_heading(line: &str) -> bool {
     let name = line.trim().trim_end_matches(['=', ':', '[']).trim_end();
     matches!(name, "A" | "B" | "C" | "D")

@@ -1,11 +1,11 @@
-//! Lock of a directory while the files of a set are renamed.
+//! Locks a directory while a set's files are renamed.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use super::temporary_files::{PREFIX, SUFFIX};
 
-/// Lock for renaming the files of a set in a directory: a locked file there, for which the next set
+/// Lock for renaming a set's files in a directory: a locked file there, for which the next set
 /// waits. The lock is released when its process ends, for whatever reason.
 pub(super) struct SetLock {
     path: PathBuf,

@@ -1,8 +1,8 @@
 //! Temporary files beside the files that they replace: new content before it is renamed, and second
 //! names of existing files.
 //!
-//! Each is locked while its process runs. A temporary file without a lock is the leftover of a killed
-//! run, and is removed by the next write into its directory.
+//! Each is locked while its process runs. A temporary file without a lock is a leftover from a
+//! killed run, and is removed by the next write into its directory.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -10,7 +10,7 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
-/// Start and end of the names of temporary files.
+/// Beginning and end of the names of temporary files.
 pub(super) const PREFIX: &str = ".gdcm-";
 pub(super) const SUFFIX: &str = ".tmp";
 
@@ -35,7 +35,7 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
     let mut builder = temporary_name();
     set_permissions(&mut builder, target);
     loop {
-        // Keep only the kind of the error: the builder's message would name the temporary file.
+        // Keep only the error kind: the builder's message would name the temporary file.
         let temporary = builder
             .tempfile_in(directory)
             .map_err(|error| io::Error::from(error.kind()))?;
@@ -61,14 +61,14 @@ fn set_permissions(builder: &mut tempfile::Builder<'_, '_>, target: &Path) {
     builder.permissions(permissions);
 }
 
-/// Elsewhere a file has the permissions of its directory.
+/// Elsewhere a file has its directory's permissions.
 #[cfg(not(unix))]
 fn set_permissions(_: &mut tempfile::Builder<'_, '_>, _: &Path) {}
 
 /// How the content of a file that is about to be replaced is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum KeptAs {
-    /// A second name of the file, or a copy if the file system has no hard links.
+    /// A second name for the file, or a copy if the file system has no hard links.
     SecondName,
     /// A copy. Windows does not replace a file that is open under any of its names, and the lock
     /// keeps a second name open.
@@ -132,7 +132,7 @@ fn temporary_name() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-/// Returns the directory of a file; a file name alone is in the current directory.
+/// Returns a file's directory; a file name alone is in the current directory.
 pub(super) fn directory_of(file: &Path) -> &Path {
     match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -140,7 +140,7 @@ pub(super) fn directory_of(file: &Path) -> &Path {
     }
 }
 
-/// Removes temporary files of killed runs, recognised by the missing lock.
+/// Removes temporary files from killed runs, recognised by the missing lock.
 pub(super) fn remove_leftovers(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let is_ours = entry

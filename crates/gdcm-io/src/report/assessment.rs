@@ -17,14 +17,14 @@ use super::limits::{CONDITIONS_DRAWN, PAIRS_DRAWN};
 use super::page::Page;
 use super::wording::capital;
 
-/// Maximum number of responses in a figure, in two rows.
+/// Maximum number of responses per figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 12;
-/// Maximum number of plots in a row of a figure.
+/// Maximum number of plots per figure row.
 const PLOTS_IN_A_ROW: usize = 6;
 /// Maximum number of conditions side by side in a table that fits on a page.
 const CONDITIONS_SIDE_BY_SIDE: usize = 12;
 
-/// Adds the section on the change of J due to the scheduled correction.
+/// Adds the section on the change in J due to the scheduled correction.
 pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     page.section("Assessment");
     let choice = usual_choice(analysis);
@@ -57,7 +57,7 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the appendix with J of the on-axis responses in parts, and with the off-axis responses.
+/// Adds the appendix with on-axis J in parts, and with the off-axis responses.
 pub(super) fn add_assessment_details(page: &mut Page, analysis: &Analysis) {
     page.appendix("Details of the assessment");
     let table = AssessmentTable::assess(analysis, usual_choice(analysis));
@@ -70,7 +70,7 @@ pub(super) fn add_assessment_details(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the changes in J of the responses `pairs` under the title `name`: a summary, figures and
+/// Adds the changes in J for the responses `pairs` under the title `name`: a summary, figures and
 /// tables.
 fn add_responses(
     page: &mut Page,
@@ -89,7 +89,7 @@ fn add_responses(
     add_tables(page, analysis, table, pairs, name);
 }
 
-/// Adds figures of the changes in J of the responses `pairs` under the title `name`.
+/// Plots the changes in J for the responses `pairs` under the title `name`.
 fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(PAIRS_IN_A_FIGURE) {
@@ -110,8 +110,8 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
     }
 }
 
-/// Adds tables of ΔJ of the responses `pairs` at every condition, with as many conditions side by
-/// side as fit on a page; `name` is part of the titles.
+/// Tabulates ΔJ for the responses `pairs` at every condition, with as many conditions side by side
+/// as fit on a page; the titles contain `name`.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,

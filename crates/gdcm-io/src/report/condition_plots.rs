@@ -1,4 +1,4 @@
-//! Plots of a condition in the report.
+//! A condition's plots in the report.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 use super::shown_models::models_hidden;
 
-/// Adds Bode plots of the responses in the objective (on-axis; all if none is on-axis).
+/// Adds Bode plots for the responses in the objective (on-axis; all if none is on-axis).
 pub(super) fn add_response_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -39,7 +39,7 @@ pub(super) fn add_response_plots(
     Ok(())
 }
 
-/// Computes the curves of a condition and adds its other plots: ratios and phase differences of the
+/// Computes a condition's curves and adds its other plots: ratios and phase differences for the
 /// responses in the objective, an overview of all responses, and the poles.
 pub(super) fn add_condition_plots(
     page: &mut Page,
@@ -106,17 +106,17 @@ fn add_number_drawn(page: &mut Page, source: &ConditionSource<'_>) {
     }
 }
 
-/// Maximum number of responses in a figure, in one row.
+/// Maximum number of responses per figure, in one row.
 const PAIRS_IN_A_FIGURE: usize = 6;
-/// Maximum number of plots in a row of a figure.
+/// Maximum number of plots per figure row.
 const PLOTS_IN_A_ROW: usize = PAIRS_IN_A_FIGURE;
-/// Maximum number of responses in the overview, which shows magnitudes alone.
+/// Maximum number of responses in the overview, which shows only magnitudes.
 const PAIRS_IN_OVERVIEW: usize = 60;
-/// Number of plots in a row of the overview, in whole outputs.
+/// Maximum number of plots per row of the overview; a row shows whole outputs, at least one.
 const OVERVIEW_PLOTS_IN_A_ROW: usize = 10;
 
-/// Adds plots of ratio and phase difference between the identified representative and the physics
-/// models, of the responses in the objective.
+/// Plots ratio and phase difference between the identified representative and the physics models,
+/// for the responses in the objective.
 fn add_error_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let id = source.curves.condition.id();
     for pairs in drawn_pairs(source).chunks(PAIRS_IN_A_FIGURE) {
@@ -128,7 +128,7 @@ fn add_error_plots(page: &mut Page, source: &ConditionSource<'_>, options: &Bode
     }
 }
 
-/// Adds a plot of the magnitudes of all responses, unless there are too many for a figure.
+/// Plots the magnitudes of all responses, unless there are too many for a figure.
 fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let without_bundles = BodeOptions {
         hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
@@ -147,7 +147,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
     }
 }
 
-/// Adds a plot of the model poles, with their shifts due to couplings.
+/// Plots the model poles, with their shifts due to couplings.
 fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let Ok(modes) = ConditionModes::compute(&source.curves.condition, &Unobserved) else {
         return;

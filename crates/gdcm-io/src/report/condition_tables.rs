@@ -1,5 +1,4 @@
-//! Tables of the conditions in the report: an overview; channels, responses and models of one
-//! condition.
+//! Condition tables in the report: an overview; channels, responses and models for one condition.
 
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -18,8 +17,8 @@ use super::page::Page;
 use super::shown_models::models_shown;
 use super::wording::{MISSING, names};
 
-/// Tabulates the conditions: kept models, matched held responses, and whether the gains are proven
-/// optimal.
+/// Tabulates the conditions: kept models, matched constrained responses, and whether the gains are
+/// proven optimal.
 pub(super) fn condition_table(analysis: &Analysis) -> Table {
     let title = "Conditions: kept models, matched held responses, and whether the gains are \
         proven optimal";
@@ -62,7 +61,7 @@ pub(super) fn condition_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Returns how many models of a bundle are kept: "8 of 9".
+/// Returns how many models in a bundle are kept: "8 of 9".
 fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     let models = condition.bundle(kind);
     let rejected = &study.choice(condition.id()).bundle(kind).rejected;
@@ -73,7 +72,7 @@ fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String 
     format!("{kept} of {}", models.len())
 }
 
-/// Returns the proof status of the gains as a single word.
+/// Returns in a single word whether the gains are proven optimal.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",
@@ -81,7 +80,7 @@ pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     }
 }
 
-/// Tabulates gain and delay of each channel.
+/// Tabulates each channel's gain and delay.
 pub(super) fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let dataset = &analysis.study.dataset;
     let correction = &result.correction;
@@ -109,7 +108,7 @@ pub(super) fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> 
     table
 }
 
-/// Headings of the table of responses; [`response_cells`] returns the cells in the same order.
+/// Headings for the response table; [`response_cells`] returns the cells in the same order.
 const RESPONSE_COLUMNS: [&str; 11] = [
     "response",
     "on-axis",
@@ -220,7 +219,7 @@ fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     lines
 }
 
-/// Tabulates a bundle's models; of a long bundle, only the models that [`models_shown`] selects.
+/// Tabulates a bundle's models; for a long bundle, only those selected by [`models_shown`].
 pub(super) fn model_table(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> Table {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
@@ -269,7 +268,7 @@ pub(super) fn model_table(study: &Study, result: &ConditionAnalysis, kind: Bundl
     table
 }
 
-/// Adds a sentence on the models of a long bundle that are neither listed nor drawn.
+/// Adds a sentence on a long bundle's models that are neither listed nor drawn.
 pub(super) fn add_models_omitted(
     page: &mut Page,
     study: &Study,

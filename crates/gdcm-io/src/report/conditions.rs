@@ -1,4 +1,4 @@
-//! Report section on the conditions, with cautions and a figure of each; and the appendix with
+//! Report section on the conditions, with cautions and a figure for each; and the appendix with
 //! representatives, gains and delays with their basis, and all plots.
 //!
 //! The tables are in `condition_tables`, the plots in `condition_plots`.
@@ -27,8 +27,8 @@ use super::limits::CONDITIONS_DRAWN;
 use super::page::Page;
 use super::wording::names;
 
-/// Adds the section on the conditions: an overview, the remarks that need attention, and a figure of
-/// the on-axis responses of each condition.
+/// Adds the section on the conditions: an overview, the remarks that need attention, and a figure
+/// with each condition's on-axis responses.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -61,7 +61,7 @@ pub(super) fn add_conditions(
     Ok(())
 }
 
-/// Remarks of the same code, worded for the first condition that has one.
+/// Remarks with the same code, worded for the first condition that has one.
 struct SharedRemark {
     code: &'static str,
     words: String,
@@ -69,7 +69,7 @@ struct SharedRemark {
 }
 
 /// Returns the cautions and the unmatched responses: each kind once, worded for its first
-/// condition, with the other conditions that have a remark of this kind.
+/// condition, followed by the other conditions with such a remark.
 fn shared_remarks(analysis: &Analysis) -> Vec<String> {
     let study = &analysis.study;
     let mut shared: Vec<SharedRemark> = Vec::new();
@@ -152,7 +152,7 @@ fn remark_words(remark: &Remark, study: &Study) -> String {
     }
 }
 
-/// Adds the results of a condition as text and tables.
+/// Adds a condition's results as text and tables.
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
@@ -179,7 +179,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
 }
 
-/// Returns names and values of the first table: flight state, bundles, bounds and objectives.
+/// Returns names and values for the first table: flight state, bundles, bounds and objectives.
 fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, String)> {
     let bounds = result.gain_bounds();
     let gains = &result.gains;
@@ -235,7 +235,7 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
     ]
 }
 
-/// Describes the flight state of a condition: "80 kt, sea level, 0 ft, light, 6500 kg".
+/// Describes a condition's flight state: "80 kt, sea level, 0 ft, light, 6500 kg".
 fn flight_words(condition: &Condition) -> String {
     let state = condition.flight_state();
     let [altitude_class, weight_class] = class_names(state);

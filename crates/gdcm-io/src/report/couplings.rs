@@ -18,8 +18,8 @@ use super::wording::capital;
 /// Maximum number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
-/// Returns the analysis with the assessment of its couplings, which is computed if missing;
-/// unchanged if no couplings were fitted.
+/// Returns the analysis with its couplings assessed, computing the assessment if missing; unchanged
+/// if no couplings were fitted.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.

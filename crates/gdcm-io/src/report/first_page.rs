@@ -1,4 +1,4 @@
-//! First page of the report: verdict, corrections, signatures.
+//! The report's first page: verdict, corrections, signatures.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
@@ -18,16 +18,16 @@ use gdcm_words::verdict::{
 use super::page::Page;
 use super::wording::{MISSING, capital, counted_are};
 
-/// Maximum number of responses in the table of corrections, which then fits on the page.
+/// Maximum number of responses in the correction table, which then fits on the page.
 const PAIRS_SHOWN: usize = 6;
-/// Maximum number of rows of the tables on the first page, which leaves room for the signatures.
+/// Maximum number of table rows on the first page, which leaves room for the signatures.
 const ROWS_SHOWN: usize = 24;
 /// Net delays up to this magnitude are displayed as zero \[ms\].
 const NO_DELAY_MS: f64 = 0.05;
 /// Who signs the report.
 const ROLES: [&str; 3] = ["Prepared by", "Checked by", "Approved by"];
 
-/// Adds the verdict on the study, the corrections of all conditions, and the block of signatures.
+/// Adds the verdict on the study, the corrections for all conditions, and the signature block.
 pub(super) fn add_first_page(page: &mut Page, analysis: &Analysis) {
     page.section("Verdict");
     page.paragraph(&verdict_sentence(analysis));
@@ -77,7 +77,8 @@ fn failures(analysis: &Analysis) -> Vec<String> {
     failures
 }
 
-/// Returns the held responses; those in the objective if none is held. At most [`PAIRS_SHOWN`].
+/// Returns the constrained responses; those in the objective if none is constrained. At most
+/// [`PAIRS_SHOWN`].
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let held = study.settings.constrained.marked();
     let mut pairs: Vec<Pair> = held.take(PAIRS_SHOWN).collect();
@@ -88,7 +89,7 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
     pairs
 }
 
-/// Tabulates verdict, net gains with their error bars, and mean J of each condition.
+/// Tabulates verdict, net gains with their error bars, and mean J for each condition.
 fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
     let study = &analysis.study;
     let interval = match &analysis.uncertainty {
@@ -127,7 +128,7 @@ fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
     table
 }
 
-/// "3: 45 kt".
+/// Names a condition with its airspeed: "3: 45 kt".
 fn condition_cell(condition: &Condition) -> String {
     let state = condition.flight_state();
     format!("{}: {} kt", state.id, number(state.airspeed_kt))
@@ -161,14 +162,14 @@ fn correction_cells(
     cells
 }
 
-/// Returns the half-width of the error bar of a net gain \[%\].
+/// Returns the half-width of a net gain's error bar \[%\].
 fn half_width_percent(analysis: &Analysis, result: &ConditionAnalysis, pair: Pair) -> Option<f64> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let bar = uncertainty.bar(result.condition.id(), Scalar::NetGain(pair))?;
     Some(100.0 * bar.half_width(uncertainty.level)?)
 }
 
-/// Tabulates the net delays of each condition; negative values are leads. `None` if the correction
+/// Tabulates each condition's net delays; negative values are leads. `None` if the correction
 /// delays no response.
 fn delay_table(analysis: &Analysis, pairs: &[Pair]) -> Option<Table> {
     let study = &analysis.study;
@@ -207,7 +208,7 @@ fn net_signed_delay_ms(result: &ConditionAnalysis, pair: Pair) -> f64 {
     s_to_ms(delays_s[Channel::Input(pair.input)] + delays_s[Channel::Output(pair.output)])
 }
 
-/// Returns a sentence on the change of J of the nominal models due to the schedule.
+/// Returns a sentence on how the schedule changes J for the nominal models.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();

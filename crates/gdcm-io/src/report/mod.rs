@@ -1,4 +1,4 @@
-//! Report of a study: a single HTML file without external resources, for printing on A4 or letter
+//! Report on a study: a single HTML file without external resources, for printing on A4 or letter
 //! paper. The bytes depend only on the study.
 //!
 //! The first page has the verdict, the corrections and the signatures. The contents follow, then the
@@ -40,12 +40,12 @@ use crate::software::software;
 
 pub use self::first_page::assessment_sentence;
 
-/// File names and hash of a study, stated in the report.
+/// A study's file names and dataset hash, as stated in the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportSource {
-    /// File name of the study; `None` if it is not saved.
+    /// Study file name; `None` if not saved.
     pub study: Option<String>,
-    /// File name of the dataset; "(embedded example)" without a file.
+    /// Dataset file name; "(embedded example)" without a file.
     pub dataset: String,
     /// SHA-256 of the dataset file, in hexadecimal.
     pub sha256: String,
@@ -54,7 +54,7 @@ pub struct ReportSource {
 }
 
 impl ReportSource {
-    /// Describes the files of a study: its dataset, and the study file if it is saved. Folders are
+    /// Describes a study's files: its dataset, and the study file if it is saved. Folders are
     /// omitted, so that the report does not depend on their location.
     pub fn from_files(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
@@ -81,8 +81,8 @@ pub struct ReportSubject<'a> {
 }
 
 /// Returns the report on an analysis as HTML. Error bars and the assessments of couplings and
-/// physics parameters are computed first if the analysis lacks them, because several sections show them; `engine` also
-/// computes the responses that are plotted. Each condition is a progress step.
+/// physics parameters are computed first if the analysis lacks them, because several sections show
+/// them; `engine` also computes the responses that are plotted. Each condition is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -133,8 +133,8 @@ pub fn report(
     Ok(page.finish(&title, &[origin]))
 }
 
-/// Progress for computations within a step of the report: forwards cancellation, and does not show
-/// their own steps.
+/// Progress for computations within a report step: forwards cancellation, and does not show their
+/// own steps.
 struct CancellationOnly<'a>(&'a dyn Progress);
 
 impl Progress for CancellationOnly<'_> {

@@ -52,8 +52,8 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Adds a row for each rejected model. Of the models rejected without a reason, only the first
-/// [`NAMES_SHOWN`] are listed; the others are counted.
+/// Adds a row for each rejected model. Only the first [`NAMES_SHOWN`] models without a reason are
+/// listed; the others are counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
     let result = analysis.condition(condition.id());
@@ -93,8 +93,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
     }
 }
 
-/// Describes the models of a condition that are excluded by the analysis, suspected but kept, or
-/// pinned by the analyst.
+/// Describes a condition's models that are excluded by the analysis, suspected but kept, or pinned
+/// by the analyst.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();

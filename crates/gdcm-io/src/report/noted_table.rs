@@ -13,13 +13,13 @@ const MOST_NOTES: usize = 8;
 /// A table with its repeated long texts moved into notes, and without empty columns.
 pub(super) struct NotedTable {
     pub(super) table: Table,
-    /// "a: text."
+    /// Notes in the form "a: text."
     pub(super) notes: Vec<String>,
 }
 
 impl NotedTable {
-    /// Replaces a long text that several rows of a column share by a letter, and explains the
-    /// letter in a note. A narrow column of long texts would make a table several times as long.
+    /// Replaces a long text that several rows share in a column by a letter, and explains the
+    /// letter in a note. Long texts in a narrow column would make the table several times as long.
     pub(super) fn new(table: &Table) -> Self {
         let mut noted = Self {
             table: without_empty_columns(table),
@@ -57,8 +57,8 @@ impl NotedTable {
     }
 }
 
-/// Returns the table without the columns in which every cell is empty or missing. A table of which
-/// nothing would be left stays as it is.
+/// Returns the table without the columns in which every cell is empty or missing. A table that
+/// would become empty is unchanged.
 fn without_empty_columns(table: &Table) -> Table {
     let mut kept = Vec::new();
     for column in 0..table.columns.len() {

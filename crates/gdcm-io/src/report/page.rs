@@ -19,13 +19,12 @@ const ROWS: usize = 1000;
 const ROWS_ON_A_SHEET: usize = 30;
 /// Maximum number of characters in a cell that is kept on one line.
 const SHORT: usize = 24;
-/// Maximum height of a figure \[pt\]: four figures with their captions fill a page of A4 or letter
-/// paper.
+/// Maximum figure height \[pt\]: four figures with their captions fill an A4 or letter page.
 const FIGURE_PT: f64 = 145.0;
-/// Minimum ratio of height to width of a plot that is flattened to a quarter of a page.
+/// Minimum ratio of height to width for a plot flattened to a quarter page.
 const LEAST_ASPECT: f64 = 0.3;
 const STYLE: &str = include_str!("style.css");
-/// Security policy of the page: no external resources and no scripts, whatever text it contains.
+/// The page's security policy: no external resources and no scripts, whatever text it contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
 /// A heading in the table of contents.
@@ -42,7 +41,7 @@ pub(super) struct Page {
     /// Position of the table of contents in `body`; at the beginning if `None`.
     contents_at: Option<usize>,
     section: usize,
-    /// Number of appendices begun; their sections are lettered.
+    /// Number of appendices begun so far, which have letters.
     appendix: usize,
     subsection: usize,
     tables: usize,
@@ -74,7 +73,7 @@ impl Page {
         self.heading("h3", number, title);
     }
 
-    /// Returns the number of the current section, or the letter of the current appendix.
+    /// Returns the current section's number, or the current appendix's letter.
     fn section_number(&self) -> String {
         match self.appendix {
             0 => self.section.to_string(),
@@ -102,7 +101,7 @@ impl Page {
         self.body.push_str("</tbody>\n</table>\n");
     }
 
-    /// Begins a group of narrow tables, which stand side by side where they fit.
+    /// Begins a group of narrow tables, placed side by side where they fit.
     pub(super) fn begin_side_by_side(&mut self) {
         self.body.push_str("<div class=\"side\">\n");
     }
@@ -153,7 +152,7 @@ impl Page {
         }
     }
 
-    /// Adds a two-column table of names (left) and values (right), without headings.
+    /// Adds a two-column table with names (left) and values (right), without headings.
     pub(super) fn facts<'a>(&mut self, facts: impl IntoIterator<Item = (&'a str, String)>) {
         self.body.push_str("<table class=\"facts\"><tbody>\n");
         for (name, value) in facts {
@@ -205,7 +204,7 @@ impl Page {
         }
     }
 
-    /// Adds a table in parts of at most `columns` columns; each part repeats the first column.
+    /// Adds a table in parts with at most `columns` columns; each part repeats the first column.
     pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
         self.wide_table_behind(table, 1, columns);
     }
@@ -290,7 +289,7 @@ impl Page {
     }
 }
 
-/// Returns the letter of an appendix: A to Z, then A1, B1, …
+/// Returns an appendix's letter: A to Z, then A1, B1, …
 fn appendix_letters(count: usize) -> String {
     let index = count - 1;
     let letter = char::from(b'A' + (index % 26) as u8);
@@ -300,8 +299,9 @@ fn appendix_letters(count: usize) -> String {
     }
 }
 
-/// Draws a figure as wide as the page and at most a quarter of it high: plots are flattened as far
-/// as necessary, but not below [`LEAST_ASPECT`]. The height is linear in the aspect ratio, except for the widths of tick labels.
+/// Draws a figure across the page width and at most a quarter page high: plots are flattened as far
+/// as necessary, but not below [`LEAST_ASPECT`]. The height is linear in the aspect ratio, except for
+/// tick label widths.
 fn quarter_page(figure: Figure) -> Drawing {
     let [_, height] = figure.drawing(ColumnWidth::Double).size;
     if height <= FIGURE_PT {
@@ -320,7 +320,7 @@ fn quarter_page(figure: Figure) -> Drawing {
         .drawing(ColumnWidth::Double)
 }
 
-/// Returns a table row; `classes` holds the class of each column.
+/// Returns a table row; `classes` holds one class per column.
 fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     let mut row = String::from("<tr>\n");
     for (text, class) in cells.iter().zip(classes) {
@@ -334,14 +334,14 @@ fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     row
 }
 
-/// Returns the first `heads` cells of a row, and the cells with the indices `from..to`.
+/// Returns a row's first `heads` cells and its cells with the indices `from..to`.
 fn columns_between(cells: &[String], heads: usize, from: usize, to: usize) -> Vec<String> {
     let to = to.min(cells.len());
     [&cells[..heads], &cells[from..to]].concat()
 }
 
-/// Returns the CSS class of a column: `n` for numbers, `s` for texts short enough for one line,
-/// none for other texts.
+/// Returns a column's CSS class: `n` for numbers, `s` for texts short enough for one line, none for
+/// other texts.
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
         .rows

@@ -12,10 +12,10 @@ use super::CancellationOnly;
 use super::page::Page;
 use super::wording::capital;
 
-/// Maximum number of columns of the parameters' table that fit on a page.
+/// Maximum number of columns of the parameter table that fit on a page.
 const TABLE_COLUMNS: usize = 8;
 
-/// Returns the analysis with the assessment of its physics parameters, which is computed if missing;
+/// Returns the analysis with its physics parameters assessed, computing the assessment if missing;
 /// unchanged if none are applied.
 ///
 /// # Errors

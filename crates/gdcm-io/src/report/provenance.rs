@@ -1,5 +1,5 @@
-//! Report sections on the origin of the results: files of the study and the dataset, and source files
-//! of the models.
+//! Report sections on where the results come from: study and dataset files, and the models' source
+//! files.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::page::Page;
 use super::wording::names;
 use crate::software::software;
 
-/// Adds the section on the files of the study and the dataset.
+/// Adds the section on the study and dataset files.
 pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     page.section("Provenance");
     let dataset = &study.dataset;
@@ -49,7 +49,7 @@ fn channel_words(channels: &[Channel]) -> String {
     words.join(", ")
 }
 
-/// Adds the section on the source files of the models, if the dataset records any.
+/// Adds the section on the models' source files, if the dataset records any.
 pub(super) fn add_models(page: &mut Page, study: &Study) {
     let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
     let mut unknown = 0;
@@ -91,7 +91,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
 }
 
-/// Returns the table cells of a model's source: file, hash, variable (or records), date and note.
+/// Returns the table cells for a model's source: file, hash, variable (or records), date and note.
 fn source_cells(source: &Provenance) -> [String; 5] {
     let Provenance {
         file,

@@ -24,10 +24,10 @@ use super::{CancellationOnly, ReportSubject};
 
 /// Maximum number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
-/// Maximum number of plots in a row of the figure of bandwidths.
+/// Maximum number of plots per row in the figure of bandwidths.
 const BANDWIDTH_COLUMNS: usize = 4;
 
-/// Evaluates the requirements.
+/// Evaluates the study's requirements.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -39,8 +39,8 @@ pub(super) fn evaluate(
     engine.requirements(subject.analysis, subject.known, &CancellationOnly(progress))
 }
 
-/// Adds the section on the requirements: bandwidths as a figure, summary costs, and the grid of all
-/// requirements.
+/// Adds the section on the requirements: bandwidths as a figure, summary costs, and the grid with
+/// all requirements.
 pub(super) fn add_requirements(
     page: &mut Page,
     requirements: &Requirements,
@@ -100,7 +100,8 @@ pub(super) fn add_requirement_details(
     page.list(remarks.lines());
 }
 
-/// Adds the grid of all requirements for the own corrections and, if there is one, for the schedule.
+/// Adds the grid with all requirements for the conditions' own corrections and, if there is one,
+/// for the schedule.
 fn add_grids(
     page: &mut Page,
     requirements: &Requirements,
@@ -130,7 +131,7 @@ fn add_grids(
     }
 }
 
-/// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why
+/// Adds bandwidth and phase delay for the responses where either is defined, and the reasons why
 /// the other responses have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;
@@ -167,8 +168,8 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     page.list(remarks.lines());
 }
 
-/// Returns "Level 1 of R: …" for each boundary with a source, and names boundaries of the same source
-/// together.
+/// Returns "Level 1 of R: …" for each boundary with a source, and groups boundaries from the same
+/// source.
 fn level_sources(study: &Study) -> Vec<String> {
     let mut names_by_source: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for boundary in study.requirements.levels.as_slice() {
@@ -208,8 +209,7 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
     }
 }
 
-/// Adds the comparison of time histories with the tolerances, and a list of the records that are
-/// not compared.
+/// Compares time histories with the tolerances, and lists the records that are not compared.
 fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.subsection("Time histories");
     let source = match histories.tolerance_table.source() {

@@ -1,5 +1,5 @@
-//! Report section on the gains and delays of the channels in each condition, and on the gains
-//! scheduled with airspeed.
+//! Report section on each condition's channel gains and delays, and on the gains scheduled with
+//! airspeed.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
@@ -18,9 +18,9 @@ use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 use super::wording::names;
 
-/// Maximum number of channels in a figure, in two rows.
+/// Maximum number of channels per figure, in two rows.
 const CHANNELS_IN_A_FIGURE: usize = 12;
-/// Maximum number of responses in a figure, in two rows.
+/// Maximum number of responses per figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
@@ -34,7 +34,7 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the appendix on the gains and delays of the channels in each condition.
+/// Adds the appendix on each condition's channel gains and delays.
 pub(super) fn add_channels_of_conditions(page: &mut Page, analysis: &Analysis) {
     page.appendix("Channels over the conditions");
     let dataset = &analysis.study.dataset;
@@ -52,13 +52,13 @@ pub(super) fn add_channels_of_conditions(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Places the plots of a figure in at most two rows, of at least five plots each.
+/// Places a figure's plots in at most two rows, with at least five plots each.
 fn in_two_rows(figure: Figure) -> Figure {
     let columns = figure.plots.len().div_ceil(2).max(5);
     figure.columns(columns)
 }
 
-/// Adds figures of the channels.
+/// Adds figures with the gains or delays of the channels.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
@@ -103,7 +103,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     }
 }
 
-/// Adds form, degree and airspeeds of the schedule, and the conditions that it omits.
+/// Adds the schedule's form, degree and airspeeds, and the conditions that it omits.
 fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let low = number(schedule.airspeeds.min_kt);
     let high = number(schedule.airspeeds.max_kt);
@@ -128,7 +128,7 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
     ]);
 }
 
-/// Describes the kind, degree and variables of a schedule.
+/// Describes a schedule's kind, degree and variables.
 fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -171,7 +171,7 @@ fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedul
     page.list(lines);
 }
 
-/// Returns the ids of the conditions that the schedule omits.
+/// Returns the condition ids that the schedule omits.
 fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     let scheduled: Vec<ConditionId> = analysis.scheduled();
     let mut names = Vec::new();
@@ -214,8 +214,7 @@ fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     page.wide_table(&table, COLUMNS);
 }
 
-/// Adds the scheduled gains, net gains and, if scheduled, delays at the airspeeds of all
-/// conditions.
+/// Adds the scheduled gains, net gains and, if scheduled, delays at every condition's airspeed.
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let channels = all_channels(dataset);
@@ -254,7 +253,7 @@ fn channel_name(dataset: &Dataset, channel: Channel) -> String {
     channel.name(&inputs, &outputs)
 }
 
-/// Column of a table over airspeed: its name and the function that formats a cell.
+/// Table column over airspeed: its name and the function that formats a cell.
 struct AirspeedColumn {
     name: String,
     cell: Box<dyn Fn(&ChannelCorrection) -> String>,

@@ -1,4 +1,4 @@
-//! Report section on the settings of the study.
+//! Report section on the study's settings.
 
 use gdcm_model::dataset::{Dataset, PairTable};
 use gdcm_study::Study;

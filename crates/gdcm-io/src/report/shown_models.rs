@@ -1,4 +1,4 @@
-//! Choice of the models of a long bundle that the report lists and draws.
+//! Chooses which models of a long bundle the report lists and draws.
 
 use std::collections::BTreeSet;
 
@@ -7,8 +7,8 @@ use gdcm_study::{ConditionAnalysis, Study};
 
 use super::limits::MODELS_SHOWN;
 
-/// Returns the indices of the models of a bundle that are listed and drawn: all models of a short
-/// bundle; of a long bundle the representative, nominal and suggested models, then rejected models,
+/// Returns the indices of a bundle's models that are listed and drawn: all models in a short
+/// bundle; in a long bundle the representative, nominal and suggested models, then rejected models,
 /// then others spread evenly over the bundle.
 pub(super) fn models_shown(
     study: &Study,
@@ -43,7 +43,7 @@ pub(super) fn models_shown(
     shown
 }
 
-/// Returns the models of a condition that are not drawn.
+/// Returns a condition's models that are not drawn.
 pub(super) fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
     let mut hidden = BTreeSet::new();
     for kind in BundleKind::BOTH {

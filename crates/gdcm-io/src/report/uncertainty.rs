@@ -17,7 +17,7 @@ use super::CancellationOnly;
 use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 
-/// Maximum number of responses in a row of the figure of evidence.
+/// Maximum number of responses per row in the evidence figure.
 const EVIDENCE_COLUMNS: usize = 8;
 
 /// Returns the analysis with confidence intervals, which are computed if missing.
@@ -86,8 +86,8 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the appendix with the differences at equal airspeed, the need for a second variable, and the
-/// error bars of every condition; nothing if confidence intervals are not available.
+/// Adds the appendix with the differences at equal airspeed, the need for a second variable, and
+/// every condition's error bars; nothing if confidence intervals are not available.
 pub(super) fn add_uncertainty_details(page: &mut Page, analysis: &Analysis) {
     let Some(uncertainty) = &analysis.uncertainty else {
         return;

@@ -1,4 +1,4 @@
-//! Parts of sentences and table cells in the report.
+//! Sentence parts and table cells in the report.
 
 use gdcm_model::number_format::{NO_VALUE, counted};
 
@@ -8,8 +8,7 @@ pub(super) const NAMES_SHOWN: usize = 12;
 /// Placeholder for a missing value in tables.
 pub(super) const MISSING: &str = NO_VALUE;
 
-/// Joins names with commas; of more than [`NAMES_SHOWN`] names, the first ones and the number of
-/// the others.
+/// Joins names with commas; beyond [`NAMES_SHOWN`] names, the others are only counted.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
     let shown = shown.join(", ");

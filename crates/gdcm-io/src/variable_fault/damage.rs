@@ -1,8 +1,8 @@
-//! Contradictions between the bytes of a file and its format.
+//! Contradictions between a file's bytes and its format.
 
 use crate::variable_fault::octave_fault::OctaveFault;
 
-/// Contradiction between the bytes of a file and its format.
+/// Contradiction between a file's bytes and its format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     #[error("the number of elements is too large")]
@@ -67,7 +67,7 @@ pub enum Damage {
     CompressedDataLength,
     #[error("{packed} compressed bytes that claim to expand to {length}")]
     Expansion { packed: usize, length: u64 },
-    // Objects of MATLAB classes.
+    // MATLAB class objects.
     #[error("the file has no object part")]
     NoObjectPart,
     #[error("the object part has no header")]
@@ -100,7 +100,7 @@ pub enum Damage {
     PropertyWithoutName,
     #[error("a property has no value")]
     PropertyWithoutValue,
-    // HDF5 files, and those of them that MATLAB or GNU Octave wrote.
+    // HDF5 files, including those that MATLAB or GNU Octave wrote.
     #[error("a part begins or ends beyond the end of the file")]
     PartBeyondEnd,
     #[error("the chunks have no valid size")]
@@ -159,7 +159,7 @@ pub enum Damage {
     FileNameNotUtf8,
     #[error("it claims to expand to more bytes than is possible")]
     ArchiveExpansion,
-    // Logs of autopilots.
+    // Autopilot logs.
     #[error("a log without a message that has time stamps and numbers")]
     NoTimedMessage,
     #[error("no flight with at least {fewest} frames")]
@@ -176,7 +176,7 @@ pub enum Damage {
     #[error(transparent)]
     Octave(#[from] OctaveFault),
     // Any format.
-    /// Message of the library that reads the format.
+    /// Message from the library that reads the format.
     #[error("{message}")]
     Library { message: String },
 }

@@ -47,12 +47,12 @@ pub enum FoundContent {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ResponseLack {
     Frequency,
-    /// There is neither magnitude and phase nor real and imaginary part of the same response.
+    /// No response has both magnitude and phase, or both real and imaginary part.
     Parts,
     Units(Vec<MissingUnit>),
 }
 
-/// A column whose unit is not given and may be either of two.
+/// A column whose unit is not given, with the two units that it may have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingUnit {
     pub place: ColumnPlace,

@@ -1,11 +1,11 @@
-//! Faults in a line of a text.
+//! Faults in a text line.
 
 use gdcm_model::number_format::counted;
 
 use crate::variable_fault::column_place::ColumnPlace;
 use crate::variable_fault::octave_fault::OctaveFault;
 
-/// Fault in a line of a text; the message contains its remedy.
+/// Fault in a text line; the message contains its remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LineFault {
     #[error(
@@ -13,7 +13,7 @@ pub enum LineFault {
         follows"
     )]
     TextAmongRows {
-        /// Beginning of the line.
+        /// Beginning of the line, quoted in the message.
         start: String,
     },
     #[error(
@@ -24,7 +24,7 @@ pub enum LineFault {
     NotANumber {
         /// Column number, from 1.
         column: usize,
-        /// Beginning of the cell.
+        /// Beginning of the cell, quoted in the message.
         cell: String,
         /// Whether the cell has a decimal point in a table with decimal commas.
         is_decimal_comma: bool,
@@ -37,31 +37,31 @@ pub enum LineFault {
     ColumnCount {
         found: usize,
         expected: usize,
-        /// Name of the separator, as displayed in the message.
+        /// Separator name, as displayed in the message.
         separator: &'static str,
     },
-    /// A line of a matrix has a single number, but other rows have several.
+    /// A matrix line has a single number, but other rows have several.
     #[error("a single number, but other rows have {columns}; complete the row")]
     SingleNumber { columns: usize },
     #[error("\"{start}\" is not a row of numbers; correct it")]
     NotARow {
-        /// Beginning of the line.
+        /// Beginning of the line, quoted in the message.
         start: String,
     },
     #[error("\"{start}\" is not a row like the others; complete it")]
     UnlikeOtherRows {
-        /// Beginning of the line.
+        /// Beginning of the line, quoted in the message.
         start: String,
     },
     #[error("numbers without a name; write the name of the matrix on a line above them")]
     UnnamedNumbers,
-    /// The parts in which a matrix is printed have different numbers of rows.
+    /// A matrix is printed in parts, and these have different row counts.
     #[error("parts of this matrix have {first} and {other} rows; print it in one part")]
     PartRows { first: usize, other: usize },
     #[error("the bracket {bracket} in column {column} is never closed; close it")]
     OpenBracket {
         bracket: char,
-        /// Column of the bracket, from 1.
+        /// Column with the bracket, from 1.
         column: usize,
     },
     #[error("the comment opened here is never closed; write %}} on a line of its own")]

@@ -48,9 +48,9 @@ pub enum MatlabFault {
     RowLength {
         /// Row number, from 1.
         row: usize,
-        /// Number of columns of this row.
+        /// Number of columns in this row.
         found: usize,
-        /// Number of columns of the first row.
+        /// Number of columns in the first row.
         expected: usize,
     },
     #[error("numbers and strings cannot be mixed in brackets; write {{…}} instead of […]")]

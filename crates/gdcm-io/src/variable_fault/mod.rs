@@ -16,8 +16,8 @@ use crate::variable_fault::found_content::FoundContent;
 use crate::variable_fault::line_fault::LineFault;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Reason why variables could not be read. Field `variable` is the path of the affected variable,
-/// such as "sys.A" or "models{3}.B"; it is empty if none was begun.
+/// Reason why variables could not be read. Field `variable` is the affected variable's path, such
+/// as "sys.A" or "models{3}.B"; it is empty if no variable was begun.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VariableFault {
     /// The file has another format.
@@ -44,7 +44,6 @@ pub enum VariableFault {
         /// Position in the file \[bytes\].
         offset: u64,
     },
-    /// A line is invalid.
     #[error("{}line {line}: {fault}", at(variable))]
     Line {
         variable: String,
@@ -69,7 +68,7 @@ pub enum VariableFault {
         /// The limit \[MiB\].
         most_mib: u64,
     },
-    /// Reading the file would take more steps of work than the limit.
+    /// Reading the file would take more work steps than the limit.
     #[error(
         "{}reading would take more than {most_millions} million steps of work, the limit for a \
         file; split the file",
@@ -108,8 +107,8 @@ impl VariableFault {
         }
     }
 
-    /// Returns the message about a file with the name `file`, which the remedies of unsupported
-    /// contents mention; `stem` is the name without its extension.
+    /// Returns the message about a file named `file`, which the remedies for unsupported contents
+    /// mention; `stem` is the name without its extension.
     pub(crate) fn words_for_file(&self, file: &str, stem: &str) -> String {
         match self {
             Self::Unsupported { variable, content } => {
@@ -179,7 +178,7 @@ impl VariableFault {
         }
     }
 
-    /// Adds the name of the affected variable, unless the error already has one.
+    /// Adds the affected variable's name, unless the error already has one.
     #[must_use]
     pub(crate) fn in_variable(mut self, name: impl FnOnce() -> String) -> Self {
         match &mut self {

@@ -1,12 +1,12 @@
-//! Faults in files of GNU Octave, as text or binary.
+//! Faults in GNU Octave files, text or binary.
 
-/// Fault in a file of GNU Octave.
+/// Fault in a GNU Octave file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OctaveFault {
     /// A line with this key, such as "# rows: 3", is missing.
     #[error("expected \"# {key}: …\"")]
     MissingKey { key: String },
-    /// The value of this key is not a whole number.
+    /// This key's value is not a whole number.
     #[error("{key}: expected a whole number")]
     KeyNotWhole { key: String },
     #[error("expected a whole number")]

@@ -21,14 +21,14 @@ pub enum Unread {
     #[error("field {field} is set in {value}, which cannot have fields; use different names")]
     FieldOfOtherValue {
         field: String,
-        /// Description of the value of the variable.
+        /// Description of the variable's value.
         value: String,
     },
     /// An object of a MATLAB class.
     #[error("{fault}; in MATLAB, save its data: {command}")]
     Object {
         fault: ObjectFault,
-        /// MATLAB command that exports the data of the object.
+        /// MATLAB command that exports the object's data.
         command: String,
     },
     /// An object of another class system, such as Java.
@@ -36,7 +36,7 @@ pub enum Unread {
         "only objects of MATLAB classes are supported; in MATLAB, save its data as numbers or text"
     )]
     ClassSystem,
-    /// The object part of the file, to which all objects refer, cannot be read.
+    /// The file's object part, to which all objects refer, cannot be read.
     #[error("{0}")]
     ObjectPart(VariableFault),
     #[error("the file has no object part")]
@@ -53,7 +53,7 @@ pub enum Unread {
     NeitherDatasetNorGroup,
     #[error("it holds neither numbers nor strings")]
     NeitherNumbersNorStrings,
-    /// A field of a record in an HDF5 dataset.
+    /// A record field in an HDF5 dataset.
     #[error("it is neither a number nor a string of fixed length")]
     RecordField,
     #[error("{}", .0.remedy())]
@@ -132,7 +132,7 @@ impl ObjectFault {
     }
 }
 
-/// Returns the message of a fault; for damaged bytes without their position and remedy.
+/// Returns the message for a fault; for damaged bytes without their position and remedy.
 fn reason(fault: &VariableFault) -> String {
     match fault {
         VariableFault::Damaged { damage, .. } => damage.to_string(),

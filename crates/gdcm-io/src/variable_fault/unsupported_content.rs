@@ -3,7 +3,7 @@
 /// Content that the format permits but this program does not read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnsupportedContent {
-    /// A file of another program, recognised by its first bytes.
+    /// Another program's file, recognised by its first bytes.
     #[error("{format}")]
     ForeignFile {
         format: &'static str,
@@ -19,7 +19,7 @@ pub enum UnsupportedContent {
     EncryptedEntry,
     #[error("an entry compressed with method {method}")]
     CompressionMethod {
-        /// Number of the method in the specification of the zip format.
+        /// Number of the compression method in the zip format specification.
         method: u16,
     },
     #[error("a ULog of a later version")]
@@ -30,7 +30,7 @@ pub enum UnsupportedContent {
     UnlimitedDimensions,
     #[error("a dataset of this kind ({message})")]
     HdfDataset {
-        /// Message of the library that reads HDF5.
+        /// Message from the library that reads HDF5.
         message: String,
     },
     #[error("numbers of type {code}")]
@@ -46,7 +46,7 @@ pub enum UnsupportedContent {
     /// A value other than numbers and strings, which a NumPy archive cannot contain.
     #[error("{value} cannot be written, and therefore")]
     ValueNotWritten {
-        /// Description of the value.
+        /// Description of the value, for the message.
         value: String,
     },
     #[error("a name this long cannot be written, and therefore")]
@@ -69,7 +69,7 @@ impl UnsupportedContent {
             Self::UlogVersion => "save its topics as CSV: ulog2csv \"{file}\"",
             Self::BlackboxVersion { .. } => "save it as CSV: blackbox_decode \"{file}\"",
             Self::UnlimitedDimensions => "write it with a fixed shape",
-            // A program that requests the latest format of HDF5 2.0 writes a new chunk layout.
+            // A program that requests the latest HDF5 2.0 format writes a new chunk layout.
             Self::HdfDataset { .. } => {
                 "write it with gzip compression or none, in a single file, in the format of HDF5 \
                 1.14 or earlier"

@@ -6,10 +6,10 @@ use crate::export::exported_model::ExportedModel;
 use crate::export::matlab_values::matrix;
 use crate::formats::variables::Value;
 
-/// Name of a model metric in files, with the function that computes it.
+/// A model metric's name in files, with the function that computes it.
 pub(super) type Metric = (&'static str, fn(&ExportedModel) -> f64);
 
-/// Metrics of a model, in the order of the files.
+/// Model metrics, in file order.
 pub(super) const METRICS: [Metric; 8] = [
     ("Ts", sample_time_s),
     ("condition", |model| model.condition.0 as f64),
@@ -29,7 +29,7 @@ fn sample_time_s(model: &ExportedModel) -> f64 {
     model.model.timing().sample_time_s.unwrap_or(0.0)
 }
 
-/// Returns the matrices of the corrected model, by name.
+/// Returns the corrected model's matrices, by name.
 pub(super) fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>); 4] {
     let model = &model.model;
     [
@@ -40,7 +40,7 @@ pub(super) fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>);
     ]
 }
 
-/// Converts a matrix to a value of a file.
+/// Converts a matrix to a file value.
 pub(super) fn array(values: &DMatrix<f64>) -> Value {
     // Both libraries store matrices by columns.
     matrix(values.nrows(), values.ncols(), values.as_slice().to_vec())

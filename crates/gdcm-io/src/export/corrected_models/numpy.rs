@@ -8,10 +8,10 @@ use crate::export::matlab_values::matrix;
 use crate::files::export_contents::{ExportContents, PartSource};
 use crate::formats::variables::{TextArray, Value, Variable};
 
-/// Name of a part of a correction, with the function that returns its source.
+/// Correction part name, with the function that returns its source.
 type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
 
-/// Parts of a correction whose sources the file states.
+/// Correction parts whose sources the file states.
 const CONTAINED: [ContainedPart; 4] = [
     ("gains", |contents| contents.gains),
     ("delays", |contents| contents.delays),
@@ -20,8 +20,7 @@ const CONTAINED: [ContainedPart; 4] = [
 ];
 
 /// Returns the models as arrays, because NumPy files hold nothing else: `A_0`, `B_0`, `C_0`, `D_0`
-/// and `StateName_0` for model 0, and so on; each of the other arrays has an entry for each model
-/// or channel.
+/// and `StateName_0` for model 0, and so on; every other array has an entry per model or channel.
 pub(super) fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let mut arrays = NamedArrays::default();
     for (place, model) in models.iter().enumerate() {

@@ -8,8 +8,8 @@ use super::BreakpointTable;
 use crate::export::program_text::{comment, number};
 
 impl BreakpointTable<'_> {
-    /// Returns the table as CSV, preceded by comment lines (#) that describe it and state the
-    /// maximum deviation of each column from its curve.
+    /// Returns the table as CSV, preceded by comment lines (#) that describe it and state each
+    /// column's maximum deviation from its curve.
     pub(super) fn csv(&self) -> String {
         let mut text = String::new();
         self.write_description(&mut text);

@@ -7,7 +7,7 @@ use crate::export::matlab_values::{Fields, cell_of_texts, column, contained_part
 use crate::formats::variables::{Value, Variable};
 
 impl BreakpointTable<'_> {
-    /// Returns the variable `gdcm_table`: the airspeeds, and for inputs and outputs the matrices of
+    /// Returns the variable `gdcm_table`: the airspeeds, and for inputs and outputs matrices with
     /// gains, delays \[s\] and lead numerators \[s\] with a row for each airspeed and a column for
     /// each channel, with their maximum deviations.
     pub(super) fn variable(&self) -> Variable {
@@ -46,7 +46,7 @@ impl BreakpointTable<'_> {
         }
     }
 
-    /// Adds the channel names and the columns of all inputs or all outputs; `side` is "input" or
+    /// Adds the channel names and the columns for all inputs or all outputs; `side` is "input" or
     /// "output".
     fn add_side_fields(&self, fields: &mut Fields, side: &str, names: Vec<String>) {
         fields.add(&format!("{side}s"), cell_of_texts(names));

@@ -12,13 +12,13 @@ use gdcm_words::assessment::not_assessed_text;
 use super::csv_condition::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A response in a condition.
+/// A row: one response in one condition.
 struct ResponseRow<'a> {
     results: &'a ConditionResults<'a>,
     pair: Pair,
 }
 
-/// Name of a column, with the function that formats its cell.
+/// Column name, with the function that formats its cell.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
 const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
@@ -162,12 +162,12 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
     }),
 ];
 
-/// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model with and without the
+/// Writes `assessment.csv`: G, D \[s\], net gains, and the nominal model's J with and without the
 /// scheduled correction, for every response in the chosen conditions. A missing value is an empty
 /// cell. `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
 /// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals. The last two columns
 /// contain the gain that the condition's own leads add to the response at ten times the band, and
-/// the limit of validity (M15.6).
+/// the validity limit (M15.6).
 pub fn write_assessment_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -184,8 +184,8 @@ pub fn write_assessment_csv(
 }
 
 impl ResponseRow<'_> {
-    /// Returns the change in J due to the schedule; `None` if the condition or the response is not
-    /// assessed.
+    /// Returns the change in J that is due to the schedule; `None` if the condition or the response
+    /// is not assessed.
     fn change(&self) -> Option<CostChange> {
         let id = self.results.condition.id();
         let changes = self.results.analysis.assessment.get(&id)?;
@@ -201,7 +201,8 @@ impl ResponseRow<'_> {
         }
     }
 
-    /// Returns the deviation within the band that a single gain cannot remove.
+    /// Returns the deviation in the band that remains because one gain cannot match every
+    /// frequency.
     fn left_in_band(&self) -> Option<f64> {
         let uncertainty = self.results.analysis.uncertainty.as_ref()?;
         let id = self.results.condition.id();

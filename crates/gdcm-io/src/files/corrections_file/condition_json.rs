@@ -19,7 +19,7 @@ use super::solutions::{delay_solution, gain_solution};
 use super::uncertainty::{bars, net_gain_bar};
 use crate::json_empty_members::without_empty;
 
-/// Returns the object with all results of a condition.
+/// Returns the object with a condition's results.
 pub(super) fn condition_json(
     names: &LabelledAnalysis<'_>,
     condition: &Condition,
@@ -105,8 +105,7 @@ fn caution_words(names: &LabelledAnalysis<'_>, caution: &Caution) -> String {
     caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
 }
 
-/// Returns the suspected faults of the models, followed by the cautions about the results and about
-/// leads.
+/// Returns suspected model faults, followed by the cautions about the results and about leads.
 fn cautions(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let study = &names.analysis.study;
     let mut cautions = Vec::new();
@@ -120,7 +119,7 @@ fn cautions(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     json!(cautions)
 }
 
-/// Returns the net gain of each response, with its interval if available.
+/// Returns each response's net gain, with its interval if available.
 fn net_gains(names: &LabelledAnalysis<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
     let mut net_gains = Vec::new();
     for pair in result.held().pairs() {
@@ -134,7 +133,7 @@ fn net_gains(names: &LabelledAnalysis<'_>, id: ConditionId, result: &ConditionAn
     Value::Array(net_gains)
 }
 
-/// Returns the magnitude part and the phase part of J for each response.
+/// Returns for each response the magnitude and phase parts of J.
 fn costs(table: &PairTable<Option<Cost>>) -> Value {
     json!({
         "mag": rows(table, |cost| cost.magnitude),
@@ -142,7 +141,7 @@ fn costs(table: &PairTable<Option<Cost>>) -> Value {
     })
 }
 
-/// Returns the sources of the models that the dataset states.
+/// Returns the model sources stated in the dataset.
 fn sources(condition: &Condition) -> Value {
     let mut sources = Vec::new();
     for kind in BundleKind::BOTH {

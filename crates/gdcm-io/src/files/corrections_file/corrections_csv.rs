@@ -13,13 +13,13 @@ use gdcm_study::Analysis;
 use super::csv_condition::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A channel in a condition.
+/// A row: one channel in one condition.
 struct ChannelRow<'a> {
     results: &'a ConditionResults<'a>,
     channel: Channel,
 }
 
-/// Name of a column, with the function that formats its cell.
+/// Column name, with the function that formats its cell.
 type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
 
 const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
@@ -144,7 +144,7 @@ impl ChannelRow<'_> {
         self.channel.name(&inputs, &outputs)
     }
 
-    /// Returns the signed delay \[s\] of the channel in a correction; `None` without leads.
+    /// Returns the channel's signed delay \[s\] in a correction; `None` without leads.
     fn tau_s(&self, correction: Option<&ChannelCorrection>) -> Option<f64> {
         let leads = correction?.leads.as_ref()?;
         Some(leads.taus_s[self.channel])

@@ -1,4 +1,4 @@
-//! Content of `corrections.json`, which contains all analysis results.
+//! `corrections.json`, which contains all analysis results.
 
 use std::collections::BTreeSet;
 
@@ -23,10 +23,10 @@ use crate::files::export_contents::ExportContents;
 use crate::json_empty_members::without_empty;
 use crate::software::software;
 
-/// Returns the content of `corrections.json`: all results of the chosen conditions, with the
-/// schedule of the whole study. The file format documentation describes each key.
+/// Returns the content of `corrections.json`: all results for the chosen conditions, with the whole
+/// study's schedule. The file format documentation describes each key.
 ///
-/// `sha256` is the hash of the dataset's file.
+/// `sha256` is the dataset file's hash.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
     let dataset = &analysis.study.dataset;
     let names = LabelledAnalysis::new(analysis);
@@ -58,7 +58,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     }
     let schedule = analysis.schedule.as_ref().ok();
     let mut settings = analysis.study.settings.named(dataset);
-    // Earlier versions of the program learn from this setting whether the schedule has delays.
+    // Earlier program versions learn from this setting whether the schedule has delays.
     settings.schedule.delays = schedule.is_some_and(|schedule| schedule.delays.is_some());
     let corrections = json!({
         "format": NAME,
@@ -84,8 +84,8 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     )
 }
 
-/// Returns a correction of the channels, such as that of the schedule at an airspeed: `gains`,
-/// `delays_s`, and with leads `lead`, as in a condition of `corrections.json`.
+/// Converts a channel correction, for example the schedule's at an airspeed, to JSON: `gains`,
+/// `delays_s`, and with leads `lead`, as for a condition in `corrections.json`.
 pub fn channel_correction(analysis: &Analysis, correction: &ChannelCorrection) -> Value {
     let names = LabelledAnalysis::new(analysis);
     json!({
@@ -106,7 +106,7 @@ fn assessment_json(condition: &Condition, changes: &PairTable<Option<CostChange>
     })
 }
 
-/// Returns the names and units of channels, in the order used in all lists and tables.
+/// Returns channel names and units, in the order used in all lists and tables.
 fn channels(channels: &[Channel]) -> Value {
     let mut list = Vec::with_capacity(channels.len());
     for channel in channels {

@@ -82,8 +82,8 @@ pub(super) fn correction_cost(cost: CorrectionCost) -> Value {
     })
 }
 
-/// Returns the mixing in a condition, normalised to ones on the diagonal, and the effect of the
-/// couplings on the physics representative of the condition; null without couplings.
+/// Returns the mixing in a condition, normalised to ones on the diagonal, and how the couplings
+/// affect the condition's physics representative; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
     let Some(coupled) = &result.coupled else {
         return Value::Null;

@@ -1,4 +1,4 @@
-//! Results of a condition as cells of the CSV files.
+//! A condition's results as cells for the CSV files.
 
 use std::collections::BTreeSet;
 
@@ -9,17 +9,17 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use crate::files::export_contents::ExportContents;
 
-/// A condition of an analysis, with its scheduled correction.
+/// A condition in an analysis, with its scheduled correction.
 pub(super) struct ConditionResults<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) condition: &'a Condition,
     /// Correction given by the schedule, if there is one.
     pub(super) scheduled: Option<ChannelCorrection>,
-    /// Description of the parts of the correction in the file, and of the omitted parts.
+    /// Description of the correction parts that the file contains and omits.
     pub(super) contains: String,
 }
 
-/// Returns the results of the chosen conditions, in the order of the dataset.
+/// Returns the results for the chosen conditions, in dataset order.
 pub(super) fn condition_results<'a>(
     analysis: &'a Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -55,12 +55,12 @@ impl ConditionResults<'_> {
         self.result().map(|result| &result.correction)
     }
 
-    /// Returns the cost of the leads in the condition's own correction; `None` without leads.
+    /// Returns what the leads cost in the condition's own correction; `None` without leads.
     pub(super) fn price(&self) -> Option<LeadPrice> {
         LeadPrice::new(self.own()?.leads.as_ref()?)
     }
 
-    /// Returns the error bar of a scalar result; `None` if it was not computed.
+    /// Returns a scalar result's error bar; `None` if it was not computed.
     pub(super) fn bar(&self, scalar: Scalar) -> Option<&Bar> {
         self.analysis
             .uncertainty
@@ -68,18 +68,18 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Formats the lower end of the total interval: a factor for a gain, seconds for a delay. Empty
-    /// if there is no interval.
+    /// Formats the total interval's lower end: a factor for a gain, seconds for a delay. Empty if
+    /// there is no interval.
     pub(super) fn lower_end(&self, scalar: Scalar) -> String {
         cell(self.interval(scalar).map(|[lower, _]| lower))
     }
 
-    /// Formats the upper end of the total interval, as [`Self::lower_end`].
+    /// Formats the total interval's upper end, as [`Self::lower_end`].
     pub(super) fn upper_end(&self, scalar: Scalar) -> String {
         cell(self.interval(scalar).map(|[_, upper]| upper))
     }
 
-    /// Returns the total interval: factors for a gain, whose bar is an interval of its natural
+    /// Returns the total interval: factors for a gain, whose bar is an interval for its natural
     /// logarithm; seconds for a delay.
     fn interval(&self, scalar: Scalar) -> Option<[f64; 2]> {
         let uncertainty = self.analysis.uncertainty.as_ref()?;
@@ -91,7 +91,7 @@ impl ConditionResults<'_> {
         }
     }
 
-    /// Formats the standard deviation of a variance component; empty if it is missing.
+    /// Formats a variance component as a standard deviation; empty if it is missing.
     pub(super) fn deviation(
         &self,
         scalar: Scalar,

@@ -1,4 +1,4 @@
-//! Values of an analysis as JSON, labelled with the channel names of its dataset.
+//! Analysis values as JSON, labelled with the dataset's channel names.
 
 use serde_json::{Map, Value, json};
 
@@ -7,7 +7,7 @@ use gdcm_method::schedule::Regression;
 use gdcm_model::dataset::Pair;
 use gdcm_study::Analysis;
 
-/// An analysis with the channel names of its dataset, by which its values are labelled.
+/// An analysis with its dataset's channel names, which label its values.
 pub(super) struct LabelledAnalysis<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) inputs: Vec<String>,
@@ -24,18 +24,18 @@ impl<'a> LabelledAnalysis<'a> {
         }
     }
 
-    /// Returns the channel names of a response, output first.
+    /// Returns a response's channel names, output first.
     pub(super) fn pair(&self, pair: Pair) -> (String, String) {
         self.analysis.study.dataset.channel_names(pair)
     }
 
-    /// Returns the channel names of each response, output first.
+    /// Returns each response's channel names, output first.
     pub(super) fn pairs(&self, pairs: impl IntoIterator<Item = Pair>) -> Vec<(String, String)> {
         pairs.into_iter().map(|pair| self.pair(pair)).collect()
     }
 
-    /// Returns an object with the channel names of a response, output first, followed by the
-    /// members of `entries`.
+    /// Returns an object with a response's channel names, output first, followed by the members of
+    /// `entries`.
     pub(super) fn response_entries(&self, pair: Pair, entries: Value) -> Value {
         let (output, input) = self.pair(pair);
         let mut members = Map::new();
@@ -47,7 +47,7 @@ impl<'a> LabelledAnalysis<'a> {
         Value::Object(members)
     }
 
-    /// Returns an object that maps the name of each channel to its value.
+    /// Returns an object that maps each channel name to its value.
     pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
         let mut inputs = Map::new();
         for (index, name) in self.inputs.iter().enumerate() {
@@ -60,7 +60,7 @@ impl<'a> LabelledAnalysis<'a> {
         json!({"inputs": inputs, "outputs": outputs})
     }
 
-    /// Returns the regression coefficients of each channel.
+    /// Returns each channel's regression coefficients.
     pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
         self.by_channel(|channel| regressions[channel].parameters().to_vec())
     }
@@ -69,13 +69,13 @@ impl<'a> LabelledAnalysis<'a> {
         self.by_channel(|channel| correction.gain(channel))
     }
 
-    /// Returns the delay \[s\] of each channel.
+    /// Returns each channel's delay \[s\].
     pub(super) fn delays_s(&self, correction: &ChannelCorrection) -> Value {
         self.by_channel(|channel| correction.pure_delay_s(channel))
     }
 
-    /// Returns the signed delay and the lead filter of each channel (M15); `None` if the correction
-    /// has no leads.
+    /// Returns each channel's signed delay and lead filter (M15); `None` if the correction has no
+    /// leads.
     pub(super) fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
         let price = LeadPrice::new(leads);

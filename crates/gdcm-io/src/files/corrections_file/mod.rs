@@ -33,7 +33,7 @@ pub(crate) use self::physics::write_physics_csv;
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// Names of the result files; the last file contains the checksums of the others.
+/// Result file names; the last file contains checksums for the others.
 pub const RESULT_FILES: [&str; 4] = [
     "corrections.json",
     "corrections.csv",
@@ -41,7 +41,7 @@ pub const RESULT_FILES: [&str; 4] = [
     "corrections.sha256",
 ];
 
-/// Name of the table of physics parameters, which is written where they are requested.
+/// Name of the physics parameter table, which is written if physics parameters are requested.
 pub const PHYSICS_FILE: &str = "physics.csv";
 
 /// Returns the paths of the result files in a directory.
@@ -49,11 +49,11 @@ pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the result files of the chosen conditions into a directory, which is created if missing.
+/// Writes the result files for the chosen conditions into a directory, which is created if missing.
 /// Either all files are written or none. The checksums, written last, show whether the files belong
 /// together.
 ///
-/// `sha256` is the hash of the dataset's file.
+/// `sha256` is the dataset file's hash.
 pub fn write_results(
     analysis: &Analysis,
     sha256: &str,
@@ -81,7 +81,7 @@ pub fn write_results(
     outputs.persist()
 }
 
-/// Writes `corrections.json`: all results of the chosen conditions.
+/// Writes `corrections.json`: all results for the chosen conditions.
 pub(crate) fn write_corrections(
     analysis: &Analysis,
     sha256: &str,

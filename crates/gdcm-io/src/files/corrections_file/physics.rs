@@ -23,7 +23,7 @@ use super::couplings::{axis_cost, correction_cost};
 use crate::csv_text::write_records;
 use crate::json_empty_members::without_empty;
 
-/// Columns of `physics.csv`.
+/// Columns in `physics.csv`.
 const COLUMNS: [&str; 21] = [
     "parameter",
     "unit",
@@ -208,7 +208,7 @@ fn parameter_json(found: DiagnosedParameter<'_>) -> Value {
     without_empty(parameter, &["description"])
 }
 
-/// Returns the delays of the channels by name, inputs first.
+/// Returns the channel delays by name, inputs first.
 fn delays_json(delays_s: &Channels<f64>, dataset: &Dataset) -> Value {
     let (inputs, outputs) = dataset.names_of_channels();
     let mut members = Map::new();
@@ -251,9 +251,9 @@ fn rerun_json(check: &RerunCheck) -> Value {
     rerun
 }
 
-/// Writes `physics.csv`: a row for each parameter, with its diagnosis and the change applied; of a
-/// parameter set by hand without a fit, only the change applied. Only the headings if no parameters
-/// are applied.
+/// Writes `physics.csv`: a row for each parameter, with its diagnosis and the applied change; for a
+/// parameter set by hand without a fit, only the applied change. Writes only the headings if no
+/// parameters are applied.
 pub(crate) fn write_physics_csv(
     applied: Option<&AppliedPhysics>,
     file: &mut dyn Write,
@@ -301,7 +301,7 @@ fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
     records
 }
 
-/// Returns the cells of a parameter without a diagnosis.
+/// Returns the cells for a parameter without a diagnosis.
 fn empty_cells(parameter: &OfferedParameter) -> Vec<String> {
     let mut cells = vec![String::new(); COLUMNS.len()];
     cells[0] = parameter.name.clone();
@@ -310,7 +310,7 @@ fn empty_cells(parameter: &OfferedParameter) -> Vec<String> {
     cells
 }
 
-/// Returns all cells of a parameter but the last.
+/// Returns all cells for a parameter except the last.
 fn diagnosed_cells(found: DiagnosedParameter<'_>) -> Vec<String> {
     let diagnosis = found.diagnosis;
     let [lower, upper] = match found.interval() {

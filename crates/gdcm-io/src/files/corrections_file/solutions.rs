@@ -1,5 +1,5 @@
-//! The part of `corrections.json` about the gain fit and the delay fit: objective, proof of
-//! optimality, and the unmatched responses with an explanation.
+//! The part of `corrections.json` about the gain fit and the delay fit: objective, optimality
+//! proof, and the unmatched responses with an explanation.
 
 use serde_json::{Value, json};
 
@@ -77,7 +77,7 @@ pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAna
 }
 
 /// Explains why gains or delays are not matched: the conflicts, the changes that would resolve
-/// them, and the cost of each constraint.
+/// them, and each constraint's cost.
 fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
@@ -106,7 +106,7 @@ fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solut
     without_empty(explanation, &["agreeing"])
 }
 
-/// Kind of a conflict, with the conflicting values: factors for gains, seconds for delays.
+/// A conflict's kind, with the conflicting values: factors for gains, seconds for delays.
 #[derive(Default)]
 struct ConflictFigures {
     kind: &'static str,

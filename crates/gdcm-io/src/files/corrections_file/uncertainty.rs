@@ -1,4 +1,4 @@
-//! The part of `corrections.json` about the uncertainty of the results (M13).
+//! The part of `corrections.json` about uncertainty in the results (M13).
 
 use serde_json::{Map, Value, json};
 
@@ -17,7 +17,7 @@ use super::labelled_analysis::LabelledAnalysis;
 use super::pair_rows::rows_of;
 use crate::json_empty_members::{is_empty_value, without_empty};
 
-/// Returns the confidence interval of a net gain; `None` if it was not computed.
+/// Returns a net gain's confidence interval; `None` if it was not computed.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
     condition: ConditionId,
@@ -30,7 +30,7 @@ pub(super) fn net_gain_bar(
     Some(bar_json(scalar, bar, uncertainty.level, left_in_band))
 }
 
-/// Returns the confidence intervals of a condition, except the intervals of net gains.
+/// Returns a condition's confidence intervals, except those for net gains.
 pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
@@ -53,7 +53,7 @@ pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Opti
     Some(without_empty(members, &["D_band_s"]))
 }
 
-/// Error bars of a condition, from which its confidence intervals at a level are written.
+/// A condition's error bars, from which its confidence intervals at a level are written.
 struct ConditionBars<'a> {
     names: &'a LabelledAnalysis<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
@@ -79,9 +79,9 @@ impl ConditionBars<'_> {
     }
 }
 
-/// Returns a confidence interval with its standard deviations, and the deviation within the band
-/// that a single gain cannot remove. For a gain, intervals are factors, and standard deviations
-/// refer to the natural logarithm; for a delay, all values are in seconds.
+/// Returns a confidence interval with its standard deviations, and the deviation in the band that
+/// remains because one gain cannot match every frequency. For a gain, intervals are factors, and
+/// standard deviations refer to the natural logarithm; for a delay, all values are in seconds.
 fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
     let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
     let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
@@ -117,8 +117,8 @@ fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Returns the conclusions from the confidence intervals of all conditions; `None` without
-/// confidence intervals.
+/// Returns the conclusions from all conditions' confidence intervals; `None` without confidence
+/// intervals.
 pub(super) fn uncertainty(names: &LabelledAnalysis<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
@@ -158,7 +158,7 @@ fn difference_json(difference: &AirspeedDifference, level: f64) -> Value {
     })
 }
 
-/// Returns the contributions to the scatter of a net gain, as standard deviations of the natural
+/// Returns what contributes to a net gain's scatter, as standard deviations of the natural
 /// logarithm.
 fn scatter_json(scatter: &PairScatter, level: f64) -> Value {
     let same_airspeed = scatter.same_airspeed.as_ref();
@@ -183,8 +183,8 @@ fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
     })
 }
 
-/// Returns the scheduled net gains of the on-axis responses (all responses if none is on-axis),
-/// with their confidence and scatter bands, as natural logarithms.
+/// Returns scheduled net gains for the on-axis responses (all responses if none is on-axis), with
+/// their confidence and scatter bands, as natural logarithms.
 fn bands(names: &LabelledAnalysis<'_>, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
@@ -199,7 +199,7 @@ fn bands(names: &LabelledAnalysis<'_>, uncertainty: &Uncertainty) -> Value {
     Value::Array(list)
 }
 
-/// Returns the bands of a net gain at the distinct scheduled airspeeds; `None` if any is missing.
+/// Returns a net gain's bands at the distinct scheduled airspeeds; `None` if any is missing.
 fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<Value> {
     let airspeeds_kt = schedule.airspeeds.clusters_kt();
     let mut fit = Vec::new();

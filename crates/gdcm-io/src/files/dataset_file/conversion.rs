@@ -13,7 +13,7 @@ use crate::content_fault::{ContentError, ContentFault};
 use crate::file_caution::FileCaution;
 use crate::json_reading::Limited;
 
-/// Draft of a dataset, with cautions about the text from which it was read.
+/// A dataset draft, with cautions about the text from which it was read.
 pub(super) struct CautionedDraft {
     pub(super) draft: DatasetDraft,
     /// Cautions about model keys that have no meaning in a dataset.
@@ -235,8 +235,8 @@ fn model_drafts(
 }
 
 impl RecordText {
-    /// Converts a record of the condition at `condition`; `position` is its place in the list of
-    /// records, counted from 1.
+    /// Converts a record in the condition at `condition`; `position` is its place in the record
+    /// list, counted from 1.
     pub(crate) fn into_record(
         self,
         condition: &Location,

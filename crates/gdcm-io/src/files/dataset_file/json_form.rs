@@ -1,4 +1,4 @@
-//! JSON objects of a dataset file.
+//! JSON objects in a dataset file.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use gdcm_model::whole_number::{whole, whole_or_none};
 
 use crate::json_reading::{Format, Limited, Nested, Numbers, list, list_while};
 
-/// Name and version of the file format.
+/// File format name and version.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-dataset",
     version: 1,
@@ -59,7 +59,7 @@ fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Conditio
     )
 }
 
-/// Reads the coordinates of a perturbation, or null.
+/// Reads a perturbation's coordinates, or null.
 fn coordinates<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<BTreeMap<String, f64>>, D::Error> {
@@ -82,7 +82,7 @@ pub(super) struct BandText {
     pub(super) unit: String,
 }
 
-/// A named parameter of the physics model.
+/// A named parameter in the physics model.
 #[derive(Deserialize, Serialize)]
 pub(super) struct ParameterText {
     pub(super) name: String,
@@ -93,7 +93,7 @@ pub(super) struct ParameterText {
     pub(super) description: Option<String>,
 }
 
-/// The change of a named parameter in a physics model.
+/// How a physics model moves a named parameter.
 #[derive(Clone, Deserialize, Serialize)]
 pub(crate) struct ParameterChangeText {
     pub(super) name: String,
@@ -123,7 +123,7 @@ pub(super) struct ConditionText {
     pub(super) records: Option<Limited<RecordText, MOST_RECORDS>>,
 }
 
-/// A flight record of a condition.
+/// A condition's flight record.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct RecordText {
     pub(super) name: String,
@@ -177,7 +177,7 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) order: Option<usize>,
-    /// Identifier of the flight condition; only outside a dataset.
+    /// Flight condition id; only outside a dataset.
     #[serde(
         default,
         deserialize_with = "whole_or_none",
@@ -210,7 +210,7 @@ pub(crate) struct ModelText {
     pub(crate) c: Option<Nested<2>>,
     #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
     pub(crate) d: Option<Nested<2>>,
-    /// Only in discrete time.
+    /// Sample time \[s\]; only in discrete time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -253,7 +253,7 @@ impl LabelText {
     }
 }
 
-/// Origin of a model: its file and variable.
+/// A model's source: file and variable.
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct SourceText {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -272,13 +272,13 @@ pub(crate) struct SourceText {
     /// Variables in the file that were not used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unused: Option<Limited<String, MOST_PIECES>>,
-    /// Channel lists (inputs, outputs) that were assigned to the channels of the dataset by
-    /// position instead of by name.
+    /// Channel lists (inputs, outputs) that were assigned to the dataset's channels by position
+    /// instead of by name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) by_position: Option<Limited<SideText, 2>>,
 }
 
-/// The list of all inputs or the list of all outputs.
+/// All inputs or all outputs, as a list.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum SideText {
@@ -304,7 +304,7 @@ pub(crate) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
-    /// First and last trusted frequency \[rad/s\] of each response.
+    /// First and last trusted frequency \[rad/s\] for each response.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) valid_band_rad_s: Option<Nested<3>>,
     /// Number of independent averages in the estimate.

@@ -28,11 +28,10 @@ use crate::reading_budget::ReadingBudget;
 
 pub(crate) use self::json_form::{LabelText, ModelText, RecordText};
 
-/// Origin of a dataset: a file, or an example in the program.
+/// Where a dataset comes from: a file, or an example in the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
-    /// An example that is part of the program.
     EmbeddedExample(Example),
 }
 
@@ -54,7 +53,7 @@ impl DatasetOrigin {
         }
     }
 
-    /// Returns the path of the file; `None` for an embedded example.
+    /// Returns the file path; `None` for an embedded example.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             DatasetOrigin::File(path) => Some(path.clone()),
@@ -71,11 +70,11 @@ impl DatasetOrigin {
     }
 }
 
-/// A dataset with the hash of its file, and cautions about the file.
+/// A dataset with its file hash, and cautions about the file.
 #[derive(Clone, Debug)]
 pub struct LoadedDataset {
     pub dataset: Arc<Dataset>,
-    /// SHA-256 of the file as stored, in lower-case hexadecimal.
+    /// SHA-256 of the stored file, in lower-case hexadecimal.
     pub sha256: String,
     pub origin: DatasetOrigin,
     /// Unknown keys and other irregularities, each with its place.
@@ -83,7 +82,7 @@ pub struct LoadedDataset {
 }
 
 impl LoadedDataset {
-    /// Returns the path of the dataset's file; `None` for an embedded example.
+    /// Returns the dataset file's path; `None` for an embedded example.
     pub fn path(&self) -> Option<&Path> {
         match &self.origin {
             DatasetOrigin::File(path) => Some(path),
@@ -91,7 +90,7 @@ impl LoadedDataset {
         }
     }
 
-    /// Returns the name of the dataset's file, or of the embedded example in parentheses.
+    /// Returns the dataset file's name, or the embedded example's name in parentheses.
     pub fn file_name(&self) -> String {
         match self.path().and_then(Path::file_name) {
             Some(name) => sanitized(&name.to_string_lossy()),
@@ -106,7 +105,7 @@ pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
     load_dataset_within(path, &ReadingBudget::default())
 }
 
-/// Loads a dataset within a reading budget, by which the caller can stop the reading.
+/// Loads a dataset within a reading budget, through which the caller can stop the reading.
 pub fn load_dataset_within(
     path: &Path,
     budget: &ReadingBudget<'_>,
@@ -128,17 +127,17 @@ pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedD
     )
 }
 
-/// Loads the dataset of the simulated example.
+/// Loads the simulated example's dataset.
 pub fn embedded_example() -> Result<LoadedDataset, FileError> {
     load_example(Example::Simulated)
 }
 
-/// Loads the dataset of an example.
+/// Loads an example's dataset.
 pub fn load_example(example: Example) -> Result<LoadedDataset, FileError> {
     load_dataset_bytes(example.dataset(), DatasetOrigin::EmbeddedExample(example))
 }
 
-/// Loads a dataset from the text of a file or from text in memory; all other loaders call this one.
+/// Loads a dataset from text in a file or in memory; all other loaders call this one.
 pub(crate) fn dataset_from(
     source: &Source<'_>,
     origin: DatasetOrigin,
@@ -146,7 +145,7 @@ pub(crate) fn dataset_from(
 ) -> Result<LoadedDataset, FileError> {
     let path = origin.message_path();
     let error = |fault| FileError::content_of(&path, fault, source.text());
-    // Three kinds of cautions: unknown keys, keys of other models, and strange values.
+    // Cautions concern unknown keys, keys of other models, and unusual values.
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
     let CautionedDraft {
         draft,
@@ -170,7 +169,7 @@ pub(crate) fn dataset_from(
 /// Returns all faults in a dataset file, each with its place; empty if the dataset can be loaded.
 ///
 /// # Errors
-/// Fails if the structure of the text is so damaged that it cannot be read at all.
+/// Fails if the text structure is so damaged that it cannot be read at all.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -202,10 +201,10 @@ pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
     outputs.persist()
 }
 
-/// Returns a dataset as the text of a dataset file, uncompressed.
+/// Returns a dataset as uncompressed text for a dataset file.
 ///
 /// # Errors
-/// None of the values is known to cause one; the JSON writer may return one.
+/// Errors from the JSON writer; no value is known to cause one.
 pub fn dataset_json(dataset: &Dataset) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_compact(&DatasetText::from_dataset(dataset), &mut bytes)?;

@@ -1,4 +1,4 @@
-//! Conversion between models in files and models of a dataset.
+//! Converts between models in files and in datasets.
 
 use nalgebra::DMatrix;
 
@@ -19,7 +19,7 @@ use crate::content_fault::{ContentError, ContentFault};
 use crate::json_reading::{Limited, Nested};
 
 impl ModelText {
-    /// Returns the keys that are present but have no meaning for models in a bundle of this kind.
+    /// Returns the keys that are present but have no meaning for models in this kind of bundle.
     pub(super) fn misplaced_keys(&self, kind: BundleKind) -> Vec<&'static str> {
         let is_physics = kind == BundleKind::Physics;
         let mut misplaced = Vec::new();
@@ -49,7 +49,7 @@ impl ModelText {
         misplaced
     }
 
-    /// Returns the parameters moved in a physics model; `None` for a member of the bundle.
+    /// Returns the parameters moved in a physics model; `None` for a bundle member.
     ///
     /// # Errors
     /// Fails if the model is both a run and a rerun.
@@ -70,11 +70,11 @@ impl ModelText {
         }
     }
 
-    /// Returns the origin of a physics model. A model with moved parameters counts as perturbed,
-    /// whatever its role, because it is no member of the bundle.
+    /// Returns a physics model's origin. A model with moved parameters counts as perturbed,
+    /// whatever its role, because it is no bundle member.
     ///
     /// # Errors
-    /// Fails if the role of a member is missing, or if a role is neither nominal nor perturbed.
+    /// Fails if a bundle member lacks a role, or if a role is neither nominal nor perturbed.
     pub(super) fn physics_origin(&self, place: &Location) -> Result<Origin, ContentError> {
         let is_moved = self.parameter.is_some() || self.parameters.is_some();
         if is_moved && matches!(self.role.as_deref(), None | Some("nominal")) {
@@ -116,7 +116,7 @@ impl ModelText {
         }
     }
 
-    /// Converts the file's entry to the draft of an identified model in a dataset or a study.
+    /// Converts the file's entry to an identified model draft for a dataset or a study.
     pub(crate) fn into_identified(self) -> ModelDraft {
         let origin = self.identified_origin();
         self.into_draft(origin)
@@ -144,7 +144,7 @@ impl ModelText {
         }
     }
 
-    /// Converts a model of a dataset to its form in the file.
+    /// Converts a dataset's model to its form in the file.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::from_draft(ModelDraft::from_model(model))
     }

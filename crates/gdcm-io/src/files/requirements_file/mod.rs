@@ -16,7 +16,7 @@ pub use self::requirements_json::RequirementResults;
 /// Names of the two requirement files, in the order JSON, CSV.
 pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
 
-/// Returns the paths of the JSON and the CSV file in a directory.
+/// Returns the paths to the JSON and the CSV file in a directory.
 pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
     REQUIREMENT_FILES.map(|name| directory.join(name))
 }

@@ -14,7 +14,7 @@ use gdcm_words::missing_results::{no_bandwidth_text, no_mode_value_text, no_summ
 
 use crate::csv_text::write_records;
 
-/// Column names of the CSV file, separated by blanks.
+/// Column names in the CSV file, separated by blanks.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
 /// Writes the CSV file: bandwidths, modes, summary costs, then time histories.
@@ -56,7 +56,7 @@ struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// Returns the CSV row of the quantity `name`.
+    /// Returns the CSV row for the quantity `name`.
     fn row(
         &self,
         name: &str,
@@ -162,7 +162,7 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the CSV rows of a mode of the model with this role.
+/// Returns the CSV rows for a mode in the model with this role.
 fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
     let mode = match finding.name {
         Some(name) => format!("{} {name}", finding.number),
@@ -208,7 +208,7 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the CSV rows of a time history: quantities without a tolerance, then those of each
+/// Returns the CSV rows for a time history: quantities without a tolerance, then those for each
 /// tolerance.
 fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     let subject = Subject {

@@ -1,5 +1,5 @@
-//! `requirements.json`: the findings as the analysis holds them, with sentences instead of the
-//! codes of missing values and cautions.
+//! `requirements.json`: the findings as the analysis holds them, with sentences instead of codes
+//! for missing values and cautions.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -31,14 +31,14 @@ pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
     pub time_histories: &'a TimeHistories,
     pub dataset: &'a Dataset,
-    /// Limits and tolerances of the grid.
+    /// Limits and tolerances in the grid.
     pub settings: &'a RequirementSettings,
-    /// SHA-256 of the dataset's file.
+    /// SHA-256 of the dataset file.
     pub sha256: &'a str,
 }
 
 impl RequirementResults<'_> {
-    /// Returns the grid of the requirements for a role of the corrected model.
+    /// Returns the requirement grid for a role of the corrected model.
     pub fn grid(&self, role: RequirementRole) -> RequirementGrid {
         RequirementGrid::new(&GridSource {
             requirements: self.requirements,
@@ -50,7 +50,7 @@ impl RequirementResults<'_> {
     }
 }
 
-/// Returns the contents of `requirements.json`.
+/// Returns the content of `requirements.json`.
 pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<Value> {
     let document = RequirementsDocument {
         format: NAME,
@@ -69,7 +69,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
     with_sentences(&document, results)
 }
 
-/// Contents of `requirements.json`: the dataset, then the findings.
+/// Content of `requirements.json`: the dataset, then the findings.
 #[derive(Serialize)]
 struct RequirementsDocument<'a> {
     format: &'static str,
@@ -176,8 +176,8 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
-/// Converts the contents of `requirements.json`, adds the levels of bandwidths and phase delays, and
-/// replaces the codes of missing values and cautions by sentences.
+/// Converts the findings to the content of `requirements.json`, adds levels for bandwidths and
+/// phase delays, and replaces codes for missing values and cautions by sentences.
 fn with_sentences(
     document: &RequirementsDocument<'_>,
     results: RequirementResults<'_>,
@@ -220,7 +220,7 @@ fn with_sentences(
     Ok(value)
 }
 
-/// Replaces the codes of the missing values of a finding by sentences.
+/// Replaces the codes for a finding's missing values by sentences.
 fn replace_absent<T, S: Into<Value>>(
     entry: &mut Value,
     absent: &BTreeMap<&'static str, T>,

@@ -61,7 +61,7 @@ impl StudyText {
 }
 
 impl ExportText {
-    /// Returns the choices of the last export; `None` for the defaults.
+    /// Returns the choices made for the last export; `None` for the defaults.
     fn from_choices(choices: &ExportChoices) -> Option<Self> {
         if *choices == ExportChoices::default() {
             return None;
@@ -96,7 +96,7 @@ impl ExportText {
             } else {
                 Some(self.breakpoints_kt)
             },
-            // An order outside the range is reported by the export.
+            // The export reports an order that is out of range.
             pade_order: self.pade_order.try_into().unwrap_or(usize::MAX),
             folder: self.folder,
             prefix: self.prefix,
@@ -131,7 +131,7 @@ impl ConditionText {
     }
 }
 
-/// Converts the content of a study file to decisions, checked against the dataset.
+/// Converts a study file's content to decisions, checked against the dataset.
 pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
     let mut decisions = present_decisions(text.settings, text.conditions, dataset)?;
     decisions.taken = adopted_models(text.taken, dataset)?;

@@ -1,4 +1,4 @@
-//! JSON objects of a study file.
+//! JSON objects in a study file.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,14 +14,14 @@ use gdcm_study::decisions::signs::TurnedChannel;
 use crate::files::dataset_file::{ModelText, RecordText};
 use crate::json_reading::{Format, list};
 
-/// Maximum number of names of export formats in a study file.
+/// Maximum number of export format names in a study file.
 const MOST_FORMATS: usize = 100;
-/// Maximum number of airspeeds of an exported table in a study file.
+/// Maximum number of airspeeds for an exported table in a study file.
 const MOST_BREAKPOINTS: usize = 1000;
 /// Maximum number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
-/// Format and version of a study file.
+/// Study file format and version.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-study",
     version: 1,
@@ -38,7 +38,7 @@ pub(super) struct StudyText {
     pub(super) settings: Settings<ResponseNames>,
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     pub(super) conditions: Vec<ConditionText>,
-    /// Identified models that replace those of the dataset.
+    /// Identified models that replace the dataset's.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -55,7 +55,7 @@ pub(super) struct StudyText {
     /// Decisions about the requirements; omitted if they are the defaults.
     #[serde(default, skip_serializing_if = "is_default")]
     pub(super) requirements: RequirementSettings,
-    /// Choices of the last export; absent in older studies, and omitted if they are the defaults.
+    /// Choices for the last export; absent in older studies, and omitted if they are the defaults.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) export: Option<ExportText>,
     /// Named alternatives to the decisions; absent in older studies.
@@ -78,10 +78,10 @@ pub(super) struct TakenText {
     pub(super) records: Vec<RecordText>,
 }
 
-/// Choices of an export.
+/// Choices for an export.
 #[derive(Deserialize, Serialize)]
 pub(super) struct ExportText {
-    /// Names of the formats; unknown names are ignored.
+    /// Format names; unknown names are ignored.
     #[serde(deserialize_with = "list::<MOST_FORMATS, _, _>")]
     pub(super) formats: Vec<String>,
     /// Exported conditions; omitted if all are.
@@ -93,7 +93,7 @@ pub(super) struct ExportText {
     pub(super) conditions: Vec<ConditionId>,
     pub(super) per_condition: bool,
     pub(super) model: String,
-    /// Airspeeds \[kt\] of lookup tables; omitted if they are those of the conditions.
+    /// Airspeeds \[kt\] for lookup tables; omitted if they are the conditions' airspeeds.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -118,13 +118,13 @@ pub(super) struct VariantText {
     pub(super) conditions: Vec<ConditionText>,
 }
 
-/// Reference from a study to its dataset.
+/// A study's reference to its dataset.
 #[derive(Clone, Deserialize, Serialize)]
 pub(super) struct DatasetReference {
     /// Path relative to the study's directory, with `/` between its parts; `None` for an embedded
     /// example.
     pub(super) path: Option<String>,
-    /// Name of the dataset, for display; without a path, the name of the embedded example.
+    /// Dataset name, for display; without a path, the embedded example's name.
     pub(super) name: String,
     pub(super) sha256: String,
     /// Summary of the dataset's contents, used to find changes; absent in older studies.

@@ -1,4 +1,4 @@
-//! Study files, `*.gdcm-study.json`: the decisions of a study, with a reference to its dataset.
+//! Study files, `*.gdcm-study.json`: a study's decisions, with a reference to its dataset.
 
 mod conversion;
 mod json_form;

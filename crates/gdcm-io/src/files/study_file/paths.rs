@@ -1,4 +1,4 @@
-//! Path of a dataset in a study file: relative to the directory of the study file, with `/` as the
+//! Path of a dataset in a study file: relative to the study file's directory, with `/` as the
 //! separator, so that both can be moved together and opened on another system.
 
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::file_error::FileError;
 
-/// Returns the path of the dataset as written in the study file `study`: relative if possible.
+/// Returns the dataset's path as written in the study file `study`: relative if possible.
 pub(super) fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     let dataset = settled(dataset)?;
     let directory = settled(study)?;
@@ -32,8 +32,8 @@ pub(super) fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Returns the absolute path of a file, with links in its directory resolved: `..` after an
-/// unresolved link would lead elsewhere.
+/// Returns a file's absolute path, with links in its directory resolved: `..` after an unresolved
+/// link would lead elsewhere.
 fn settled(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);
     let absolute = std::path::absolute(path).map_err(failed)?;
@@ -48,7 +48,7 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
     }
 }
 
-/// Returns the absolute path of a dataset with links in its directory resolved. If the directory is
+/// Returns a dataset's absolute path with links in its directory resolved. If the directory is
 /// inaccessible, links stay unresolved, so that the decisions can still be saved.
 pub(super) fn settled_or_absolute(dataset: &Path) -> PathBuf {
     if let Ok(settled) = settled(dataset) {
@@ -57,8 +57,8 @@ pub(super) fn settled_or_absolute(dataset: &Path) -> PathBuf {
     std::path::absolute(dataset).unwrap_or(dataset.into())
 }
 
-/// Returns the path of the dataset: as given in the study, or in the directory of the study file if
-/// the dataset exists only there.
+/// Returns the dataset's path: as given in the study, or in the study file's directory if the
+/// dataset exists only there.
 pub(super) fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
     let referenced = directory.join(relative);

@@ -1,5 +1,5 @@
-//! The blackbox format of Betaflight and relatives: several flights in one file, each with header
-//! lines followed by frames (<https://betaflight.com/docs/development/Blackbox-Internals>).
+//! The blackbox format, used by Betaflight and relatives: several flights in one file, each with
+//! header lines followed by frames (<https://betaflight.com/docs/development/Blackbox-Internals>).
 //!
 //! ```text
 //! H Product:Blackbox …        begins a flight
@@ -7,9 +7,9 @@
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
-//! Intra and predicted frames are main frames, each a sample of all fields. An intra frame is decoded
-//! by itself, a predicted frame from the two main frames before it. A slow frame gives the flight
-//! mode.
+//! Intra and predicted frames are main frames, each a sample of all fields. An intra frame is
+//! decoded by itself, a predicted frame from the two main frames before it. A slow frame gives the
+//! flight mode.
 //!
 //! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
 //! predicted from it are omitted up to the next intra frame, which leaves a gap.
@@ -30,7 +30,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Beginning of the header of a flight.
+/// Text with which the header of a flight begins.
 const MARK: &[u8] = b"H Product:Blackbox";
 /// Maximum time step between main frames \[µs\]; a longer step marks damaged data.
 const LONGEST_STEP_US: i64 = 10_000_000;
@@ -39,10 +39,10 @@ const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
 
-/// Column names of the controller terms; an axis index follows in square brackets.
+/// Column names for the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
-/// Importer of blackbox logs.
+/// Importer for blackbox logs.
 pub(crate) const BLACKBOX: Importer = Importer {
     name: "a blackbox log",
     endings: &["bbl", "bfl"],
@@ -60,7 +60,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
-        // Handled like an exhausted budget; the number of flights has no limit in steps of work.
+        // Too many flights are reported like an exhausted work budget.
         return Err(VariableFault::TooMuchWork {
             variable: String::new(),
             most_millions: 0,
@@ -149,7 +149,7 @@ impl Flight {
     /// Creates a flight without frames.
     ///
     /// # Errors
-    /// [`VariableFault`] if the data version or an encoding of the intra frames is not supported.
+    /// [`VariableFault`] if the data version or an encoding in the intra frames is not supported.
     fn begin(header: Header, name: &str) -> Result<Self, VariableFault> {
         let version = header.value("Data version");
         match header.frame_fields(b'I') {
@@ -234,7 +234,7 @@ impl Flight {
         true
     }
 
-    /// Stores the mode flags of a slow frame with the time of the preceding main frame.
+    /// Stores a slow frame's mode flags with the time of the preceding main frame.
     fn add_mode_sample(
         &mut self,
         slow: &[i64],
@@ -255,7 +255,7 @@ impl Flight {
         Ok(())
     }
 
-    /// Returns the columns of the fields, and for each axis a column with the sum of the controller
+    /// Returns a column for each field, and for each axis a column with the sum of the controller
     /// terms.
     fn into_columns(
         self,
@@ -279,7 +279,7 @@ impl Flight {
             let sum = controller_sum(&columns, axis, &name, budget)?;
             columns.extend(sum);
         }
-        // The documented unit of the rates, deg/s, requires a scale of 1.
+        // The documented rate unit, deg/s, requires scale 1.
         if self.header.value("gyro_scale") == ONE {
             notes.extend(assign_documented_meanings(&mut columns, &BETAFLIGHT));
         } else {
@@ -300,7 +300,7 @@ impl Flight {
     }
 }
 
-/// Returns a column with the sum of the controller terms of an axis; `None` if there are none.
+/// Returns a column with the sum of an axis's controller terms; `None` if there are none.
 fn controller_sum(
     columns: &[RecordColumn],
     axis: usize,
@@ -332,9 +332,9 @@ fn flight_modes(samples: &[ModeSample]) -> Vec<ModeSpan> {
 
 /// Returns the flight mode in `flightModeFlags`.
 fn mode_name(flags: f64) -> &'static str {
-    /// Bit of the mode in which the stick sets the attitude.
+    /// Bit of the angle mode, in which the stick sets the attitude.
     const ANGLE: u32 = 1 << 1;
-    /// Bit of the mode between angle and acro.
+    /// Bit of the horizon mode, between angle and acro mode.
     const HORIZON: u32 = 1 << 2;
     let flags = flags as u32;
     if flags & ANGLE != 0 {

@@ -1,7 +1,7 @@
 //! Encoding and prediction of the fields in blackbox frames.
 //!
-//! A frame holds the difference of each field from a prediction. Decoding has two steps, for which
-//! the header of the flight gives each field a number: the encoding says how the difference is
+//! A frame stores how each field differs from a prediction. Decoding has two steps, and the
+//! flight's header gives each field a number for each step: the encoding says how the difference is
 //! packed into bytes (`FrameFields::differences`), the predictor what it is added to
 //! (`FrameFields::values`).
 //!
@@ -24,17 +24,17 @@ mod encoding {
     pub(super) const TAG8_8SVB: u8 = 6;
     /// Three fields: two bits that give their lengths, then the fields.
     pub(super) const TAG2_3S32: u8 = 7;
-    /// Four fields: a byte with two bits for the length of each, then the fields.
+    /// Four fields: a byte with two bits for each length, then the fields.
     pub(super) const TAG8_4S16: u8 = 8;
     /// No bytes; the difference is 0.
     pub(super) const NULL: u8 = 9;
 }
 
-/// Numbers of the predictors that do not predict 0; all others, such as 0, do.
+/// Numbers of the predictors; all other numbers, such as 0, predict 0.
 mod predictor {
     /// Value in the preceding frame.
     pub(super) const PREVIOUS: u8 = 1;
-    /// Continuation of the line through the two preceding frames.
+    /// Extrapolation along the line through the two preceding frames.
     pub(super) const STRAIGHT_LINE: u8 = 2;
     /// Mean of the two preceding frames.
     pub(super) const AVERAGE_2: u8 = 3;
@@ -52,8 +52,7 @@ mod predictor {
     pub(super) const MIN_MOTOR: u8 = 11;
 }
 
-/// Descriptions of the fields in all frames with the same letter; each list has an entry for each
-/// field.
+/// Field descriptions for all frames with the same letter; each list has an entry for each field.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameFields {
     pub(super) names: Vec<String>,
@@ -93,7 +92,7 @@ impl FrameFields {
             && self.encodings.iter().all(|encoding| is_known(*encoding))
     }
 
-    /// Reads the differences of a frame from its bytes; returns `None` if they are damaged.
+    /// Reads a frame's differences from its bytes; returns `None` if they are damaged.
     pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
         let count = self.names.len();
         let mut values: Vec<i64> = Vec::with_capacity(count);
@@ -137,7 +136,7 @@ impl FrameFields {
         Some(())
     }
 
-    /// Computes the field values of a frame by adding its predictions to its differences.
+    /// Computes a frame's field values by adding its predictions to its differences.
     ///
     /// A missing predecessor counts as 0, and a missing earlier frame as equal to the last.
     pub(super) fn values(
@@ -146,7 +145,7 @@ impl FrameFields {
         before: &Predecessors,
         header: HeaderNumbers,
     ) -> Vec<i64> {
-        // The differences are replaced by the values in the order of the fields.
+        // The differences are replaced by the values in field order.
         let mut values = differences;
         let motor = self.names.iter().position(|name| name == "motor[0]");
         for field in 0..values.len() {
@@ -167,7 +166,7 @@ impl FrameFields {
                 predictor::MIN_MOTOR => header.least_motor,
                 _ => 0,
             };
-            // Keep the lower 32 bits, as the arithmetic of the logger does.
+            // Keep the lower 32 bits, as the logger's arithmetic does.
             let low = values[field].wrapping_add(predicted) as u32;
             values[field] = if self.signed[field] {
                 i64::from(low.cast_signed())
@@ -193,7 +192,7 @@ fn is_known(number: u8) -> bool {
     )
 }
 
-/// Returns the value of a field; `None` if the frame or the field is missing.
+/// Returns a field's value; `None` if the frame or the field is missing.
 fn field_of(frame: &Option<Vec<i64>>, field: usize) -> Option<i64> {
     frame.as_ref()?.get(field).copied()
 }

@@ -12,14 +12,13 @@ use crate::formats::logs::blackbox_fields::Predecessors;
 use crate::formats::logs::blackbox_header::Header;
 use crate::formats::logs::blackbox_integers::PackedBytes;
 
-/// Letters of all frames.
+/// Letters for all frame kinds.
 pub(super) const FRAME_LETTERS: &[u8] = b"IPSGHE";
 
-/// A decoded frame.
 pub(super) enum Frame {
-    /// Values of an intra or a predicted frame.
+    /// Values in an intra or predicted frame.
     Main(Vec<i64>),
-    /// Values of a slow frame.
+    /// Values in a slow frame.
     Slow(Vec<i64>),
     /// Frame whose contents are not used.
     Other,
@@ -64,8 +63,7 @@ mod event_type {
     pub(super) const LOG_END: u8 = 255;
 }
 
-/// Parses an event frame, whose length depends on the event type. The contents of events are not
-/// used.
+/// Parses an event frame, whose length depends on the event type. Event contents are not used.
 fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     match bytes.byte()? {
         // One integer.
@@ -77,8 +75,8 @@ fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
             bytes.unsigned()?;
             bytes.unsigned()?;
         }
-        // The function that is adjusted, then a float of four bytes if its highest bit is set,
-        // otherwise a packed integer.
+        // The adjusted function, then a four-byte float if its highest bit is set, otherwise a
+        // packed integer.
         event_type::INFLIGHT_ADJUSTMENT => {
             if bytes.byte()? & 0x80 == 0 {
                 bytes.signed()?;

@@ -1,10 +1,10 @@
-//! Header of a blackbox flight: lines `H key:value`.
+//! Blackbox flight header: lines `H key:value`.
 
 use std::collections::BTreeMap;
 
 use crate::formats::logs::blackbox_fields::{FrameFields, HeaderNumbers};
 
-/// Contents of the header lines before the frames.
+/// Content of the header lines before the frames.
 #[derive(Default)]
 pub(super) struct Header {
     /// Header values by key.
@@ -17,7 +17,7 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads the header of a flight, with which `bytes` begin.
+    /// Reads a flight's header, with which `bytes` begin.
     pub(super) fn read(bytes: &[u8]) -> Self {
         let mut header = Self::default();
         header.read_lines(bytes);
@@ -55,18 +55,18 @@ impl Header {
         }
     }
 
-    /// Returns the header value of a key; empty if the key is missing.
+    /// Returns the header value for a key; empty if the key is missing.
     pub(super) fn value(&self, key: &str) -> &str {
         self.lines.get(key).map_or("", String::as_str)
     }
 
-    /// Returns the first number in the header value of a key; 0 if there is none.
+    /// Returns the first number in the header value for a key; 0 if there is none.
     fn number(&self, key: &str) -> i64 {
         let first = self.value(key).split(',').next().unwrap_or_default();
         first.parse().unwrap_or(0)
     }
 
-    /// Returns the descriptions of the fields in frames with the letter `kind`.
+    /// Returns the field descriptions for frames with the letter `kind`.
     fn parse_fields(&self, kind: char) -> FrameFields {
         FrameFields {
             names: self.field_cells(kind, "name").map(str::to_owned).collect(),
@@ -80,7 +80,7 @@ impl Header {
         }
     }
 
-    /// Returns the cells of a header line such as "Field I name".
+    /// Returns the cells in a header line such as "Field I name".
     fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
         self.value(&format!("Field {kind} {property}"))
             .split(',')
@@ -95,13 +95,12 @@ impl Header {
             .collect()
     }
 
-    /// Returns the names of the fields in the main frames, intra and predicted.
+    /// Returns the field names in main frames, intra and predicted.
     pub(super) fn main_fields(&self) -> &[String] {
         &self.fields_by_letter[&b'I'].names
     }
 
-    /// Returns the fields of the frames with the letter `kind`; `None` if a field cannot be
-    /// decoded.
+    /// Returns the fields in frames with the letter `kind`; `None` if a field cannot be decoded.
     pub(super) fn frame_fields(&self, kind: u8) -> Option<&FrameFields> {
         let fields = self.fields_by_letter.get(&kind)?;
         if fields.is_whole() {

@@ -1,4 +1,4 @@
-//! Packed integers in blackbox frames, in the encodings of
+//! Packed integers in blackbox frames, encoded as in
 //! <https://betaflight.com/docs/development/Blackbox-Internals>.
 
 /// Cursor over bytes that hold packed integers.
@@ -47,8 +47,8 @@ impl<'b> PackedBytes<'b> {
     }
 
     /// Reads the encoding `TAG2_3S32`. The upper two bits of the first byte are the tag: 0, 1 and 2
-    /// mean 2, 4 and 6 bits for each integer; with 3, the lower six bits give the length of each
-    /// integer, from 1 to 4 bytes.
+    /// mean 2, 4 and 6 bits for each integer; with 3, the lower six bits give each integer's
+    /// length, from 1 to 4 bytes.
     pub(super) fn tag2_3s32(&mut self) -> Option<[i32; 3]> {
         let lead = self.byte()?;
         Some(match lead >> 6 {
@@ -75,15 +75,15 @@ impl<'b> PackedBytes<'b> {
         })
     }
 
-    /// Reads the encoding `TAG8_4S16`. The tags 0 to 3 mean integers of 0, 4, 8 and 16 bits, which
-    /// are packed without gaps, the higher half of each byte first.
+    /// Reads the encoding `TAG8_4S16`. The tags 0 to 3 mean integers with 0, 4, 8 and 16 bits,
+    /// which are packed without gaps, each byte's higher half first.
     pub(super) fn tag8_4s16(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
-        // Lower half of the last byte, if it has not been used.
+        // Lower half of the last byte, if not yet used.
         let mut half = None;
         let mut values = [0; 4];
         for (index, value) in values.iter_mut().enumerate() {
-            // Length of the integer in halves of a byte.
+            // Integer length in half bytes.
             let halves = [0, 1, 2, 4][usize::from((tags >> (2 * index)) & 3)];
             let mut bits = 0_u32;
             for _ in 0..halves {

@@ -25,18 +25,18 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// First bytes of each message.
 const MARK: [u8; 2] = [0xa3, 0x95];
-/// Length of a message header: two mark bytes and the type \[bytes\].
+/// Message header length \[bytes\]: two mark bytes and the type.
 const HEADER: usize = 3;
-/// Type of the FMT messages, which describe the other messages.
+/// Message type of FMT messages, which describe the other messages.
 const FORMAT: u8 = 128;
-/// Length of an FMT message \[bytes\].
+/// FMT message length \[bytes\].
 const FORMAT_LENGTH: usize = 89;
 /// Positions of the texts in the content of an FMT message \[bytes\].
 const NAME: Range<usize> = 2..6;
 const LETTERS: Range<usize> = 6..22;
 const FIELD_NAMES: Range<usize> = 22..86;
 
-/// Importer of ArduPilot logs in binary form.
+/// Importer for ArduPilot logs in binary form.
 pub(crate) const DATAFLASH: Importer = Importer {
     name: "an ArduPilot DataFlash log",
     endings: &["bin"],
@@ -85,14 +85,13 @@ type Lengths = [usize; 256];
 
 #[derive(Clone, Copy)]
 struct Message<'b> {
-    /// Message type.
     kind: u8,
     /// Bytes after the header.
     content: &'b [u8],
 }
 
 impl Message<'_> {
-    /// Returns the value of the field at `index`; `None` if the field is not numeric.
+    /// Returns the value in the field at `index`; `None` if the field is not numeric.
     fn number(self, layout: &MessageLayout, index: usize) -> Option<f64> {
         let field = layout.fields.get(index)?;
         match field.kind {
@@ -103,7 +102,7 @@ impl Message<'_> {
         }
     }
 
-    /// Returns the first byte of the field with this name.
+    /// Returns the first byte in the field with this name.
     fn byte(self, layout: &MessageLayout, name: &str) -> Option<u8> {
         self.content.get(layout.field(name)?.offset).copied()
     }
@@ -160,7 +159,7 @@ impl<'b, 'm> Messages<'b, 'm> {
     }
 }
 
-/// Message descriptions read so far.
+/// Message descriptions so far.
 struct Descriptions {
     layouts: Layouts,
     lengths: Lengths,
@@ -215,7 +214,7 @@ impl Descriptions {
         }
     }
 
-    /// Stores the layout and the length of a message type.
+    /// Stores a message type's layout and length.
     fn add_format(&mut self, content: &[u8]) {
         let Some([kind, length]) = array::<2>(content, 0) else {
             return;
@@ -229,7 +228,7 @@ impl Descriptions {
         };
         let ends = layout.fields.iter().map(|field| field.end());
         let content_length = ends.max().unwrap_or(0);
-        // A description of FMT is ignored: its length is fixed.
+        // A description for FMT itself is ignored: its length is fixed.
         if kind != FORMAT && usize::from(length) >= content_length + HEADER {
             self.lengths[usize::from(kind)] = usize::from(length);
             self.layouts.by_type.insert(kind, layout);
@@ -237,7 +236,7 @@ impl Descriptions {
     }
 }
 
-/// Returns the text in a part of a message; empty if the message is shorter.
+/// Returns the text in part of a message; empty if the message is shorter.
 fn text_in(content: &[u8], part: Range<usize>) -> String {
     printable_text(content.get(part).unwrap_or_default())
 }

@@ -1,15 +1,14 @@
-//! Layouts of the messages in binary and text DataFlash logs: fields, data types, units and
-//! multipliers.
+//! Message layouts in binary and text DataFlash logs: fields, data types, units and multipliers.
 //!
-//! A log describes its own messages: [`MessageLayout::parse`] builds the layout of a message type,
-//! and [`Layouts::set_units`] then adds the letters of its units and multipliers, whose meanings are
-//! in [`Layouts::units`] and [`Layouts::multipliers`].
+//! A log describes its own messages: [`MessageLayout::parse`] builds a message type's layout, and
+//! [`Layouts::set_units`] then adds its unit and multiplier letters, whose meanings are in
+//! [`Layouts::units`] and [`Layouts::multipliers`].
 
 use std::collections::BTreeMap;
 
 use crate::formats::stored_number::{NumberClass, StoredNumber};
 
-/// Data type of a message field, given by a format letter
+/// Message field's data type, given by a format letter
 /// (<https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FieldKind {
@@ -50,7 +49,7 @@ impl FieldKind {
         })
     }
 
-    /// Length of the field \[bytes\].
+    /// Field length \[bytes\].
     pub(super) fn size(self) -> usize {
         match self {
             Self::Number { stored, .. } => stored.size(),
@@ -68,13 +67,13 @@ pub(super) struct MessageField {
 }
 
 impl MessageField {
-    /// Returns the offset of the byte after the field \[bytes\].
+    /// Returns the offset just after the field \[bytes\].
     pub(super) fn end(&self) -> usize {
         self.offset + self.kind.size()
     }
 }
 
-/// Layout of all messages of one type.
+/// Layout shared by all messages of one type.
 #[derive(Clone, Debug)]
 pub(super) struct MessageLayout {
     pub(super) name: String,
@@ -129,7 +128,7 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Sets the unit and multiplier letters of a message type.
+    /// Sets a message type's unit and multiplier letters.
     pub(super) fn set_units(&mut self, kind: u8, units: &str, multipliers: &str) {
         if let Some(layout) = self.by_type.get_mut(&kind) {
             layout.units = units.chars().collect();
@@ -137,7 +136,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the unit of a field as this program writes it; `None` if the field has no unit.
+    /// Returns a field's unit as this program writes it; `None` if the field has no unit.
     pub(super) fn unit(&self, layout: &MessageLayout, field: usize) -> Option<String> {
         let unit = self.units.get(layout.units.get(field)?)?;
         match unit.as_str() {
@@ -148,7 +147,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the multiplier of a field; 1 if it is missing, not finite, or 0.
+    /// Returns a field's multiplier; 1 if it is missing, not finite, or 0.
     pub(super) fn multiplier(&self, layout: &MessageLayout, field: usize) -> f64 {
         let letter = layout.multipliers.get(field);
         match letter.and_then(|letter| self.multipliers.get(letter)) {

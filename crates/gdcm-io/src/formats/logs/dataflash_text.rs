@@ -1,4 +1,4 @@
-//! DataFlash logs of ArduPilot as text: a line `NAME, value, value` for each message.
+//! ArduPilot DataFlash logs as text: a line `NAME, value, value` for each message.
 //!
 //! FMT, FMTU, UNIT and MULT lines describe the messages. The values already include the
 //! multipliers.
@@ -13,10 +13,10 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// First characters of a log after removal of blanks.
+/// First characters of a log after blanks are removed.
 const BEGINNING: &[u8] = b"FMT,128,89,FMT,";
 
-/// Importer of ArduPilot logs in text form.
+/// Importer for ArduPilot logs in text form.
 pub(crate) const DATAFLASH_TEXT: Importer = Importer {
     name: "an ArduPilot DataFlash log as text",
     endings: &["log"],

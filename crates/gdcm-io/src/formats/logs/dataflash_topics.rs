@@ -17,29 +17,29 @@ use crate::formats::recorded_columns::Columns;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
-/// Names of messages that describe the log and hold no samples.
+/// Messages that describe the log and hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
-/// Unit letter of the field that identifies the instance of a sensor.
+/// Unit letter that marks the field with the sensor instance.
 const INSTANCE: char = '#';
 
 /// Message fields from which samples are read.
 pub(super) struct SampleFields<'l> {
     pub(super) layout: &'l MessageLayout,
     stamp: Stamp,
-    /// Index of the field that identifies the instance.
+    /// Index of the field with the instance.
     instance: Option<usize>,
     numbers: Vec<SampleNumber>,
 }
 
-/// Time stamp field of a message.
+/// A message's time stamp field.
 #[derive(Clone, Copy)]
 struct Stamp {
     field: usize,
-    /// Unit of the time stamp \[s\].
+    /// Time stamp unit \[s\].
     unit_s: f64,
 }
 
-/// Numeric field of a message.
+/// A message's numeric field.
 struct SampleNumber {
     field: usize,
     multiplier: f64,
@@ -47,7 +47,7 @@ struct SampleNumber {
 }
 
 impl<'l> SampleFields<'l> {
-    /// Finds the time stamp, the instance and the numeric fields of a layout; returns `None` for a
+    /// Finds the time stamp, the instance and the numeric fields in a layout; returns `None` for a
     /// layout without a time stamp or without numeric fields, and for messages that describe the
     /// log.
     pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
@@ -165,7 +165,7 @@ impl Topics {
         Ok(columns)
     }
 
-    /// Returns the spans in which the vehicle was armed, and those of the flight modes.
+    /// Returns the spans in which the vehicle was armed, and the flight mode spans.
     fn flight_modes(&self) -> Vec<ModeSpan> {
         let mut modes = Vec::new();
         if let Some(armed) = self.states("ARM", "ArmState") {
@@ -188,7 +188,7 @@ impl Topics {
         modes
     }
 
-    /// Returns a field over time, from instance 0 of a message.
+    /// Returns a field over time, from a message's instance 0.
     fn states(&self, name: &str, field: &str) -> Option<States<'_>> {
         let topic = self.by_name.get(&(name.to_owned(), 0))?;
         Some(States {
@@ -198,7 +198,7 @@ impl Topics {
     }
 }
 
-/// Values of a field over time.
+/// A field's values over time.
 struct States<'t> {
     time_s: &'t [f64],
     field: &'t TopicField,
@@ -210,7 +210,7 @@ impl States<'_> {
     }
 }
 
-/// Creates a topic without samples for an instance of a message.
+/// Creates a topic without samples for a message instance.
 fn new_topic(fields: &SampleFields<'_>, instance: u64) -> TopicSamples {
     let name = &fields.layout.name;
     let name = if instance == 0 {

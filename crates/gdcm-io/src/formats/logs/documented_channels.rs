@@ -1,4 +1,4 @@
-//! Channels and units of logged columns, according to the documentation of each logging system.
+//! Channels and units for logged columns, according to each logging system's documentation.
 
 use crate::formats::reading_note::{ChannelAssignment, ReadingNote};
 use gdcm_sysid::records::RecordColumn;
@@ -23,8 +23,8 @@ const fn documented(
     }
 }
 
-/// Documented columns in the logs of a system. If several columns measure a channel, the first in
-/// this list that is present and varies is used.
+/// Documented columns in one system's logs. If several columns measure a channel, the first in this
+/// list that is present and varies is used.
 pub(super) struct Meanings {
     columns: &'static [DocumentedColumn],
     /// Note for the user about sign conventions.
@@ -61,7 +61,7 @@ pub(super) const PX4: Meanings = Meanings {
         acceleration along z are negative upwards (give COL=-COLUMN to reverse a sign)",
 };
 
-/// Messages of ArduPilot: `SIDD` (system identification mode), `RATE` (rate controllers), `IMU`
+/// ArduPilot messages: `SIDD` (system identification mode), `RATE` (rate controllers), `IMU`
 /// (inertial measurement unit) and `ATT` (attitude)
 /// (<https://ardupilot.org/copter/docs/logmessages.html>). In `RATE`, `R`, `P` and `Y` are roll,
 /// pitch and yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
@@ -94,8 +94,8 @@ pub(super) const ARDUPILOT: Meanings = Meanings {
         acceleration along z is negative upwards (give NZ=-COLUMN to reverse a sign)",
 };
 
-/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller
-/// terms, which is the input to the mixer (<https://betaflight.com/docs/development/Blackbox>).
+/// Betaflight and relatives: blackbox field names; `axisSum` is the sum of the controller terms,
+/// which enters the mixer (<https://betaflight.com/docs/development/Blackbox>).
 pub(super) const BETAFLIGHT: Meanings = Meanings {
     columns: &[
         documented("axisSum[0]", "LAT", ""),
@@ -148,7 +148,7 @@ pub(super) fn assign_documented_meanings(
     })
 }
 
-/// Returns whether a column has two different values.
+/// Returns whether a column has at least two different values.
 fn varies(column: &RecordColumn) -> bool {
     column.range().is_some_and(|(least, most)| least < most)
 }

@@ -1,4 +1,4 @@
-//! Aircraft logs, which consist of topics with a time axis each.
+//! Aircraft logs, in which each topic has its own time axis.
 //!
 //! ```text
 //! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash)

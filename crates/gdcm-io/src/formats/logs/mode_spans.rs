@@ -6,15 +6,15 @@ use gdcm_sysid::records::ModeSpan;
 /// Maximum number of spans per log; later spans are ignored.
 const MOST_SPANS: usize = 1000;
 
-/// Returns the time spans during which `values` is constant; `name` returns the name of a value, or
-/// `None` if the value needs no span.
+/// Returns the time spans during which `values` is constant; `name` returns a value's name, or
+/// `None` if it needs no span.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
     name: impl Fn(f64) -> Option<String>,
 ) -> Vec<ModeSpan> {
     let mut spans: Vec<ModeSpan> = Vec::new();
-    // Value of the preceding sample.
+    // Value in the preceding sample.
     let mut last: Option<f64> = None;
     for (&time, value) in time_s.iter().zip(values) {
         // The preceding value lasts until this sample, even if the value changes here.

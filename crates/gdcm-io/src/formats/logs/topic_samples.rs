@@ -1,4 +1,4 @@
-//! Topics of a log while it is read; each topic has its own time stamps.
+//! A log's topics while it is read; each topic has its own time stamps.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub(super) struct TopicSamples {
     pub(super) time_s: Vec<f64>,
 }
 
-/// Field of a topic with the samples read so far.
+/// Topic field with the samples read so far.
 pub(super) struct TopicField {
     pub(super) name: String,
     pub(super) unit: Option<String>,
@@ -39,7 +39,7 @@ impl TopicSamples {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Appends a sample: the time stamp and a value for each field, in the order of the fields.
+    /// Appends a sample: the time stamp and a value for each field, in field order.
     pub(super) fn push(
         &mut self,
         time_s: f64,

@@ -28,9 +28,9 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// First bytes of a file.
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
-/// Length of the file header \[bytes\].
+/// File header length \[bytes\].
 const HEADER: usize = 16;
-/// Length of a message header \[bytes\].
+/// Message header length \[bytes\].
 const MESSAGE_HEADER: usize = 3;
 /// Incompatibility flag for appended data, the only supported one.
 const APPENDED: u8 = 1;
@@ -38,10 +38,10 @@ const APPENDED: u8 = 1;
 const INCOMPATIBILITY: Range<usize> = 8..16;
 /// Position of the offsets of appended data in the content of a flags message \[bytes\].
 const APPENDED_OFFSETS_AT: usize = 16;
-/// Number of these offsets, which have 8 bytes each; unused offsets are 0.
+/// Number of such offsets, which have 8 bytes each; unused offsets are 0.
 const APPENDED_OFFSETS: usize = 3;
 
-/// Importer of PX4 logs.
+/// Importer for PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
     name: "a PX4 ULog",
     endings: &["ulg", "ulog"],
@@ -53,25 +53,25 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// Topic assigned to a message id, and the positions of its fields in the messages.
+/// Topic assigned to a message id, and its field positions in the messages.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
-    /// Positions of the fields other than the time stamp.
+    /// Positions of all fields except the time stamp.
     places: Vec<Place>,
-    /// Minimum length of the data in a message \[bytes\].
+    /// Minimum length of a message's data \[bytes\].
     least_bytes: usize,
 }
 
-/// Contents of the messages read so far.
+/// Content from the messages read so far.
 #[derive(Default)]
 struct Messages<'b> {
     layouts: LayoutTexts<'b>,
     /// Topics by message id.
     subscriptions: BTreeMap<u16, Subscription>,
-    /// Number of dropouts of the logger.
+    /// Number of logger dropouts.
     dropouts: usize,
-    /// Total duration of the dropouts \[ms\].
+    /// Total dropout duration \[ms\].
     lost_ms: u64,
     /// Number of data messages without a topic, or too short for it.
     unread: usize,
@@ -141,7 +141,7 @@ fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
 }
 
 impl<'b> Messages<'b> {
-    /// Stores the content of a message with the type `kind`; ignores unneeded types.
+    /// Stores the content of a message with type `kind`; ignores unneeded types.
     fn add(
         &mut self,
         kind: u8,
@@ -161,7 +161,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Stores the layout of a topic; ignores a second layout with the same name.
+    /// Stores a topic's layout; ignores a second layout with the same name.
     fn add_layout(
         &mut self,
         content: &'b [u8],

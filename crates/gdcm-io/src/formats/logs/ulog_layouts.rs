@@ -1,6 +1,6 @@
-//! Message layouts in ULog. The fields are numbers, arrays or nested layouts, which are flattened
-//! to a list of numbers: with `esc_report:float rpm` and `esc_status:uint64_t timestamp;esc_report[2]
-//! esc`, the numbers of `esc_status` are `timestamp`, `esc[0].rpm` and `esc[1].rpm`.
+//! Message layouts in ULog. The fields are numbers, arrays or nested layouts, flattened to a list
+//! of numbers: with `esc_report:float rpm` and `esc_status:uint64_t timestamp;esc_report[2] esc`,
+//! the numbers of `esc_status` are `timestamp`, `esc[0].rpm` and `esc[1].rpm`.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,10 @@ const LARGEST: usize = 65_535;
 /// Maximum nesting depth of layouts.
 const DEEPEST: usize = 8;
 
-/// Position and type of a number in the data of a message.
+/// A number's position and type in a message's data.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
-    /// Name of the number, for example `xyz[0]` or `esc[1].esc_rpm`.
+    /// The number's name, for example `xyz[0]` or `esc[1].esc_rpm`.
     pub(super) name: String,
     stored: StoredNumber,
     /// Offset in the message data \[bytes\].
@@ -29,7 +29,7 @@ impl Place {
         self.name == "timestamp" && Some(self.stored) == number_type("uint64_t")
     }
 
-    /// Returns the offset of the byte after the number.
+    /// Returns the offset just after the number.
     pub(super) fn end(&self) -> usize {
         self.offset + self.stored.size()
     }
@@ -40,7 +40,7 @@ impl Place {
     }
 }
 
-/// Layouts by message name, in the notation of the file: `uint64_t timestamp;float[3] xyz`.
+/// Layouts by message name, as written in the file: `uint64_t timestamp;float[3] xyz`.
 pub(super) type LayoutTexts<'b> = BTreeMap<&'b str, &'b str>;
 
 /// Returns the numbers in a message with this name.
@@ -63,22 +63,22 @@ pub(super) fn places_in_message(
     Ok(flattening.places)
 }
 
-/// State of flattening a layout.
+/// State while a layout is flattened.
 struct Flattening<'a> {
     layouts: &'a LayoutTexts<'a>,
     budget: &'a ReadingBudget<'a>,
     message: &'a str,
     places: Vec<Place>,
-    /// Offset of the next field \[bytes\].
+    /// Next field's offset \[bytes\].
     offset: usize,
 }
 
-/// Field of a layout, such as `float[3] xyz`.
+/// Layout field, such as `float[3] xyz`.
 struct LayoutField<'f> {
-    /// Name of a number type or of another layout.
+    /// Name of a number type or another layout.
     kind: &'f str,
     name: &'f str,
-    /// Number of elements if the field is an array.
+    /// Element count if the field is an array.
     length: Option<usize>,
 }
 
@@ -87,7 +87,7 @@ impl Flattening<'_> {
         VariableFault::damaged(self.message, damage, 0)
     }
 
-    /// Adds the numbers in a layout, down to `deeper` levels of nested layouts.
+    /// Adds the numbers in a layout, down to `deeper` nested layout levels.
     fn add_layout(&mut self, name: &str, prefix: &str, deeper: usize) -> Result<(), VariableFault> {
         if deeper == 0 {
             return Err(VariableFault::too_deep(self.message));
@@ -126,7 +126,7 @@ impl Flattening<'_> {
         }
     }
 
-    /// Adds the numbers in a field, for an array those of each element.
+    /// Adds the numbers in a field, for an array those in each element.
     fn add_field(
         &mut self,
         field: &LayoutField<'_>,
@@ -147,7 +147,7 @@ impl Flattening<'_> {
                 None if field.kind == "char" => self.offset += 1,
                 None => self.add_layout(field.kind, &format!("{label}."), deeper - 1)?,
             }
-            // Reject fields of length zero, which could be repeated without limit.
+            // Reject zero-length fields, which could be repeated without limit.
             if self.offset == begin || self.offset > LARGEST {
                 return Err(self.damaged(Damage::LayoutFieldSize { name: short(name) }));
             }

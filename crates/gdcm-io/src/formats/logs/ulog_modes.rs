@@ -25,7 +25,7 @@ const NAVIGATION: [(u8, &str); 13] = [
     (21, "orbit"),
 ];
 
-/// Returns the spans in which the vehicle was armed, and those of the flight modes, from
+/// Returns the spans in which the vehicle was armed, and the flight mode spans, from
 /// `vehicle_status`.
 pub(super) fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
     let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
@@ -49,7 +49,7 @@ pub(super) fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
     modes
 }
 
-/// Returns the name of a navigation state; `None` for an unknown state.
+/// Returns a navigation state's name; `None` for an unknown state.
 fn navigation_mode(state: f64) -> Option<String> {
     let (_, name) = NAVIGATION
         .iter()

@@ -37,15 +37,15 @@ use crate::variable_fault::unread::Unread;
 
 /// Reads arrays within a budget.
 ///
-/// In the methods, `contents` is the position in the data of an array, and `path` leads to the
-/// value that is being read.
+/// In the methods, `contents` is the position in an array's data, and `path` leads to the value
+/// that is being read.
 #[derive(Clone, Copy)]
 pub(super) struct ArrayReader<'a> {
     pub(super) budget: &'a ReadingBudget<'a>,
     pub(super) objects: &'a Objects,
 }
 
-/// Objects to which the opaque arrays of a file refer.
+/// Objects to which a file's opaque arrays refer.
 pub(super) enum Objects {
     Read(Subsystem),
     /// The objects cannot be read, for this reason; references to them become opaque values.
@@ -87,7 +87,7 @@ impl ArrayReader<'_> {
         Ok(value)
     }
 
-    /// Reads the value of an array after its header.
+    /// Reads an array's value after its header.
     pub(super) fn read_value(
         &self,
         header: &ArrayHeader,
@@ -156,7 +156,7 @@ impl ArrayReader<'_> {
         };
         let rows = read_sizes(&Element::read(contents)?, self.budget)?;
         let starts = read_sizes(&Element::read(contents)?, self.budget)?;
-        // The starts end with the number of stored entries.
+        // The starts end with the stored entry count.
         let stored = starts.last().copied().unwrap_or(0);
         let re = self.read_sparse_numbers(header, stored, contents)?;
         let im = if header.is_complex {
@@ -181,7 +181,7 @@ impl ArrayReader<'_> {
         })
     }
 
-    /// Reads the real or imaginary parts of the `stored` entries of a sparse matrix.
+    /// Reads the real or imaginary parts of the `stored` entries in a sparse matrix.
     fn read_sparse_numbers(
         &self,
         header: &ArrayHeader,
@@ -189,8 +189,8 @@ impl ArrayReader<'_> {
         contents: &mut Cursor<'_>,
     ) -> Result<Vec<f64>, VariableFault> {
         let mut element = Element::read(contents)?;
-        // For logical values in a sparse matrix, MATLAB announces numbers of eight bytes but writes
-        // a single byte each.
+        // For logical values in a sparse matrix, MATLAB announces eight-byte numbers but writes a
+        // single byte each.
         if header.is_logical
             && element.kind == DataKind::F64
             && element.data.len() < stored.saturating_mul(8)
@@ -261,7 +261,7 @@ impl ArrayReader<'_> {
         })
     }
 
-    /// Takes the memory of `count` values from the budget; rejects more values than the remaining
+    /// Takes the memory for `count` values from the budget; rejects more values than the remaining
     /// bytes can hold at eight bytes each.
     fn take_values(&self, count: usize, contents: &Cursor<'_>) -> Result<(), VariableFault> {
         if count > contents.len() / 8 {
@@ -275,8 +275,8 @@ impl ArrayReader<'_> {
             .take(count as u64, 2 * size_of::<Value>() as u64, "")
     }
 
-    /// Reads an opaque array after its name: an object, whose contents are stored in the object
-    /// part of the file, an enumeration, or a value that cannot be read.
+    /// Reads an opaque array after its name: an object, whose contents are stored in the file's
+    /// object part, an enumeration, or a value that cannot be read.
     fn read_opaque(
         &self,
         contents: &mut Cursor<'_>,

@@ -1,24 +1,24 @@
-//! End of an array in a file whose tags may be wrong: GNU Octave announces too many bytes for some
-//! strings and objects.
+//! Where an array ends in a file whose tags may be wrong: GNU Octave announces too many bytes for
+//! some strings and objects.
 
 use crate::formats::mat::cursor::Cursor;
 use crate::formats::mat::element::{DataKind, Element, TAG_BYTES};
 use crate::reading_budget::VariableFault;
 
-/// Positions of an array that was read, from which the position of the next element is found.
+/// Positions in an array that was read, from which the next element is found.
 #[derive(Clone, Copy)]
 pub(super) struct ReadArray<'b> {
-    /// Position of the tag.
+    /// Tag position.
     pub(super) start: Cursor<'b>,
     pub(super) element: Element<'b>,
-    /// Part of the data that was not read.
+    /// Data that were not read.
     pub(super) unread: Cursor<'b>,
     /// Position after the element and its padding, according to the tag.
     pub(super) end: Cursor<'b>,
 }
 
 impl<'b> ReadArray<'b> {
-    /// Returns the position of the next element.
+    /// Returns the next element's position.
     ///
     /// GNU Octave announces too many bytes for some strings and objects. Hence, if bytes were not
     /// read and no array begins at the announced end, the next element begins with the unread

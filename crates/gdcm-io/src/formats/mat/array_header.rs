@@ -16,13 +16,13 @@ use crate::formats::variables::ElementKind;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
-/// Bits of the first word that hold the class number.
+/// Bits in the first word that hold the class number.
 const CLASS_BITS: u32 = 0xff;
-/// Flag of logical arrays.
+/// Flag for logical arrays.
 pub(super) const LOGICAL: u32 = 0x0200;
-/// Flag of complex arrays.
+/// Flag for complex arrays.
 pub(super) const COMPLEX: u32 = 0x0800;
-/// Class number of unsigned 64-bit integers.
+/// Class number for unsigned 64-bit integers.
 const UINT64: u32 = 15;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,16 +45,15 @@ pub(super) struct ArrayHeader {
     pub(super) has_long_words: bool,
     pub(super) is_logical: bool,
     pub(super) is_complex: bool,
-    /// Length of each dimension. There are at least two dimensions; an opaque array is 1 x 1.
+    /// Length along each dimension. There are at least two dimensions; an opaque array is 1 x 1.
     pub(super) shape: Vec<usize>,
-    /// Number of elements.
     pub(super) count: usize,
-    /// Name of the variable; empty for an array nested in another.
+    /// Variable name; empty for an array nested in another.
     pub(super) name: String,
 }
 
 impl ArrayHeader {
-    /// Reads the header of an array, which precedes its contents.
+    /// Reads an array's header, which precedes its contents.
     pub(super) fn read(
         contents: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,
@@ -90,8 +89,8 @@ impl ArrayHeader {
         })
     }
 
-    /// Returns the kind of the numbers in the array; the numbers of a sparse array are floats,
-    /// unless they are logical.
+    /// Returns the array's element kind; numbers in a sparse array are floats, unless they are
+    /// logical.
     pub(super) fn element_kind(&self) -> ElementKind {
         if self.is_logical {
             return ElementKind::Logical;
@@ -120,8 +119,7 @@ impl ArrayClass {
     }
 }
 
-/// Returns the number of elements of an array; `usize::MAX` if the product of the dimensions
-/// overflows.
+/// Returns an array's element count; `usize::MAX` if the product of the dimensions overflows.
 pub(super) fn saturating_count(shape: &[usize]) -> usize {
     if shape.contains(&0) {
         return 0;
@@ -133,7 +131,7 @@ pub(super) fn saturating_count(shape: &[usize]) -> usize {
     count
 }
 
-/// Reads the length of each dimension; appends dimensions of length 1 up to two dimensions.
+/// Reads the length along each dimension; appends ones until there are two dimensions.
 fn read_shape(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,

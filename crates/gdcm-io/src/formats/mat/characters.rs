@@ -30,7 +30,7 @@ pub(super) fn read_text(
     text_rows(&codes, shape, "", budget)
 }
 
-/// Reads the character codes of an element; `wanted` is the number of characters in its shape.
+/// Reads an element's character codes; `wanted` is the character count in its shape.
 fn character_codes(
     element: &Element<'_>,
     wanted: usize,
@@ -44,9 +44,9 @@ fn character_codes(
     Ok(numbers.into_iter().map(|number| number as u32).collect())
 }
 
-/// Decodes UTF-8 into character codes, depending on whether `wanted`, the number of characters in
-/// the shape, counts UTF-16 units (MATLAB), bytes (files that declare Latin-1 as UTF-8) or
-/// characters (some other programs).
+/// Decodes UTF-8 into character codes, depending on whether `wanted`, the character count in the
+/// shape, counts UTF-16 units (MATLAB), bytes (files that declare Latin-1 as UTF-8) or characters
+/// (some other programs).
 fn utf8_codes(bytes: &[u8], wanted: usize) -> Vec<u32> {
     let text = String::from_utf8_lossy(bytes);
     let units = text.encode_utf16().count();
@@ -86,7 +86,7 @@ pub(crate) fn text_rows(
     for text in 0..count {
         let page = text / height;
         let row = text % height;
-        // Place of the first character of the row; the following are `height` apart.
+        // Place of the row's first character; the following are `height` apart.
         let first = page.saturating_mul(page_size).saturating_add(row);
         let row_codes = (0..length).filter_map(|column| {
             let place = first.saturating_add(column.saturating_mul(height));

@@ -1,4 +1,4 @@
-//! Cursor for sequential reading in the byte order of a file.
+//! Cursor for sequential reading in a file's byte order.
 //!
 //! A cursor is a copy: `let start = cursor;` keeps a position, to which reading can return.
 
@@ -32,7 +32,7 @@ impl ByteOrder {
 /// Its errors do not contain a variable name, which [`super::value_path::ValuePath::locate`] adds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'b> {
-    /// Remaining bytes of the section.
+    /// Remaining bytes in the section.
     bytes: &'b [u8],
     pub(super) order: ByteOrder,
     /// Position in the file \[bytes\].
@@ -40,12 +40,12 @@ pub(super) struct Cursor<'b> {
     section: Section,
 }
 
-/// Origin of a section, which determines the error if the section ends too early.
+/// Where a section comes from, which determines the error if the section ends too early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Section {
     /// The whole file. If it ends too early, the file is truncated.
     File,
-    /// An element of the file. If it ends too early, its size is wrong.
+    /// An element in the file. If it ends too early, its size is wrong.
     Element,
     /// Decompressed or embedded bytes. Errors refer to the offset of the element that contains
     /// them.
@@ -79,7 +79,7 @@ impl<'b> Cursor<'b> {
         self.bytes
     }
 
-    /// Returns the number of remaining bytes.
+    /// Returns the remaining byte count.
     pub(super) fn len(&self) -> usize {
         self.bytes.len()
     }

@@ -14,10 +14,10 @@ use crate::formats::stored_number::{NumberClass, StoredNumber};
 use crate::reading_budget::VariableFault;
 use crate::variable_fault::damage::Damage;
 
-/// Length of the tag of an element that is not small \[bytes\].
+/// Tag length \[bytes\] for an element that is not small.
 pub(super) const TAG_BYTES: usize = 8;
 
-/// Data type of an element; the values are the numbers in the tag.
+/// An element's data type; the values are the numbers in the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DataKind {
     I8 = 1,
@@ -116,7 +116,7 @@ impl<'b> Element<'b> {
         }
         let data = cursor.take(length)?;
         if kind != DataKind::Packed {
-            // The number of bytes up to the next multiple of 8: -length modulo 8.
+            // Bytes up to the next multiple of 8: -length modulo 8.
             cursor.pass(length.wrapping_neg() % 8)?;
         }
         Ok(Self {
@@ -157,7 +157,7 @@ impl<'b> Element<'b> {
         Ok(length / width)
     }
 
-    /// Reads a name, in UTF-8 or Latin-1, from an element of bytes.
+    /// Reads a name, in UTF-8 or Latin-1, from an element that holds bytes.
     pub(super) fn name(&self) -> Result<String, VariableFault> {
         match self.kind {
             DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Ok(decode_name(self.data.rest())),
@@ -165,7 +165,7 @@ impl<'b> Element<'b> {
         }
     }
 
-    /// Returns the contents of an array element; rejects other elements.
+    /// Returns an array element's contents; rejects other elements.
     pub(super) fn array_contents(self) -> Result<Cursor<'b>, VariableFault> {
         match self.kind {
             DataKind::Matrix => Ok(self.data),

@@ -1,4 +1,4 @@
-//! Decompression of elements (zlib).
+//! Decompresses elements (zlib).
 //!
 //! Source: "MAT-File Format", The MathWorks, "Data Compression"; RFC 1950.
 
@@ -15,10 +15,10 @@ use crate::variable_fault::damage::Damage;
 const MOST_EXPANSION: u64 = 1040;
 /// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
-/// Length of the tag at the beginning of the decompressed bytes.
+/// Length of the tag with which the decompressed bytes begin.
 const TAG_BYTES: u64 = 8;
 
-/// Decompresses an element: its tag, and the number of bytes that the tag announces.
+/// Decompresses an element: its tag, and as many bytes as the tag announces.
 pub(super) fn inflate(
     packed: Cursor<'_>,
     budget: &ReadingBudget<'_>,

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The type is a decimal number with four digits, called M, O, P and T in the source: M is the byte
-//! order (0 little endian, 1 big endian), O is 0, P the number type, T the meaning of the numbers.
+//! order (0 little endian, 1 big endian), O is 0, P the number type, T what the numbers mean.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 4 MAT-File Format".
 
@@ -24,11 +24,11 @@ use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
-/// Header of a matrix.
+/// Header of a level-4 matrix.
 struct MatrixHeader {
     /// Number type (digit P).
     number_type: StoredNumber,
-    /// Meaning of the numbers (digit T).
+    /// What the numbers mean (digit T).
     meaning: Meaning,
     rows: usize,
     columns: usize,
@@ -48,7 +48,7 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
     MatrixHeader::read(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
 }
 
-/// Reads the variables of a file in file order.
+/// Reads a file's variables in file order.
 pub(super) fn read(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -72,7 +72,7 @@ pub(super) fn read(
 }
 
 impl MatrixHeader {
-    /// Reads the next header. The byte order may differ between the matrices of a file.
+    /// Reads the next header. The byte order may differ between matrices in a file.
     fn read(file: &mut Cursor<'_>) -> Result<Self, VariableFault> {
         let start = *file;
         let Some(order) = detect_order(start.rest()) else {

@@ -25,11 +25,11 @@ use crate::formats::variables::Variable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::unread::ObjectFault;
 
-/// Length of the file header \[bytes\].
+/// File header length \[bytes\].
 const HEADER_BYTES: usize = 128;
-/// Offset of the version in the header \[bytes\].
+/// Version offset in the header \[bytes\].
 const VERSION_AT: usize = 124;
-/// Offset of the header field that holds the position of the objects \[bytes\].
+/// Offset of the header field that holds the objects' position \[bytes\].
 const OBJECTS_AT: usize = 116;
 
 /// Byte order and version, from the end of the file header.
@@ -57,7 +57,7 @@ impl FileVersion {
     }
 }
 
-/// Reads the variables of a file, whose byte order is `order`, in file order.
+/// Reads a file's variables, in file order; the file has the byte order `order`.
 pub(super) fn read(
     bytes: &[u8],
     order: ByteOrder,
@@ -74,8 +74,7 @@ pub(super) fn read(
     let mut names = HashSet::new();
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
-        // Skip arrays without a name, which are internal to MATLAB, mainly the storage of the
-        // objects.
+        // Skip arrays without a name, which are internal to MATLAB, mainly object storage.
         let Some(variable) = read_variable(&mut file, &reader)? else {
             continue;
         };
@@ -103,8 +102,7 @@ fn objects_or_reason(
     }
 }
 
-/// Reads the offset of the objects in the file; `None` if the field is blank, as in files of old
-/// versions.
+/// Reads the objects' offset in the file; `None` if the field is blank, as in old file versions.
 fn objects_at(bytes: &[u8], order: ByteOrder) -> Option<usize> {
     let place: [u8; 8] = bytes.get(OBJECTS_AT..VERSION_AT)?.try_into().ok()?;
     if place == [b' '; 8] || place == [0; 8] {

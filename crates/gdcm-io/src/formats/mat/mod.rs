@@ -33,10 +33,10 @@ pub use crate::formats::mat::writer::{write, write_packed};
 const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// Major version in files of levels 5 to 7.
 const LEVEL_5: u8 = 1;
-/// Name of the expected format in error messages of [`read`].
+/// Expected format, as named in error messages from [`read`].
 const EXPECTED: &str = "a MATLAB .mat file up to version 7";
 
-/// Importer of MATLAB files up to version 7.
+/// Importer for MATLAB files up to version 7.
 pub(crate) const MAT: Importer = Importer {
     name: "a MATLAB .mat file up to version 7",
     endings: &["mat"],
@@ -48,14 +48,13 @@ pub(crate) const MAT: Importer = Importer {
 
 /// Reads the variables in file order.
 ///
-/// Parts of a variable that cannot be decoded become [`super::variables::Value::Opaque`]; bytes
-/// that contradict the format are an error for the whole file.
+/// Variable parts that cannot be decoded become [`super::variables::Value::Opaque`]; bytes that
+/// contradict the format are an error for the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
         return Err(VariableFault::format(EXPECTED, FoundContent::Hdf5));
     }
-    // A level-5 file begins with text: none of its first four bytes is zero, unlike in a level-4
-    // file.
+    // A level-5 file begins with text: its first four bytes are nonzero, unlike in a level-4 file.
     let begins_with_text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match FileVersion::read(bytes) {
         Some(FileVersion {
@@ -91,7 +90,7 @@ pub fn is_hdf5(bytes: &[u8]) -> bool {
     false
 }
 
-/// Describes the first bytes of a file of unknown format.
+/// Describes the first bytes of a file with an unknown format.
 fn describe_start(bytes: &[u8]) -> FoundContent {
     let start = bytes.get(..bytes.len().min(8)).unwrap_or_default();
     if start.is_empty() {

@@ -1,18 +1,18 @@
-//! Reading of the numbers in a data element, in any stored type.
+//! Reads the numbers in a data element, in any stored type.
 //!
-//! Errors get the name of the variable later, from `ValuePath::locate`; hence the empty names.
+//! Errors get the variable name later, from `ValuePath::locate`; hence the empty names.
 
 use crate::formats::mat::element::{DataKind, Element};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
-/// Memory of a number, a size or a word \[bytes\].
+/// Memory for a number, a size or a word \[bytes\].
 const NUMBER_BYTES: u64 = 8;
 
-/// Reads the numbers of an element, which must be `count`.
+/// Reads the numbers of an element, which must hold exactly `count`.
 ///
-/// MATLAB stores the numbers of an array in the smallest type that holds them, so the stored type
-/// may differ from the array's type.
+/// MATLAB stores an array's numbers in the smallest type that holds them, so the stored type may
+/// differ from the array's type.
 pub(super) fn read_numbers(
     element: &Element<'_>,
     count: usize,
@@ -38,7 +38,8 @@ pub(super) fn read_sizes(
         return Err(element.data.damaged(Damage::SizesNotIntegers));
     }
     let count = element.count()?;
-    // Memory of the sizes; `read_numbers` takes that of the numbers from which they are converted.
+    // Memory for the sizes; `read_numbers` takes the memory for the numbers from which they are
+    // converted.
     budget.take(count as u64, NUMBER_BYTES, "")?;
     let mut sizes = Vec::with_capacity(count);
     // 32-bit integers are exact as floats.

@@ -1,8 +1,8 @@
-//! Object part of a level-5 file: all objects of MATLAB's `classdef` classes. The variables of the
-//! file contain only references to them.
+//! Object part of a level-5 file: all objects of MATLAB's `classdef` classes. The file's variables
+//! contain only references to them.
 //!
-//! The part is an array of bytes, which form a small embedded file. From the outside inwards, with
-//! the function that reads each layer:
+//! The part is a byte array, which forms a small embedded file. From the outside inwards, with the
+//! function that reads each layer:
 //!
 //! ```text
 //! array of bytes, compressed or not                                  read_objects
@@ -32,14 +32,14 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::ObjectFault;
 
-/// Length of the header of the embedded file \[bytes\].
+/// Embedded file header length \[bytes\].
 const EMBEDDED_HEADER_BYTES: usize = 8;
-/// Position of the byte-order mark in this header \[bytes\].
+/// Byte-order mark position in this header \[bytes\].
 const BYTE_ORDER_MARK: Range<usize> = 2..4;
-/// Class of the single object whose cells hold all other objects.
+/// Class whose single object holds all other objects in its cells.
 const WRAPPER: &str = "FileWrapper__";
 
-/// Reads the objects at byte `at` of a file.
+/// Reads the objects at byte `at` in a file.
 pub(super) fn read_objects(
     bytes: &[u8],
     at: Option<usize>,
@@ -60,7 +60,7 @@ pub(super) fn read_objects(
     read_byte_array(Element::read(&mut inner)?.array_contents()?, budget)
 }
 
-/// Reads the objects from the contents of the array of bytes.
+/// Reads the objects from the byte array's contents.
 fn read_byte_array(
     mut contents: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -76,7 +76,7 @@ fn pass_header(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<
     Ok(())
 }
 
-/// Reads the objects from the embedded file, whose byte order may differ from that of the file.
+/// Reads the objects from the embedded file, whose byte order may differ from the outer file's.
 fn read_embedded_file(
     file: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -110,8 +110,7 @@ fn read_class_systems(
     Err(contents.damaged(Damage::ClassSystemMissing))
 }
 
-/// Reads the objects from a `FileWrapper__`: the names of its class system and class, then its
-/// cells.
+/// Reads the objects from a `FileWrapper__`: its class system and class names, then its cells.
 fn read_wrapper(
     mut contents: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -125,10 +124,10 @@ fn read_wrapper(
     read_cells(Element::read(&mut contents)?.array_contents()?, budget)
 }
 
-/// Reads the cells of a `FileWrapper__`.
+/// Reads a `FileWrapper__` object's cells.
 ///
 /// Cells with unsigned 64-bit integers are also read without rounding: `string` objects are packed
-/// into such integers, of which a [`Value`] keeps only 53 bits.
+/// into such integers, and a [`Value`] would keep only 53 bits.
 fn read_cells(
     mut contents: Cursor<'_>,
     budget: &ReadingBudget<'_>,

@@ -15,7 +15,7 @@ pub(super) struct ValuePath<'p> {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Step<'p> {
-    /// Name of the variable, or a complete path as text.
+    /// Variable name, or a complete path as text.
     Start(&'p str),
     Field(&'p str),
     /// Index in a struct array, counted from 0.
@@ -25,7 +25,7 @@ pub(super) enum Step<'p> {
 }
 
 impl<'p> ValuePath<'p> {
-    /// Creates the path of a variable.
+    /// Creates the path to a variable.
     pub(super) fn start(name: &'p str) -> Self {
         Self {
             outer: None,

@@ -1,8 +1,8 @@
 //! Writes level-5 files for MATLAB, GNU Octave and SciPy, in little-endian byte order.
 //!
-//! The layouts are drawn where they are read: the file in `level5.rs`, elements in `element.rs`,
-//! headers of arrays in `array_header.rs`, and contents of arrays in `array_contents.rs`. Functions called
-//! `…_contents` return the data of an array element: header and contents.
+//! The reading modules show the layouts: the file in `level5.rs`, elements in `element.rs`, array
+//! headers in `array_header.rs`, and array contents in `array_contents.rs`. Functions called
+//! `…_contents` return an array element's data: header and contents.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
@@ -18,11 +18,11 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::VariableFault;
 
-/// First text of the header, padded with blanks; MATLAB checks its first words.
+/// Header text, padded with blanks; MATLAB checks its first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
 /// Length to which the header text is padded \[bytes\].
 const HEADER_TEXT_BYTES: usize = 116;
-/// Maximum size of a variable \[bytes\].
+/// Maximum variable size \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
 /// Lengths to which MATLAB pads field names, including the terminating zero \[bytes\].
 const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
@@ -73,13 +73,13 @@ pub fn write_packed(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
 fn file_header() -> Vec<u8> {
     let mut bytes = HEADER_TEXT.as_bytes().to_vec();
     bytes.resize(HEADER_TEXT_BYTES, b' ');
-    // Position of the objects (none), version 1.0, and the byte-order mark.
+    // Object position (none), version 1.0, and the byte-order mark.
     bytes.extend([0; 8]);
     bytes.extend([0, 1, b'I', b'M']);
     bytes
 }
 
-/// Returns the element of a variable.
+/// Encodes a variable as an element.
 ///
 /// # Errors
 /// [`VariableFault::TooLarge`] for an element beyond 4 GiB.
@@ -117,7 +117,7 @@ fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
     // The cast is exact: the elements of an accepted variable are shorter than 4 GiB.
     let length = data.len() as u32;
     if (1..=4).contains(&length) && kind != DataKind::Packed {
-        // The length is in the upper half of the tag.
+        // The length is in the tag's upper half.
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
         bytes.extend(data);
         bytes.resize(bytes.len() + 4 - data.len(), 0);
@@ -131,7 +131,7 @@ fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
     }
 }
 
-/// Returns the contents of an array element; `name` is empty within another array.
+/// Returns an array element's contents; `name` is empty within another array.
 fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     match value {
         Value::Array(array) => number_contents(array, name),
@@ -143,7 +143,7 @@ fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     }
 }
 
-/// Returns the header of an array: flags, shape and name.
+/// Returns an array's header: flags, shape and name.
 fn header_bytes(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
     let mut bytes = Vec::new();
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
@@ -168,8 +168,7 @@ struct NumberForm {
 }
 
 impl NumberForm {
-    /// Returns the form for the kind of the array; `double` if a number cannot be written as that
-    /// kind.
+    /// Returns the form for the array's kind; `double` if a number cannot be written as that kind.
     fn for_array(array: &Array) -> Self {
         match array.kind {
             ElementKind::Logical if all_numbers(array, is_truth_value) => Self {

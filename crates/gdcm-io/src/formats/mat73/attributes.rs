@@ -1,4 +1,4 @@
-//! Attributes of groups and datasets that MATLAB writes.
+//! Attributes that MATLAB writes for groups and datasets.
 
 use std::collections::HashMap;
 
@@ -7,12 +7,12 @@ use hdf5_pure::{AttrValue, Error};
 use crate::formats::mat73::library_fault::library_fault;
 use crate::reading_budget::VariableFault;
 
-/// Value of `MATLAB_object_decode` for a function handle.
+/// `MATLAB_object_decode` value for a function handle.
 pub(super) const FUNCTION_HANDLE: u64 = 1;
-/// Value of `MATLAB_object_decode` for an object of an old-style (`@` folder) class, stored as a
+/// `MATLAB_object_decode` value for an object of an old-style (`@` folder) class, stored as a
 /// struct.
 pub(super) const FOLDER_OBJECT: u64 = 2;
-/// Value of `MATLAB_object_decode` for a `classdef` object, stored as a reference.
+/// `MATLAB_object_decode` value for a `classdef` object, stored as a reference.
 pub(super) const OBJECT: u64 = 3;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub(super) struct MatlabAttributes {
     pub(super) is_empty: bool,
     /// Number of rows of a sparse matrix (`MATLAB_sparse`).
     pub(super) sparse_height: Option<u64>,
-    /// Field names of a struct, in order (`MATLAB_fields`).
+    /// A struct's field names, in order (`MATLAB_fields`).
     pub(super) fields: Vec<String>,
     /// Encoding (`MATLAB_object_decode`); 0 for a plain value.
     pub(super) encoding: u64,

@@ -1,7 +1,7 @@
-//! Checks on the chunks of compressed datasets.
+//! Checks the chunks of compressed datasets.
 //!
-//! A dataset may be stored in chunks: blocks of equal shape that cover it and are compressed one by
-//! one. An index gives the position of each chunk in the file.
+//! A dataset may be stored in chunks: equally shaped blocks that cover it and are compressed one by
+//! one. An index gives each chunk's position in the file.
 
 use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 
@@ -12,14 +12,14 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Memory that the library needs for each chunk while it reads \[bytes\].
 const CHUNK: u64 = 128;
-/// Maximum length of a stored chunk beyond twice its decompressed length \[bytes\].
+/// Maximum stored chunk length beyond twice its decompressed length \[bytes\].
 const OVERHEAD: u64 = 4096;
 
 /// Takes the memory needed to read a dataset in chunks from the budget: a decompressed chunk, and
 /// the library's data about each chunk. Rejects chunks that are impossible, because the library
 /// allocates memory for the claimed sizes and adds offsets without overflow checks.
 ///
-/// `sides` are the dimensions of the dataset; `size` is the element size \[bytes\].
+/// `sides` are the dataset's dimensions; `size` is the element size \[bytes\].
 pub(super) fn check_chunks(
     dataset: &Dataset,
     sides: &[usize],
@@ -74,7 +74,7 @@ pub(super) fn check_chunks(
     Ok(())
 }
 
-/// Returns whether the first element of a chunk is outside the dataset.
+/// Returns whether a chunk's first element is outside the dataset.
 fn begins_outside(chunk: &Chunk, sides: &[usize]) -> bool {
     chunk
         .offset

@@ -9,10 +9,10 @@ use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::unread::Unread;
 
-/// Memory of the shape and the number in an array with a single number \[bytes\].
+/// Memory for the shape and the number in an array with a single number \[bytes\].
 const NUMBER_MEMORY: u64 = 24;
 
-/// Converts the elements of a compound type to records, with numbers, strings of fixed length, and
+/// Converts the elements of a compound type to records with numbers, fixed-length strings, and
 /// opaque values for all other members. Returns `None` for any other type.
 pub(super) fn compound_records(
     elements: &Elements,

@@ -1,4 +1,4 @@
-//! Elements of a dataset, read within the budget.
+//! Dataset elements, read within the budget.
 
 use hdf5_pure::{Dataset, Datatype, ReferenceType};
 
@@ -20,8 +20,7 @@ pub(super) enum Order {
 }
 
 impl Order {
-    /// Converts the dimensions in the file to the shape of the array, which has at least two
-    /// dimensions.
+    /// Converts the dimensions in the file to the array shape, which has at least two dimensions.
     fn shape(self, sides: &[usize]) -> Vec<usize> {
         match self {
             Order::Rows => matrix_shape(sides),
@@ -34,10 +33,10 @@ impl Order {
     }
 }
 
-/// Elements of a dataset, in file order.
+/// Dataset elements, in file order.
 pub(super) struct Elements {
     pub(super) datatype: Datatype,
-    /// Shape of the array, with at least two dimensions.
+    /// Array shape, with at least two dimensions.
     pub(super) shape: Vec<usize>,
     /// Element size \[bytes\].
     size: usize,
@@ -74,7 +73,7 @@ impl Elements {
             .map_err(|error| library_fault(&error, path))?;
         let size = usize::try_from(size).map_err(|_| too_many_elements(path))?;
         if bytes.is_empty() && count == 1 {
-            // An `Empty` of h5py has no shape and no element; the library reveals this only by the
+            // An h5py `Empty` has no shape and no element; the library reveals this only by the
             // absence of raw bytes.
             return Ok(Self {
                 datatype,
@@ -96,12 +95,12 @@ impl Elements {
         })
     }
 
-    /// Returns the number of elements.
+    /// Returns the element count.
     pub(super) fn count(&self) -> usize {
         self.bytes.len().checked_div(self.size).unwrap_or(0)
     }
 
-    /// Returns the place of each element in the file, in the column-major order of an array.
+    /// Returns each element's place in the file, in column-major order.
     pub(super) fn places(&self) -> Box<dyn Iterator<Item = usize>> {
         match (self.order, Places::row_major(&self.shape)) {
             (Order::Rows, Some(places)) => Box::new(places),

@@ -50,8 +50,8 @@ pub(super) fn empty_value(
     })
 }
 
-/// Returns the elements as the dimensions of an array; `None` if they are not 64-bit integers or
-/// exceed `usize`.
+/// Returns the elements as array dimensions; `None` if they are not 64-bit integers or exceed
+/// `usize`.
 fn stored_shape(
     elements: &Elements,
     path: &str,

@@ -1,4 +1,4 @@
-//! Conversion of HDF5 library errors to errors of this program.
+//! Converts HDF5 library errors to this program's errors.
 
 use hdf5_pure::{Error, FormatError};
 
@@ -6,7 +6,7 @@ use crate::reading_budget::VariableFault;
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Converts an error of the library; `path` is the variable name in the error.
+/// Converts a library error; `path` is the variable name in the error.
 ///
 /// The library does not report the position in the file.
 pub(super) fn library_fault(error: &Error, path: &str) -> VariableFault {

@@ -8,7 +8,7 @@ use hdf5_pure::{FormatError, Source};
 /// Factor between file size and maximum number of bytes read: headers and indices are read once for
 /// each query.
 const TIMES: u64 = 16;
-/// Additional bytes that may be read from a file of any size.
+/// Additional bytes that may be read from any file, whatever its size.
 const ADDITIONAL: u64 = 16 << 20;
 /// Minimum number of bytes counted for each read.
 const LEAST: u64 = 16;

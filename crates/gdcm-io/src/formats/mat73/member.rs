@@ -1,8 +1,8 @@
-//! Members of a group, called by name.
+//! Group members, accessed by name.
 
 use hdf5_pure::Object;
 
-/// Dataset or group in a group.
+/// Dataset or group within a group.
 pub(super) struct Member {
     pub(super) name: String,
     pub(super) object: Object,

@@ -3,8 +3,8 @@
 //! The container follows the HDF5 File Format Specification 3.0. MATLAB's conventions are not
 //! published by The MathWorks; this reader follows MATLAB's files and the descriptions by the
 //! matio, hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored in
-//! column-major order with their dimensions reversed, and the elements of cells and struct arrays
-//! are references into a group `#refs#`.
+//! column-major order with their dimensions reversed, and cell and struct array elements are
+//! references into a group `#refs#`.
 //!
 //! Arrays without MATLAB's attributes are stored in row-major order, as in C and Python: a dataset
 //! with r x c elements becomes an r x c array, a scalar a 1 x 1 array, and a dataset with n
@@ -42,7 +42,7 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Importer of MATLAB 7.3 and HDF5 files.
+/// Importer for MATLAB 7.3 and HDF5 files.
 pub(crate) const HDF5: Importer = Importer {
     name: "an HDF5 file, as written by MATLAB with -v7.3",
     endings: &["mat", "h5", "hdf5"],

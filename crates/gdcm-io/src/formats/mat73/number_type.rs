@@ -18,16 +18,16 @@ const HALF: FloatingPointLayout = FloatingPointLayout {
 /// A numeric type, real or complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NumberType {
-    /// Type of the number, or of each part of a complex number.
+    /// Type of the number, or of each part if the number is complex.
     pub(super) number: StoredNumber,
-    /// Offset in an element of the number, or of its real part \[bytes\].
+    /// Offset of the number or its real part in an element \[bytes\].
     re: usize,
-    /// Offset in an element of the imaginary part \[bytes\]; `None` for real numbers.
+    /// Offset of the imaginary part in an element \[bytes\]; `None` for real numbers.
     im: Option<usize>,
 }
 
 impl NumberType {
-    /// Returns the numeric type of elements; `None` if they are not numbers.
+    /// Returns the elements' numeric type; `None` if they are not numbers.
     pub(super) fn from_datatype(datatype: &Datatype) -> Option<Self> {
         let Datatype::Compound { members, size } = datatype else {
             return Some(Self {
@@ -36,7 +36,7 @@ impl NumberType {
                 im: None,
             });
         };
-        // MATLAB names the parts of a complex number real and imag, h5py r and i.
+        // MATLAB names a complex number's parts real and imag, h5py r and i.
         let [re, im] = members.as_slice() else {
             return None;
         };
@@ -87,7 +87,7 @@ fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Op
     }
 }
 
-/// Returns the type of real numbers; `None` if the elements are not real numbers.
+/// Returns the type for real numbers; `None` if the elements are not real numbers.
 fn stored_number(datatype: &Datatype) -> Option<StoredNumber> {
     match datatype {
         Datatype::FixedPoint {

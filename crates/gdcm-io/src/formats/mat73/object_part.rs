@@ -1,6 +1,6 @@
-//! Objects of MATLAB classes, stored in a separate part of the file: the dataset `#subsystem#/MCOS`,
-//! whose elements are references to cells. The cells are the same as in files up to version 7, and
-//! are explained in `mat/subsystem/mod.rs`.
+//! Objects of MATLAB classes, stored in a separate part of the file: the dataset
+//! `#subsystem#/MCOS`, whose elements are references to cells. The cells are the same as in files
+//! up to version 7, and are explained in `mat/subsystem/mod.rs`.
 
 use hdf5_pure::{Dataset, File, Object};
 
@@ -13,10 +13,10 @@ use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::unread::Unread;
 
-/// Element size of 64-bit integers \[bytes\].
+/// Size of a 64-bit integer element \[bytes\].
 const LONG_WORD: u64 = 8;
 
-/// Contents of the object part.
+/// Content of the object part.
 pub(super) struct ObjectCells {
     /// Cells; the first holds the directory.
     pub(super) cells: Vec<Value>,
@@ -48,8 +48,8 @@ fn read_subsystem(part: &Dataset, budget: &ReadingBudget<'_>) -> Result<Subsyste
     Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
 }
 
-/// Reads the cells of the object part. Cells with 64-bit integers are also read without rounding:
-/// `string` objects are packed into such integers, of which a [`Value`] keeps only 53 bits.
+/// Reads the object part's cells. Cells with 64-bit integers are also read without rounding:
+/// `string` objects are packed into such integers, and a [`Value`] would keep only 53 bits.
 pub(super) fn read_cells(
     part: &Dataset,
     budget: &ReadingBudget<'_>,

@@ -5,7 +5,7 @@ use crate::formats::variables::{Array, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::unread::Unread;
 
-/// Treatment of references to objects while a file is read.
+/// How references to objects are treated while a file is read.
 pub(super) enum Objects {
     /// References remain integers: the object part itself is being read.
     References,
@@ -16,7 +16,7 @@ pub(super) enum Objects {
 }
 
 impl Objects {
-    /// Returns the value for a reference; `class` is the class of the objects.
+    /// Returns the value for a reference; `class` is the objects' class.
     pub(super) fn value(
         &self,
         class: &str,
@@ -35,8 +35,7 @@ impl Objects {
     }
 }
 
-/// Returns the words of a reference; `None` if a number is outside the range of unsigned 32-bit
-/// integers.
+/// Returns the words of a reference; `None` if a number is not an unsigned 32-bit integer.
 fn reference_words(reference: &Array) -> Option<Vec<u32>> {
     let mut words = Vec::new();
     for &number in &reference.re {

@@ -1,7 +1,7 @@
 //! Values of datasets and groups, which may contain further values.
 //!
-//! MATLAB's attributes (`attributes.rs`) and the type of the elements decide what a dataset or a
-//! group represents:
+//! MATLAB's attributes (`attributes.rs`) and the element type decide what a dataset or a group
+//! represents:
 //!
 //! ```text
 //! dataset of numbers      numbers, characters, logical values, or a reference to an object
@@ -33,16 +33,16 @@ use crate::variable_fault::unread::Unread;
 
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
-/// Memory of a value without its elements while it is read: the value, and the library's data about
-/// it \[bytes\].
+/// Memory for a value without its elements while it is read \[bytes\]: the value, and the library's
+/// data about it.
 const VALUE_MEMORY: u64 = 1024;
-/// Memory that the library needs for each member of a group \[bytes\].
+/// Memory that the library needs for each group member \[bytes\].
 const MEMBER_MEMORY: u64 = 256;
 
 /// Reads values within a budget.
 ///
-/// In the methods, `path` is the name of a value in errors, such as "sys.A", and `depth` its
-/// nesting depth.
+/// In the methods, `path` is the value's name in errors, such as "sys.A", and `depth` its nesting
+/// depth.
 pub(super) struct Reader<'r> {
     pub(super) budget: &'r ReadingBudget<'r>,
     pub(super) objects: &'r Objects,
@@ -53,7 +53,7 @@ impl Reader<'_> {
     pub(super) fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
         let mut variables = Vec::new();
         for Member { name, object } in self.members(root, "")? {
-            // Skip the groups that hold the contents of other variables.
+            // Skip the groups that hold other variables' contents.
             if name != "#refs#" && name != "#subsystem#" {
                 let value = self.value(&object, &name, 0)?;
                 variables.push(Variable { name, value });
@@ -292,7 +292,7 @@ impl Reader<'_> {
         Ok(StructArray::one(fields))
     }
 
-    /// Reads a struct array. Each member is a dataset with references to the values of a field.
+    /// Reads a struct array. Each member is a dataset with references to a field's values.
     fn struct_array(
         &self,
         members: &[Member],
@@ -357,9 +357,9 @@ fn is_struct_array(
     Ok(true)
 }
 
-/// Replaces an array of dimensions, one of which is zero, by an empty array of this shape. For an
-/// empty array, Octave stores the dimensions instead of the elements, and marks the group that
-/// contains it.
+/// Replaces an array that lists dimensions, one of them zero, by an empty array with this shape.
+/// For an empty array, Octave stores the dimensions instead of the elements, and marks the group
+/// that contains it.
 fn restore_octave_empty(value: &mut Value) {
     if let Value::Array(sides) = value
         && sides.re.contains(&0.0)
@@ -371,7 +371,7 @@ fn restore_octave_empty(value: &mut Value) {
     }
 }
 
-/// Returns the path of a field, or of a variable in the root group.
+/// Returns the path to a field, or to a variable in the root group.
 fn field_path(path: &str, name: &str) -> String {
     if path.is_empty() {
         name.to_owned()

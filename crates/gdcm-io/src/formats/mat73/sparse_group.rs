@@ -14,7 +14,7 @@ use crate::variable_fault::damage::Damage;
 pub(super) struct SparseGroup<'g> {
     pub(super) height: u64,
     pub(super) is_logical: bool,
-    /// Members of the group: row indices `ir`, column starts `jc` and numbers `data`.
+    /// Group members: row indices `ir`, column starts `jc` and numbers `data`.
     pub(super) members: &'g [Member],
     pub(super) path: &'g str,
     pub(super) budget: &'g ReadingBudget<'g>,
@@ -62,7 +62,7 @@ impl SparseGroup<'_> {
         }
     }
 
-    /// Reads the integers of the member `name`; `None` if the group has no such member.
+    /// Reads the integers in the member `name`; `None` if the group has no such member.
     fn integers(&self, name: &str) -> Result<Option<Vec<usize>>, VariableFault> {
         let Some(elements) = self.member(name)? else {
             return Ok(None);

@@ -58,7 +58,7 @@ pub(super) fn strings(
     }))
 }
 
-/// Decodes a string of fixed length and removes its padding.
+/// Decodes a fixed-length string and removes its padding.
 pub(super) fn decode_fixed_text(bytes: &[u8], padding: &StringPadding) -> String {
     let text = String::from_utf8_lossy(bytes);
     let end = text.find('\0').unwrap_or(text.len());

@@ -16,7 +16,7 @@ use crate::reading_budget::VariableFault;
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Type of an array element, given by `dtype.descr` of NumPy.
+/// Type of an array element, given by NumPy's `dtype.descr`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Element {
     Number(StoredNumber),
@@ -27,7 +27,7 @@ pub(super) enum Element {
         characters: usize,
         big_endian: bool,
     },
-    /// String of bytes, padded with zeros.
+    /// Byte string, padded with zeros.
     Bytes {
         count: usize,
     },
@@ -46,7 +46,7 @@ pub(super) struct Field {
     pub(super) element: Element,
     /// Shape of the field if it is an array, which is stored in row-major order.
     pub(super) shape: Vec<usize>,
-    /// Offset of the field in its record \[bytes\].
+    /// Field offset in its record \[bytes\].
     pub(super) offset: usize,
 }
 
@@ -62,7 +62,7 @@ impl Element {
         }
     }
 
-    /// Parses the value of `descr`: a type code such as "<f8", or a list of fields.
+    /// Parses the `descr` value: a type code such as "<f8", or a list of fields.
     pub(super) fn parse(descr: &Json) -> Result<Self, VariableFault> {
         match descr {
             Json::String(code) => Self::parse_code(code),
@@ -105,7 +105,7 @@ impl Element {
             _ => return Err(unknown_code(code)),
         };
         let is_complex = class_letter == "c";
-        // The size of a complex number includes both of its parts.
+        // A complex number's size includes both parts.
         let number_size = if is_complex { size / 2 } else { size };
         let Some(number) = StoredNumber::new(number_class, number_size, big_endian) else {
             return Err(VariableFault::unsupported(
@@ -122,7 +122,7 @@ impl Element {
         })
     }
 
-    /// Parses the fields of a record; each begins where the preceding field ends.
+    /// Parses a record's fields; each begins where the preceding field ends.
     fn parse_record(list: &[Json]) -> Result<Self, VariableFault> {
         let mut fields = Vec::with_capacity(list.len());
         let mut size = 0_usize;
@@ -178,14 +178,14 @@ impl Field {
         })
     }
 
-    /// Returns the offset of the byte after the field; `None` on overflow.
+    /// Returns the offset just after the field; `None` on overflow.
     fn end(&self) -> Option<usize> {
         let length = element_count(&self.shape)?.checked_mul(self.element.size())?;
         self.offset.checked_add(length)
     }
 }
 
-/// Returns the field name: the string itself, or the second string of a (title, name) pair.
+/// Returns the field name: the string itself, or the second string in a (title, name) pair.
 fn field_name(name: &Json) -> Option<&str> {
     match name {
         Json::String(name) => Some(name),
@@ -197,7 +197,7 @@ fn field_name(name: &Json) -> Option<&str> {
     }
 }
 
-/// Parses the length of each dimension; `None` unless all are non-negative integers.
+/// Parses the length along each dimension; `None` unless all are non-negative integers.
 pub(super) fn parse_sides(shape: &Json) -> Option<Vec<usize>> {
     let Json::Array(sides) = shape else {
         return None;

@@ -18,13 +18,12 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Signature at the beginning of the file.
+/// Signature with which the file begins.
 pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
-/// Offset of the major version in the file \[bytes\].
+/// Major version offset in the file \[bytes\].
 const VERSION_AT: usize = 6;
-/// Memory of the JSON text and of the parsed tree, per byte of the header text \[bytes\].
+/// Memory for the JSON text and the parsed tree, per byte of the header text \[bytes\].
 const MEMORY_PER_BYTE: u64 = 40;
-/// Error message for a header whose keys are not the required keys.
 /// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
@@ -37,15 +36,15 @@ pub(super) struct Header {
     pub(super) elements_at: usize,
 }
 
-/// Text of a header, which is a Python dictionary.
+/// Header text, which is a Python dictionary.
 struct HeaderText {
     text: String,
-    /// Offset of the byte after the text.
+    /// Offset just after the text.
     end: usize,
 }
 
 impl Header {
-    /// Parses the header of a file; `name` is the array name in errors.
+    /// Parses a file's header; `name` is the array name in errors.
     pub(super) fn parse(
         bytes: &[u8],
         name: &str,
@@ -79,7 +78,7 @@ impl Header {
 }
 
 impl HeaderText {
-    /// Reads the text of a header; `name` is the array name in errors.
+    /// Reads a header's text; `name` is the array name in errors.
     fn read(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
         if !bytes.starts_with(MAGIC) {
             return Err(VariableFault::other_bytes("a NumPy array (.npy)", bytes));

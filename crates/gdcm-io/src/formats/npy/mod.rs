@@ -1,9 +1,9 @@
 //! NumPy files: `.npy` files with a single array, and `.npz` archives with several.
 //!
-//! The format follows NEP 1 and `numpy.lib.format`, versions 1.0 to 3.0. Arrays of this program
-//! have at least two dimensions: a scalar becomes 1 x 1, and a one-dimensional array with n
-//! elements becomes 1 x n. Any other shape is kept, in either storage order. Pickled Python objects
-//! are rejected, because unpickling executes code.
+//! The format follows NEP 1 and `numpy.lib.format`, versions 1.0 to 3.0. This program's arrays have
+//! at least two dimensions: a scalar becomes 1 x 1, and a one-dimensional array with n elements
+//! becomes 1 x n. Any other shape is kept, in either storage order. Pickled Python objects are
+//! rejected, because unpickling executes code.
 
 mod element;
 mod header;
@@ -24,11 +24,10 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 pub use crate::formats::npy::writer::write_npz;
 
-/// Offset of the length of the header text in a file \[bytes\], used as the position of errors in
-/// the header.
+/// Offset of the header text length in a file \[bytes\], given as the position for header errors.
 const TEXT_LENGTH_AT: usize = 8;
 
-/// Importer of NumPy arrays.
+/// Importer for NumPy arrays.
 pub(crate) const NPY: Importer = Importer {
     name: "a NumPy array",
     endings: &["npy"],
@@ -143,7 +142,7 @@ impl ArrayReader<'_> {
                 Ok(Value::Text(TextArray { shape, texts }))
             }
             Element::Record { fields, .. } => {
-                // A header can announce any number of records without fields, or of fields without
+                // A header can announce any number of records without fields, or fields without
                 // elements, which occupy no bytes in the file.
                 self.budget.take(count, RECORD_MEMORY, self.name)?;
                 let mut values = Vec::new();
@@ -202,7 +201,7 @@ impl ArrayReader<'_> {
         Ok(texts)
     }
 
-    /// Reads the values of a field, in the order of the records.
+    /// Reads a field's values, in record order.
     fn field_values(
         &self,
         records: &StoredArray<'_>,

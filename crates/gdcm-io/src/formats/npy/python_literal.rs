@@ -1,4 +1,4 @@
-//! Parser of the Python literals in array headers.
+//! Parses the Python literals in array headers.
 
 use serde_json::Value as Json;
 
@@ -42,8 +42,8 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, Damage> {
     serde_json::from_str(&json).map_err(|_| Damage::HeaderLiteral)
 }
 
-/// Converts the string at the beginning of `rest`; returns its length including both quotation
-/// marks \[bytes\].
+/// Converts the string that begins `rest`; returns its length including both quotation marks
+/// \[bytes\].
 fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, Damage> {
     let Some(end) = rest[1..].find(quote) else {
         return Err(Damage::HeaderStringOpen);
@@ -58,7 +58,7 @@ fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, Dam
     Ok(end + 2)
 }
 
-/// Converts the word at the beginning of `rest`; returns its length \[bytes\].
+/// Converts the word that begins `rest`; returns its length \[bytes\].
 fn convert_word(rest: &str, json: &mut String) -> Result<usize, Damage> {
     let end = rest
         .find(|sign: char| !sign.is_alphanumeric())

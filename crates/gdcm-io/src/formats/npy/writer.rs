@@ -1,4 +1,4 @@
-//! Writer of archives for NumPy (".npz"); `header.rs` draws the layout of the files in them.
+//! Writes archives for NumPy (".npz"); `header.rs` shows the layout of the files in them.
 
 use std::collections::HashSet;
 use std::io::Write;
@@ -12,9 +12,9 @@ use crate::formats::variables::{Array, ElementKind, TextArray, Value, Variable};
 use crate::reading_budget::VariableFault;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Alignment of the elements \[bytes\], required by `numpy.lib.format`.
+/// Element alignment \[bytes\], required by `numpy.lib.format`.
 const ALIGNMENT: usize = 64;
-/// Length of signature, version and header length, which precede the header text \[bytes\].
+/// Number of bytes before the header text: signature, version and header length.
 const BEFORE_TEXT: usize = 10;
 /// 2^53: all integers up to this value are exact as floats.
 const LARGEST_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;

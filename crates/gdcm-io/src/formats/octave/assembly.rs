@@ -1,5 +1,4 @@
-//! Assembly of values from their parts, which the text and binary encodings store in the same
-//! order.
+//! Assembles values from their parts, which the text and binary encodings store in the same order.
 
 use crate::formats::octave::form::{Element, Form, NumberParts};
 
@@ -14,7 +13,7 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
 
-/// Length of each dimension, and whether numbers are in row-major order.
+/// Length along each dimension, and whether numbers are in row-major order.
 pub(super) struct Sides {
     pub(super) shape: Vec<usize>,
     pub(super) by_rows: bool,
@@ -26,14 +25,13 @@ pub(super) struct ValueHeading {
     pub(super) type_name: String,
 }
 
-/// Reads the consecutive parts of values in one of the encodings, text or binary. Each method reads
-/// the part at the current position and moves past it; `variable` is the name of the value in
-/// errors.
+/// Reads the consecutive value parts in one of the encodings, text or binary. Each method reads the
+/// part at the current position and moves past it; `variable` is the value's name in errors.
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
     /// Reads the next name and type.
     fn read_heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
-    /// Reads the dimensions of an array; there are at least two.
+    /// Reads array dimensions; there are at least two.
     fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
     /// Reads `count` elements; each complex element yields two numbers.
     fn read_numbers(
@@ -42,23 +40,23 @@ pub(super) trait Parts {
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault>;
-    /// Reads the dimensions and the nonzero elements of a sparse matrix.
+    /// Reads a sparse matrix's dimensions and nonzero elements.
     fn read_sparse(
         &mut self,
         element: Element,
         variable: &str,
     ) -> Result<SparseEntries, VariableFault>;
-    /// Reads the dimensions and the rows of a character array.
+    /// Reads a character array's dimensions and rows.
     fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
-    /// Reads the number of fields in a struct or an object.
+    /// Reads how many fields a struct or an object has.
     fn read_field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
-    /// Reads the class name of an object.
+    /// Reads an object's class name.
     fn read_class(&mut self, variable: &str) -> Result<String, VariableFault>;
     /// Returns the error `fault` at the current position in the file.
     fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault;
 }
 
-/// Reads the value of a variable after its name and type.
+/// Reads a variable's value, after its name and type.
 pub(super) fn read_value(
     parts: &mut dyn Parts,
     type_name: &str,
@@ -67,13 +65,13 @@ pub(super) fn read_value(
     Assembler { parts }.read_value(type_name, variable, 0)
 }
 
-/// Assembles values; `depth` in the methods is the nesting depth of a value.
+/// Assembles values; `depth` in the methods is a value's nesting depth.
 struct Assembler<'p> {
     parts: &'p mut dyn Parts,
 }
 
 impl Assembler<'_> {
-    /// Reads the parts of a value in the order that its form requires.
+    /// Reads a value's parts in the order that its form requires.
     fn read_value(
         &mut self,
         type_name: &str,
@@ -123,10 +121,10 @@ impl Assembler<'_> {
         })
     }
 
-    /// Returns the number of elements after taking `size` bytes for each from the budget.
+    /// Returns the element count after taking `size` bytes for each from the budget.
     ///
     /// # Errors
-    /// [`VariableFault`] if the number overflows, or the budget is exhausted.
+    /// [`VariableFault`] if the count overflows, or the budget is exhausted.
     fn take_elements(
         &self,
         shape: &[usize],
@@ -201,7 +199,7 @@ impl Assembler<'_> {
         Ok(CellArray { shape, values })
     }
 
-    /// Reads the records of a struct or an object. In a struct array or an object, each field is a
+    /// Reads a struct's or an object's records. In a struct array or an object, each field is a
     /// cell array with a value for each record.
     fn read_records(
         &mut self,
@@ -235,7 +233,7 @@ pub(super) fn byte_rows(letters: &[u8], height: usize) -> TextArray {
     }
     let mut texts = Vec::new();
     for row in 0..height {
-        // The letters of a row are `height` apart.
+        // Letters in a row are `height` apart.
         let letters: Vec<u8> = letters.iter().skip(row).step_by(height).copied().collect();
         texts.push(String::from_utf8_lossy(&letters).into_owned());
     }

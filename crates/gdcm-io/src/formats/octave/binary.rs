@@ -22,14 +22,14 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::octave_fault::OctaveFault;
 use crate::variable_fault::unread::Unread;
 
-/// Signature, which is followed by the letter of the byte order.
+/// Signature, followed by the byte order letter.
 const MAGIC: &[u8] = b"Octave-1-";
 /// Length of signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
 /// Byte that announces a type name, instead of a type number as in old versions.
 const NAMED_TYPE: u8 = 0xff;
 
-/// Importer of files written by `save -binary`.
+/// Importer for files written by `save -binary`.
 pub(crate) const OCTAVE_BINARY: Importer = Importer {
     name: "a GNU Octave file, written with -binary",
     endings: &["bin", "mat"],
@@ -56,7 +56,7 @@ fn read_variables(
         match read_value(&mut reader, &type_name, &name) {
             Ok(value) => variables.push(Variable { name, value }),
             Err(VariableFault::Unsupported { content, .. }) => {
-                // The length of the value is unknown, so later values cannot be found.
+                // The value's length is unknown, so later values cannot be found.
                 let value = Value::opaque(content.to_string(), Unread::UnsupportedEnd(content));
                 variables.push(Variable { name, value });
                 break;
@@ -67,7 +67,7 @@ fn read_variables(
     Ok(variables)
 }
 
-/// State of reading a file.
+/// State while a file is read.
 struct BinaryReader<'b> {
     bytes: &'b [u8],
     /// Offset of the next byte.
@@ -173,8 +173,8 @@ impl Parts for BinaryReader<'_> {
     }
 
     fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
-        // The number of dimensions precedes them, with a minus sign. Without it, `first` is the
-        // number of rows of a matrix.
+        // The dimension count precedes the dimensions, with a minus sign. Without the sign, `first`
+        // is a matrix's row count.
         let first = self.read_int(variable)?;
         let shape = match usize::try_from(first) {
             Ok(rows) => vec![rows, self.read_length(variable)?],

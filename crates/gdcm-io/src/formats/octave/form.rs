@@ -20,7 +20,7 @@ pub(super) struct Element {
     pub(super) is_complex: bool,
 }
 
-/// Real parts of numbers, and imaginary parts if they are complex.
+/// Real parts, and imaginary parts for complex numbers.
 pub(super) struct NumberParts {
     pub(super) re: Vec<f64>,
     pub(super) im: Option<Vec<f64>>,
@@ -72,9 +72,9 @@ impl Element {
 pub(super) enum Form {
     Scalar(Element),
     Matrix(Element),
-    /// Diagonal matrix, of which only the diagonal is stored.
+    /// Diagonal matrix; only the diagonal is stored.
     Diagonal(Element),
-    /// Sparse matrix, of which only the nonzero numbers are stored.
+    /// Sparse matrix; only the nonzero numbers are stored.
     Sparse(Element),
     /// Equally spaced numbers, stored as first number, limit and step.
     Range,
@@ -101,7 +101,7 @@ impl Form {
         }
     }
 
-    /// Interprets the words of a numeric type name; `None` if a word is unknown.
+    /// Interprets the words in a numeric type name; `None` if a word is unknown.
     fn from_number_words(name: &str) -> Option<Self> {
         let mut element = Element::FLOAT;
         // Variant that the words require; its element is complete only after the last word.
@@ -119,7 +119,7 @@ impl Form {
                 "diagonal" => form = Some(Self::Diagonal),
                 "sparse" => form = Some(Self::Sparse),
                 "scalar" => form = Some(Self::Scalar),
-                // "diagonal matrix" and "sparse matrix" keep the form of their first word.
+                // "diagonal matrix" and "sparse matrix" keep their first word's form.
                 "matrix" => form = form.or(Some(Self::Matrix)),
                 _ => element.storage = Some(integer_storage(word)?),
             }
@@ -133,7 +133,7 @@ impl Form {
     }
 }
 
-/// Returns the storage type for the name of an integer type, such as "int8" or "uint64".
+/// Returns the storage type for an integer type name, such as "int8" or "uint64".
 fn integer_storage(name: &str) -> Option<StorageType> {
     let size = match name.trim_start_matches('u').strip_prefix("int")? {
         "8" => 1,

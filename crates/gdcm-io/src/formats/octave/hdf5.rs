@@ -27,8 +27,8 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
-/// Converts the groups of a file written by Octave to values; returns the values of any other file
-/// unchanged.
+/// Converts the groups in a file written by Octave to values; returns the values from any other
+/// file unchanged.
 pub(crate) fn convert_hdf5_groups(
     variables: Vec<Variable>,
     budget: &ReadingBudget<'_>,
@@ -163,10 +163,10 @@ fn texts(codes: &Array) -> TextArray {
     byte_rows(&letters, codes.shape.first().copied().unwrap_or(0))
 }
 
-/// Parts of a value, which are the members of its group.
+/// A value's parts: the members in its group.
 struct GroupParts<'v> {
     parts: &'v StructArray,
-    /// Name of the value in errors.
+    /// Value name for errors.
     variable: &'v str,
     budget: &'v ReadingBudget<'v>,
 }
@@ -293,17 +293,17 @@ impl<'v> GroupParts<'v> {
         damaged(self.variable, damage)
     }
 
-    /// Returns the member `name` of the group.
+    /// Returns the group member `name`.
     fn member(&self, name: &str) -> Option<&'v Value> {
         self.parts.field(name)?.first()
     }
 
-    /// Returns the first number of the member `name`; `None` if there is none.
+    /// Returns the first number in the member `name`; `None` if there is none.
     fn number(&self, name: &str) -> Option<f64> {
         self.numbers(name).first().copied()
     }
 
-    /// Returns the numbers of the member `name`; empty if there is none.
+    /// Returns the numbers in the member `name`; empty if there is none.
     fn numbers(&self, name: &str) -> &'v [f64] {
         match self.member(name) {
             Some(Value::Array(array)) => &array.re,
@@ -311,7 +311,7 @@ impl<'v> GroupParts<'v> {
         }
     }
 
-    /// Returns the numbers of the member `name` as integers.
+    /// Returns the numbers in the member `name` as integers.
     fn integers(&self, name: &str) -> Vec<usize> {
         self.numbers(name)
             .iter()

@@ -1,4 +1,4 @@
-//! Ranges of GNU Octave, such as `0:0.5:2`, of which only three numbers are stored.
+//! GNU Octave ranges such as `0:0.5:2`, stored as three numbers.
 
 use crate::formats::variables::Array;
 use crate::reading_budget::{ReadingBudget, VariableFault};

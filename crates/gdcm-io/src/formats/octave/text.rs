@@ -23,10 +23,10 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::octave_fault::OctaveFault;
 use crate::variable_fault::unread::Unread;
 
-/// Length of the beginning of a file in which the first variable must appear \[bytes\].
+/// Number of bytes at the beginning of a file in which the first variable must appear.
 const HEAD: usize = 2000;
 
-/// Importer of files written by `save -text`.
+/// Importer for files written by `save -text`.
 pub(crate) const OCTAVE_TEXT: Importer = Importer {
     name: "a GNU Octave file, written with -text",
     endings: &["txt", "mat", "dat"],
@@ -78,7 +78,7 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
     Ok(variables)
 }
 
-/// State of reading a text.
+/// State while a text is read.
 struct TextReader<'t> {
     text: &'t str,
     /// Offset of the next byte.
@@ -189,7 +189,7 @@ impl<'t> TextReader<'t> {
     }
 
     /// Returns the next `length` bytes, which may contain line breaks. If no line ends after them,
-    /// which happens after a change of encoding, returns the next line instead.
+    /// which happens after an encoding change, returns the next line instead.
     fn read_text_with_length(
         &mut self,
         length: usize,
@@ -264,7 +264,7 @@ impl Parts for TextReader<'_> {
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault> {
-        // Skip the line before the three numbers of a range.
+        // Skip the line before the three numbers in a range.
         if self.has_key("base, limit") {
             self.read_line();
         }
@@ -305,7 +305,7 @@ impl Parts for TextReader<'_> {
             if row >= height || column >= width {
                 return Err(self.fault(variable, OctaveFault::ElementOutsideMatrix));
             }
-            // Take twice the memory of an entry: vectors grow by doubling.
+            // Take twice an entry's memory: vectors grow by doubling.
             self.budget.take(1, 48, variable)?;
             rows.push(row);
             columns.push(column);
@@ -356,7 +356,7 @@ impl Parts for TextReader<'_> {
     }
 
     fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault {
-        // The line of the byte before the current position.
+        // The line that contains the byte before the current position.
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
         VariableFault::line(variable, line, fault)

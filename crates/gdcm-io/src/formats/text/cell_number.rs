@@ -1,4 +1,4 @@
-//! Numbers in table cells, in the notations of different programs.
+//! Numbers in table cells, in notations from different programs.
 
 /// Words that programs write instead of a missing number.
 const MISSING: [&str; 14] = [
@@ -18,7 +18,7 @@ const MISSING: [&str; 14] = [
     ".",
 ];
 
-/// Maximum length of a number in a notation that Rust does not parse \[bytes\].
+/// Maximum length \[bytes\] for a number in a notation that Rust does not parse.
 const LONGEST: usize = 400;
 
 /// Parses the number in a cell: NaN for a missing number, `None` for anything that is not a number.
@@ -54,7 +54,7 @@ pub(super) fn has_number(cell: &str, decimal_comma: bool) -> bool {
 fn is_missing(cell: &str) -> bool {
     let unsigned = cell.trim_start_matches('-');
     MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
-        // Notation of NaN in the older Windows C library.
+        // How the older Windows C library writes NaN.
         || ["1.#IND", "1.#QNAN", "1.#SNAN"].iter().any(|start| unsigned.starts_with(start))
         // Fortran writes asterisks if a number is too wide for its field.
         || cell.bytes().all(|byte| byte == b'*')

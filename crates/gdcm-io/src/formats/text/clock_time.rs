@@ -1,9 +1,9 @@
-//! Times of day, with or without a date.
+//! Clock times, with or without a date.
 
-/// Length of a day \[s\].
+/// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
-/// Parses a time of day such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or
+/// Parses a clock time such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or
 /// "2026-03-01T12:30:01.250Z". Returns the seconds since midnight or, with a date, since
 /// 1970-01-01; `None` for any other text.
 pub(super) fn clock_s(text: &str) -> Option<f64> {
@@ -39,7 +39,7 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
     Some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
 }
 
-/// Parses an integer of one or two digits; `None` if it exceeds `most`.
+/// Parses an integer with one or two digits; `None` if it exceeds `most`.
 fn two_digits(text: &str, most: u32) -> Option<f64> {
     let is_digits =
         !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());

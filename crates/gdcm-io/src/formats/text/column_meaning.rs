@@ -1,4 +1,4 @@
-//! Meaning of the columns of a frequency response table, from their names and units.
+//! Meaning of the columns in a frequency response table, from their names and units.
 //!
 //! For each column, in this order:
 //!
@@ -25,7 +25,7 @@ pub(super) struct ColumnMeaning {
     /// Unit; `None` if it is neither given nor implied.
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Reason for the choice of the quantity.
+    /// Why this quantity was chosen.
     pub(super) reason: QuantityReason,
 }
 
@@ -70,7 +70,7 @@ impl ColumnMeaning {
         }
     }
 
-    /// Interprets a name by the words in it; a name without a word of `WORDS` by its unit.
+    /// Interprets a name by the words in it; by its unit if it contains no word from `WORDS`.
     fn from_words(name: &str, unit: Option<KnownUnit>) -> Self {
         let words = words_of(name);
         for (quantity, known) in WORDS {
@@ -87,8 +87,8 @@ impl ColumnMeaning {
         Self::from_unit_or_signs(name, unit)
     }
 
-    /// Interprets a name that contains no word of `WORDS` by its unit, by vertical bars around it,
-    /// or by the sign ∠.
+    /// Interprets a name that contains no word from `WORDS` by its unit, by vertical bars around
+    /// it, or by the sign ∠.
     fn from_unit_or_signs(name: &str, unit: Option<KnownUnit>) -> Self {
         let bare = name.trim();
         let has_strokes = bare.len() > 2 && bare.starts_with('|') && bare.ends_with('|');
@@ -131,7 +131,7 @@ fn without_digits(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
-/// Returns the unit implied by the words of a name; `None` if the words imply none. `word` is the
+/// Returns the unit implied by the words in a name; `None` if the words imply none. `word` is the
 /// word that indicates the quantity, in lower case.
 fn usual_unit(quantity: Quantity, word: &str, words: &[Word<'_>]) -> Option<KnownUnit> {
     match quantity {
@@ -196,8 +196,8 @@ fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     }
 }
 
-/// Returns whether a name ends in one of `WORDS`, such as "freq" in "freqHz" before the unit.
-/// Ignores words of a single byte.
+/// Returns whether a name ends in an entry of `WORDS`, such as "freq" in "freqHz" before the unit.
+/// Ignores single-byte words.
 fn ends_with_known_word(name: &str) -> bool {
     let name = name.to_lowercase();
     WORDS
@@ -209,7 +209,7 @@ fn ends_with_known_word(name: &str) -> bool {
 /// Splits a name into words, which consist of letters, digits and "²".
 fn words_of(name: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
-    // Offset of the word that has begun.
+    // Offset where the current word began.
     let mut begun = None;
     for (at, character) in name.char_indices() {
         let is_inside = character.is_alphanumeric() || character == '²';
@@ -234,8 +234,7 @@ fn words_of(name: &str) -> Vec<Word<'_>> {
     words
 }
 
-/// Returns a name without the words in `known`; keeps digits at the end of such a word, as in
-/// "re1".
+/// Returns a name without the words in `known`; keeps digits that end such a word, as in "re1".
 fn without_words(name: &str, words: &[Word<'_>], known: &[&str]) -> String {
     let mut label = String::with_capacity(name.len());
     let mut from = 0;

@@ -1,4 +1,4 @@
-//! Splitting of columns with complex numbers, such as `(1.5-2j)`, into real and imaginary parts.
+//! Splits columns with complex numbers, such as `(1.5-2j)`, into real and imaginary parts.
 
 use crate::formats::text::cell_number::{cell_number, has_number};
 use crate::formats::text::lines::{comment, lines};
@@ -9,11 +9,11 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const DECIMAL_COMMA: bool = false;
 /// Number of lines examined for complex numbers.
 const SAMPLE: usize = 200;
-/// Upper bound of the memory of the split text, as a multiple of the text.
+/// Upper bound for the split text's memory, as a multiple of the original text.
 const GROWTH: u64 = 3;
 
-/// Replaces each column of complex numbers by two columns, whose headings begin with "re" and "im".
-/// Returns `None` if there is no such column. Line numbers do not change.
+/// Replaces each complex column by two columns, whose headings begin with "re" and "im". Returns
+/// `None` if there is no such column. Line numbers do not change.
 pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
     let Some(columns) = ComplexColumns::recognise(text) else {
         return Ok(None);
@@ -34,7 +34,7 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
     Ok(Some(split))
 }
 
-/// Separator of a text, and its columns of complex numbers.
+/// A text's separator, and its complex columns.
 struct ComplexColumns {
     separator: Separator,
     /// Whether each column has complex numbers.
@@ -124,8 +124,7 @@ impl ComplexColumns {
     }
 }
 
-/// The two cells that replace a cell: the real and the imaginary part of a number, or their
-/// headings.
+/// The two cells that replace a cell: a number's real and imaginary parts, or their headings.
 struct PartCells {
     re: String,
     im: String,

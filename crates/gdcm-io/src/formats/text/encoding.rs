@@ -1,4 +1,4 @@
-//! Character encodings of text files.
+//! Character encodings for text files.
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::found_content::FoundContent;
@@ -22,7 +22,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
     if let Some(at) = body.iter().position(|&byte| byte == 0) {
         return Err(no_text("a text", at));
     }
-    // A character of code page 1252 needs at most three bytes in UTF-8.
+    // A code page 1252 character needs at most three bytes in UTF-8.
     budget.take(body.len() as u64, 3, "")?;
     Ok(match std::str::from_utf8(body) {
         Ok(text) => text.to_owned(),
@@ -38,8 +38,7 @@ fn windows_1252(byte: u8) -> char {
     }
 }
 
-/// Decodes UTF-16 after its byte order mark; `word` combines two bytes in the byte order of the
-/// file.
+/// Decodes UTF-16 after its byte order mark; `word` combines two bytes in the file's byte order.
 fn utf16(
     body: &[u8],
     word: fn([u8; 2]) -> u16,

@@ -1,4 +1,4 @@
-//! Frequency responses in a table, recognised by the names and units of its columns.
+//! Frequency responses in a table, recognised by its column names and units.
 //!
 //! ```text
 //! FrequencyColumns::recognise   names and units -> which columns hold which responses
@@ -17,11 +17,11 @@ use crate::variable_fault::found_content::ResponseLack;
 use crate::variable_fault::line_fault::FrequencyFault;
 use crate::variable_fault::line_fault::LineFault;
 
-/// Meaning of the columns of a frequency response table.
+/// Meaning of the columns in a frequency response table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrequencyColumns {
     frequency: FrequencyColumn,
-    /// Frequency responses, in the order of their columns.
+    /// Frequency responses, in column order.
     pub(crate) responses: Vec<RecognisedResponse>,
     /// Notes for the user: each choice with its reason.
     pub(crate) notes: Vec<ReadingNote>,
@@ -56,7 +56,7 @@ impl FrequencyColumns {
         Ok(columns)
     }
 
-    /// Returns the points of each response.
+    /// Returns each response's points.
     ///
     /// Rows with decreasing frequencies are put in reverse order.
     ///
@@ -77,7 +77,7 @@ impl FrequencyColumns {
         frequencies.len() > 1 && frequencies.is_sorted_by(|above, below| above > below)
     }
 
-    /// Returns the points of each response; the frequencies must increase.
+    /// Returns each response's points; the frequencies must increase.
     fn increasing_values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         let omega = self.omega(table)?;
         self.responses

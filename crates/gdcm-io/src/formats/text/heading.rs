@@ -9,12 +9,11 @@ use crate::formats::text::lines::{NumberedLine, comment, is_rule};
 /// Number of lines before the first row that are searched for names and units.
 const SEARCHED: usize = 100;
 
-/// Names and units of the columns.
 #[derive(Debug, PartialEq)]
 pub(super) struct Heading {
     /// Column names; `None` if no line gives them.
     pub(super) names: Option<Vec<String>>,
-    /// Unit of each column, where a line gives it.
+    /// Each column's unit, where a line gives it.
     pub(super) units: Vec<Option<String>>,
     /// Notes for the user on the lines from which names and units were taken.
     pub(super) notes: Vec<ReadingNote>,
@@ -58,7 +57,7 @@ impl Heading {
         heading
     }
 
-    /// Takes the names, and the units that are still unknown, from the cells of a line.
+    /// Takes the names, and the units that are still unknown, from a line's cells.
     fn take_names(&mut self, cells: &[String]) {
         let mut names = Vec::with_capacity(cells.len());
         for (cell, known_unit) in cells.iter().zip(&mut self.units) {
@@ -130,7 +129,7 @@ fn unit_of(cell: &str) -> Option<String> {
     }
 }
 
-/// Returns whether at least half of the cells are units and the others are empty.
+/// Returns whether at least half the cells are units and the others are empty.
 fn is_units_line(cells: &[String]) -> bool {
     let units: Vec<_> = cells.iter().filter_map(|cell| unit_of(cell)).collect();
     2 * units.len() >= cells.len() && units.iter().all(|unit| is_unit(unit))

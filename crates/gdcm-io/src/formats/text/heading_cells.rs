@@ -1,4 +1,4 @@
-//! Splitting of a heading into a cell for each column.
+//! Splits a heading into a cell for each column.
 //!
 //! A heading may have another separator than the numbers below it, and blanks within its names.
 //! Cells are taken at most up to two more than there are columns, which suffices to detect that a
@@ -10,8 +10,8 @@ use crate::formats::text::lines::{NumberedLine, comment};
 use crate::formats::text::separator::Separator;
 
 /// Splits a heading into a cell for each column; `None` if this is impossible. The separator may
-/// differ from the separator between the numbers; these are tried, in this order: the separator of
-/// the numbers, the other separators, wide blanks, blanks outside brackets, any blanks.
+/// differ from the separator between the numbers; these are tried, in this order: the numbers'
+/// separator, the other separators, wide blanks, blanks outside brackets, any blanks.
 pub(super) fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
     if layout.separator != Separator::Blanks
@@ -38,9 +38,8 @@ pub(super) fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
         .or_else(|| fitted(trimmed_cells(line, Separator::Blanks, columns), layout))
 }
 
-/// Returns the cells if they can be a heading: their number equals the number of columns, some
-/// contain letters, and they are not a row with errors. Removes an additional empty cell at the
-/// end.
+/// Returns the cells if they can be a heading: there is one for each column, some contain letters,
+/// and they are not a row with errors. First removes an additional empty cell at the end.
 fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
     let ends_empty = cells.last().is_some_and(|cell| cell.trim().is_empty());
     if cells.len() == layout.columns + 1 && ends_empty {
@@ -67,7 +66,7 @@ fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String
         .collect()
 }
 
-/// Returns whether a line is probably a row with errors: the first cell and more than half of all
+/// Returns whether a line is probably a row with errors: the first cell and more than half the
 /// cells are numbers.
 pub(super) fn is_mostly_numbers(cells: &[String], layout: Layout) -> bool {
     let Some(first) = cells.first() else {

@@ -1,4 +1,4 @@
-//! Recognition of units in column headings.
+//! Recognises units in column headings.
 
 use gdcm_model::names::signed_name::parse_direction;
 

@@ -21,7 +21,7 @@ pub(super) struct Layout {
     pub(super) trailing: bool,
 }
 
-/// Number and form of the cells in a line of numbers.
+/// How many cells a row has, and how it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RowShape {
     /// Number of cells.
@@ -31,8 +31,8 @@ pub(super) struct RowShape {
 }
 
 impl Layout {
-    /// Finds the separator and the decimal mark with which the largest number of lines are rows of
-    /// equal width; in a tie, the wider rows. Returns `None` if no line is a row.
+    /// Finds the separator and the decimal mark with which most lines are equally wide rows; in a
+    /// tie, the wider rows. Returns `None` if no line is a row.
     pub(super) fn recognise(
         text: &str,
         budget: &ReadingBudget,
@@ -64,8 +64,8 @@ impl Layout {
         self.separator.cells(without_comment(line))
     }
 
-    /// Returns the shape of a line; `None` unless all cells are numbers or missing numbers, and at
-    /// least one is a number.
+    /// Returns a line's shape; `None` unless all cells are numbers or missing numbers, and at least
+    /// one is a number.
     pub(super) fn row_shape(self, line: &str) -> Option<RowShape> {
         let mut shape = RowShape {
             width: 0,
@@ -81,8 +81,8 @@ impl Layout {
         if has_number { Some(shape) } else { None }
     }
 
-    /// Returns whether a row has the columns of this layout; one more empty cell may follow a
-    /// trailing separator.
+    /// Returns whether a row has this layout's columns; one more empty cell may follow a trailing
+    /// separator.
     pub(super) fn fits(self, row: RowShape) -> bool {
         let expected = if self.trailing && row.ends_empty {
             self.columns + 1
@@ -120,7 +120,7 @@ struct Tally {
     rows: usize,
 }
 
-/// Numbers of rows that have the same width.
+/// Row counts for one row width.
 #[derive(Clone, Copy, Default)]
 struct RowCount {
     rows: usize,
@@ -128,7 +128,7 @@ struct RowCount {
     ending_empty: usize,
 }
 
-/// A layout, and the number of examined rows that have it.
+/// A layout, and how many examined rows have it.
 #[derive(Clone, Copy)]
 struct Score {
     rows: usize,

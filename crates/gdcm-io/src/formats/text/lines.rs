@@ -2,9 +2,9 @@
 
 /// Marks that begin a comment line.
 const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "!", ";"];
-/// Marks that begin a comment after the cells of a line, with the blanks around them.
+/// Marks that begin a comment after a line's cells, with the blanks around them.
 const TRAILING_MARKS: [&str; 7] = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", "\t! "];
-/// Maximum length of an excerpt in a message \[characters\].
+/// Maximum excerpt length in a message \[characters\].
 const EXCERPT: usize = 40;
 
 /// A line that is kept, with its number.
@@ -22,7 +22,7 @@ pub(super) struct Lines<'t> {
     number: usize,
 }
 
-/// Returns the lines of a text with their numbers, without a byte order mark.
+/// Returns a text's lines with their numbers, without a byte order mark.
 pub(super) fn lines(text: &str) -> Lines<'_> {
     Lines {
         rest: Some(text.strip_prefix('\u{feff}').unwrap_or(text)),
@@ -46,7 +46,7 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// Returns the text after the mark of a comment line; `None` for any other line.
+/// Returns the text after the mark in a comment line; `None` for any other line.
 pub(super) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     let mark = COMMENT_MARKS.iter().find(|&&mark| line.starts_with(mark))?;
@@ -73,7 +73,7 @@ pub(super) fn is_rule(line: &str) -> bool {
         && !line.trim().contains("- -")
 }
 
-/// Shortens a text for a message to at most 40 visible characters of its first line.
+/// Shortens a text for a message to at most 40 visible characters from its first line.
 pub(super) fn excerpt(text: &str) -> String {
     // Examine only what is displayed: a line may be as long as the text.
     let mut shown = String::new();

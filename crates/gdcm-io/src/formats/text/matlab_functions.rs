@@ -5,17 +5,17 @@ use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::ReadingBudget;
 use crate::variable_fault::matlab_fault::MatlabFault;
 
-/// Numbers of rows and columns from this limit on are rejected; all integers below it are exact as
+/// Numbers of rows or columns from this limit on are rejected; all integers below it are exact as
 /// floats.
 const COUNT_LIMIT: f64 = 1e15;
 
-/// A supported MATLAB function, by the kind of value that it creates.
+/// A supported MATLAB function, by what it creates.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
     /// A record: the first arguments are these fields, then follow an optional sample time (not for
     /// `struct`) and name-value pairs.
     Record(&'static [&'static str]),
-    /// A matrix of zeros, of ones, or the identity matrix.
+    /// A matrix with zeros or ones, or the identity matrix.
     Fill(Fill),
     /// A string, returned unchanged (`string` and `char`).
     Text,
@@ -29,7 +29,6 @@ pub(super) enum Fill {
     Identity,
 }
 
-/// A function call in a statement.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'n> {
     pub(super) name: &'n str,
@@ -56,7 +55,7 @@ impl Function {
 }
 
 impl Call<'_> {
-    /// Returns the value of the function.
+    /// Returns the function's value.
     pub(super) fn value(
         self,
         arguments: Vec<Value>,
@@ -69,7 +68,7 @@ impl Call<'_> {
             },
             Function::Text => match arguments.as_slice() {
                 [text @ Value::Text(_)] => Ok(text.clone()),
-                // Treat other arguments as dimensions, like those of `zeros`.
+                // Treat other arguments as dimensions, as for `zeros`.
                 sizes => self.filled(Fill::Zeros, sizes, budget),
             },
             Function::Fill(fill) => self.filled(fill, &arguments, budget),
@@ -142,7 +141,7 @@ fn count_from(value: &Value) -> Option<usize> {
 /// `Ts` \[s\] and name-value pairs.
 ///
 /// # Errors
-/// The reason if arguments are missing or of the wrong type.
+/// The reason if arguments are missing or have the wrong type.
 fn record(
     function: &str,
     names: &[&'static str],

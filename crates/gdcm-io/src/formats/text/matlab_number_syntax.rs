@@ -1,4 +1,4 @@
-//! Extent of a number in MATLAB or Octave statements: `1.5`, `.5e-3`, `2D+4`.
+//! Finds where a number ends in MATLAB or Octave statements: `1.5`, `.5e-3`, `2D+4`.
 
 /// Returns whether there is a digit at an offset.
 pub(super) fn is_digit(bytes: &[u8], at: usize) -> bool {

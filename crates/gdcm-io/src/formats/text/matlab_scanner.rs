@@ -35,7 +35,7 @@ pub(super) struct Scanner<'t> {
     /// Offset of the current position \[bytes\].
     pub(super) at: usize,
     line: usize,
-    /// Offset of the beginning of the current line \[bytes\].
+    /// Offset at which the current line begins \[bytes\].
     line_start: usize,
 }
 
@@ -204,7 +204,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Reads a string up to the closing quotation mark on the same line; a doubled quotation mark
-    /// stands for a single one.
+    /// means a single one.
     pub(super) fn read_quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
@@ -339,8 +339,8 @@ fn is_update(sign: char, behind: &str) -> bool {
     rest.trim_start().is_empty() || rest.starts_with(';')
 }
 
-/// Returns whether a line that begins with an opening bracket assigns to an element, or to a field
-/// of an element: "(2,1) = 3", "{2}.name = 3".
+/// Returns whether a line that begins with an opening bracket assigns to an element, or to an
+/// element's field: "(2,1) = 3", "{2}.name = 3".
 fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
     let mut depth = 0_usize;
     for (at, character) in line.char_indices() {

@@ -15,7 +15,7 @@ const OPERATORS: &str = "+-*/^:.\\";
 /// Operators within brackets if no blank precedes them; the quotation mark transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
 
-/// Reads values, beginning at the position of the scanner.
+/// Reads values, beginning at the scanner's position.
 pub(super) struct ValueReader<'r, 't, 'm> {
     pub(super) scanner: &'r mut Scanner<'t>,
     pub(super) budget: &'r ReadingBudget<'m>,
@@ -35,7 +35,6 @@ struct Rows<T> {
     elements: Vec<T>,
 }
 
-/// Element of a matrix.
 enum Element {
     Number { re: f64, im: f64 },
     Text(String),
@@ -160,9 +159,9 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads rows of elements from an opening bracket, at this position, to the closing bracket
-    /// `close`; `read_element` reads an element. Commas or blanks separate elements, semicolons or
-    /// line ends separate rows; empty rows do not count.
+    /// Reads rows from an opening bracket, at this position, to the closing bracket `close`;
+    /// `read_element` reads an element. Commas or blanks separate elements, semicolons or line ends
+    /// separate rows; empty rows do not count.
     fn read_rows<T>(
         &mut self,
         close: char,
@@ -235,7 +234,6 @@ impl ValueReader<'_, '_, '_> {
         behind.starts_with([' ', '\t']) && OPERATORS.contains(sign)
     }
 
-    /// Reads a cell array.
     fn read_cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
         let Rows {
             rows,
@@ -251,7 +249,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a matrix of numbers, transposed if a quotation mark follows it, or of strings in
+    /// Reads a numeric matrix, transposed if a quotation mark follows it, or a matrix of strings in
     /// double quotation marks.
     fn read_matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
@@ -321,8 +319,8 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads the arguments after the opening bracket of a function call, and returns the value of
-    /// the function.
+    /// Reads the arguments after a function call's opening bracket, and returns the function's
+    /// value.
     fn read_call(
         &mut self,
         name: &str,

@@ -1,7 +1,7 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
-//! Supported are numbers, strings, matrices and cell arrays of these, variables and fields on
-//! either side of `=`, and models created by `ss`, `tf` and `zpk`. Expressions are not evaluated
+//! Supported are numbers, strings, matrices and cell arrays containing these, variables and fields
+//! on either side of `=`, and models created by `ss`, `tf` and `zpk`. Expressions are not evaluated
 //! and other statements not executed; they are reported with a remedy.
 
 use crate::formats::reading_note::{ReadingNote, SkippedStatement};
@@ -43,8 +43,8 @@ const BLOCK_ENDS: [&str; 9] = [
 /// Variables assigned by MATLAB or Octave statements, with notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statements {
-    /// Variables in the order of their first assignments, with their last values. An unsupported
-    /// value is [`Value::Opaque`] with the reason, its line and its column.
+    /// Variables ordered by first assignment, with their last values. An unsupported value is
+    /// [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
     /// Notes for the user on statements that were skipped.
     pub notes: Vec<ReadingNote>,
@@ -74,7 +74,7 @@ pub fn read_statements(text: &str, budget: &ReadingBudget) -> Result<Statements,
     })
 }
 
-/// State of reading statements.
+/// State while statements are read.
 struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
     budget: &'m ReadingBudget<'m>,
@@ -115,8 +115,8 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// Reads a statement other than an assignment of function results; if no name begins it, it is
-    /// skipped with a note.
+    /// Reads a statement that does not assign function results; if no name begins it, it is skipped
+    /// with a note.
     fn read_named_statement(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let path = self.scanner.read_path(self.budget)?;
         let behind = self.scanner.clone();
@@ -178,7 +178,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Reads the value of an assignment; an unsupported value makes the variable opaque.
+    /// Reads an assignment's value; an unsupported value makes the variable opaque.
     fn read_assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
         let before = self.scanner.clone();
         match self.read_assigned_value(begin) {
@@ -194,7 +194,7 @@ impl<'t> Reading<'t, '_> {
             .map_err(|fault| fault.in_variable(|| path.join(".")))
     }
 
-    /// Reads the value after the equals sign of an assignment.
+    /// Reads the value after an assignment's equals sign.
     fn read_assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
             return refused(MatlabFault::InBlock, begin);

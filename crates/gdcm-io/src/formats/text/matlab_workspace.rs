@@ -11,7 +11,7 @@ use crate::variable_fault::unread::Unread;
 /// Variables and fields assigned so far.
 #[derive(Default)]
 pub(super) struct Workspace<'t> {
-    /// Variables in the order of their first assignments, with their last values.
+    /// Variables ordered by first assignment, with their last values.
     pub(super) variables: Vec<Variable>,
     /// Index in `variables`, by name.
     places: HashMap<&'t str, usize>,

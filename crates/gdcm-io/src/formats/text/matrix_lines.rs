@@ -1,8 +1,8 @@
-//! Kinds of lines in matrices that programs print: names, groups of columns, common factors and rows.
+//! Kinds of lines in printed matrices: names, column groups, common factors and rows.
 
 use crate::formats::text::cell_number::is_number;
 
-/// A line with the name of a matrix.
+/// A line with a matrix name.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct NameLine<'t> {
     pub(super) name: &'t str,

@@ -19,7 +19,7 @@ use crate::variable_fault::line_fault::LineFault;
 /// Matrices read from a text, with notes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMatrices {
-    /// Matrices in the order of their appearance.
+    /// Matrices in order of appearance.
     pub variables: Vec<Variable>,
     /// Notes for the user on skipped lines and on choices.
     pub notes: Vec<ReadingNote>,
@@ -78,7 +78,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
 /// Part of a matrix: consecutive rows with a group of columns.
 #[derive(Default)]
 struct Part {
-    /// Line number of each row in the whole text.
+    /// Each row's line number in the whole text.
     line_numbers: Vec<usize>,
     text: String,
 }
@@ -98,17 +98,17 @@ struct UnparsedMatrix {
     parts: Vec<Part>,
 }
 
-/// State of reading named matrices.
+/// State while named matrices are read.
 struct Reading<'m> {
-    /// Matrices so far; rows belong to the last.
+    /// Matrices so far; new rows go to the last.
     matrices: Vec<UnparsedMatrix>,
     notes: Vec<ReadingNote>,
     budget: &'m ReadingBudget<'m>,
 }
 
 impl Reading<'_> {
-    /// Reads a line that is neither empty nor a comment. The kinds of lines are tried in this order:
-    /// matrix name, "Columns …", common factor, row, row that begins with a name, any other.
+    /// Reads a line that is neither empty nor a comment. Line kinds are tried in this order: matrix
+    /// name, "Columns …", common factor, row, row that begins with a name, any other.
     fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(name_line) = name_line(line) {
             return if !name_line.assigned && self.awaits_columns() {
@@ -179,7 +179,7 @@ impl Reading<'_> {
             .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty())
     }
 
-    /// Begins a matrix with the line of its name.
+    /// Begins a matrix at the line with its name.
     fn begin_matrix(
         &mut self,
         number: usize,
@@ -219,7 +219,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Begins another part of the last matrix, unless its last part has no rows yet.
+    /// Begins another part in the last matrix, unless its last part has no rows yet.
     fn begin_part(&mut self) {
         if let Some(matrix) = self.matrices.last_mut()
             && matrix
@@ -303,7 +303,7 @@ impl UnparsedMatrix {
 }
 
 impl Part {
-    /// Reads the rows of the part; errors contain the line in the whole text.
+    /// Reads the part's rows; errors contain the line in the whole text.
     fn table(&self, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
         let table = read_table(&self.text, budget).map_err(|fault| match fault {
             VariableFault::Line { line, fault, .. } => {
@@ -330,7 +330,7 @@ impl Part {
     }
 }
 
-/// Joins the columns of tables into a matrix, and multiplies it by `scale`.
+/// Joins table columns into a matrix, and multiplies it by `scale`.
 fn joined(
     tables: &[TextTable],
     scale: f64,
@@ -350,7 +350,7 @@ fn joined(
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
     budget.take((rows * columns) as u64, 8, name)?;
-    // The tables hold their numbers by column: in order, these are the columns of the matrix.
+    // The tables hold their numbers by column: in order, these are the matrix columns.
     let values = tables
         .iter()
         .flat_map(|table| table.columns.iter().flatten())

@@ -5,7 +5,7 @@
 //! bytes -> text                              (encoding)
 //!       -> table: columns, names, units      (table_reader, with layout, heading, cell_number)
 //!            -> frequency responses          (frequency_columns)
-//!       -> table, after complex numbers, words or times of day are replaced by plain numbers
+//!       -> table, after complex numbers, words or clock times are replaced by plain numbers
 //!                                            (complex_columns, numbered_words)
 //!       -> matrices with names               (matrix_text)
 //!       -> variables of MATLAB statements    (matlab_statements)
@@ -58,7 +58,7 @@ pub(crate) use text_table::TextTable;
 pub(crate) use unrecognised::Unrecognised;
 pub use unrecognised::UnsaidUnit;
 
-/// Importer of MATLAB and Octave statements.
+/// Importer for MATLAB and Octave statements.
 pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
     name: "MATLAB statements",
     endings: &["m"],
@@ -81,7 +81,7 @@ pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
     },
 };
 
-/// Importer of text files with numbers in columns, or matrices.
+/// Importer for text files with numbers in columns, or matrices.
 pub(crate) const TEXT: Importer = Importer {
     name: "a text",
     endings: &["csv", "txt", "tsv", "dat", "asc", "prn", "log", "out"],
@@ -93,7 +93,7 @@ pub(crate) const TEXT: Importer = Importer {
     },
 };
 
-/// Returns the first lines of a text, without empty lines and comments (`%`, `#`).
+/// Returns a text's first lines, without empty lines and comments (`%`, `#`).
 fn first_lines(bytes: &[u8]) -> Vec<String> {
     /// Number of bytes examined at the beginning.
     const HEAD: usize = 4000;
@@ -121,8 +121,8 @@ fn begins_with_statement(bytes: &[u8]) -> bool {
     begins_name && is_name && (value.starts_with(['[', '{', '\'']) || value.ends_with(';'))
 }
 
-/// Returns whether a text begins with a row of numbers, or with column names and a row of numbers,
-/// unlike MATLAB statements.
+/// Returns whether a text begins with a row of numbers, or with column names followed by such a
+/// row, unlike MATLAB statements.
 fn begins_with_numbers(bytes: &[u8]) -> bool {
     for line in first_lines(bytes).iter().take(2) {
         if line.contains('=') {
@@ -135,7 +135,7 @@ fn begins_with_numbers(bytes: &[u8]) -> bool {
     false
 }
 
-/// Returns whether a line holds only numbers in the notation of Rust, with any separator.
+/// Returns whether a line holds only numbers in Rust's notation, with any separator.
 fn is_row_of_plain_numbers(line: &str) -> bool {
     let mut has_number = false;
     for cell in line.split([',', ';', '\t', ' ']) {

@@ -1,4 +1,4 @@
-//! Columns of words and of times of day in tables of numbers: each word is replaced by a number, each
+//! Columns with words or clock times in numeric tables: each word is replaced by a number, each
 //! time by seconds.
 
 use std::collections::BTreeMap;
@@ -12,32 +12,31 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Maximum number of distinct words that are numbered in a column; a column with more is no set of
-/// labels.
+/// Maximum number of distinct words numbered in a column; a column with more does not hold labels.
 const MOST_WORDS: usize = 500;
-/// Length of a day \[s\].
+/// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
-/// A text in whose columns numbers have replaced words and times of day.
+/// A text whose columns have numbers instead of words and clock times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberedText {
     pub text: String,
-    /// Notes for the user: the number of each word, and the columns with times of day.
+    /// Notes for the user: each word's number, and the columns with clock times.
     pub notes: Vec<ReadingNote>,
 }
 
-/// Kind of data in a column.
+/// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Numbers,
-    /// Times of day, with or without a date.
+    /// Clock times, with or without a date.
     Clock,
     Words,
 }
 
-/// Replaces words in columns by numbers, counted in the order of their first occurrence, and times
-/// of day by seconds. Returns `None` if the text does not have such columns next to columns of
-/// numbers, with a separator other than blanks.
+/// Replaces words in columns by numbers, counted by first occurrence, and clock times by seconds.
+/// Returns `None` if the text does not have such columns next to numeric columns, with a separator
+/// other than blanks.
 pub fn numbered_words(
     text: &str,
     budget: &ReadingBudget,
@@ -63,7 +62,7 @@ pub fn numbered_words(
     }))
 }
 
-/// Returns the cells of a line without blanks around them.
+/// Returns a line's cells without blanks around them.
 fn trimmed_cells(line: &str, separator: Separator) -> Vec<String> {
     separator
         .cells(line)
@@ -71,11 +70,11 @@ fn trimmed_cells(line: &str, separator: Separator) -> Vec<String> {
         .collect()
 }
 
-/// State of numbering the words in a text.
+/// State while the words in a text are numbered.
 struct Numbering {
     separator: Separator,
     columns: Vec<Column>,
-    /// Cells of the first line that is not a row.
+    /// Cells from the first line that is not a row.
     heading: Option<Vec<String>>,
 }
 
@@ -87,7 +86,7 @@ struct Column {
     clock: Option<ClockSpan>,
 }
 
-/// First and last time of day in a column so far.
+/// First and last clock time in a column so far.
 #[derive(Clone, Copy)]
 struct ClockSpan {
     first_s: f64,
@@ -96,8 +95,8 @@ struct ClockSpan {
 }
 
 impl Numbering {
-    /// Finds the separator and the kind of data in each column. Returns `None` unless at least two
-    /// columns hold numbers, and at least one holds words or times of day.
+    /// Finds the separator and what each column holds. Returns `None` unless at least two columns
+    /// hold numbers, and at least one holds words or clock times.
     fn recognise(text: &str) -> Option<Self> {
         let sample: Vec<&str> = lines(text)
             .map(|(_, line)| line)
@@ -233,12 +232,11 @@ impl Column {
 struct Candidate {
     separator: Separator,
     width: usize,
-    /// Number of lines that have this width.
+    /// Number of lines with this width.
     lines: usize,
 }
 
-/// Returns the separator with which the largest number of lines have equal width; `None` if no
-/// separator qualifies.
+/// Returns the separator with which most lines have equal width; `None` if no separator qualifies.
 fn best_candidate(sample: &[&str]) -> Option<Candidate> {
     Separator::ALL
         .into_iter()
@@ -248,7 +246,7 @@ fn best_candidate(sample: &[&str]) -> Option<Candidate> {
 }
 
 /// Returns the most frequent line width for a separator; `None` unless it has at least three cells
-/// and more than half of the lines have it.
+/// and more than half the lines have it.
 fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     let mut lines_by_width: BTreeMap<usize, usize> = BTreeMap::new();
     for line in sample {
@@ -269,8 +267,8 @@ fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     })
 }
 
-/// Returns the kind of data in more than half of the filled cells of a column; words if neither
-/// numbers nor times of day prevail.
+/// Returns what more than half the filled cells in a column hold; words if neither numbers nor
+/// clock times prevail.
 fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
     let mut filled = 0;
     let mut numbers = 0;

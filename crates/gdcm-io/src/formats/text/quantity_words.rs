@@ -1,7 +1,7 @@
 //! Quantities and units in frequency response tables, with the words in column names that denote
 //! them.
 
-/// Quantity that a column of a frequency response table holds.
+/// What a column in a frequency response table holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Error,
@@ -28,7 +28,7 @@ pub(super) enum KnownUnit {
     GammaSquared,
     /// `rps`, which may mean radians or revolutions per second.
     Rps,
-    /// Any other unit, such as the unit of a magnitude or of a real part.
+    /// Any other unit, such as that of a magnitude or a real part.
     Other,
 }
 

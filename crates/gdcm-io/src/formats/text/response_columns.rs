@@ -1,12 +1,12 @@
-//! Columns of a table that hold a frequency response, and its points.
+//! The table columns that hold a frequency response, and its points.
 
 use crate::formats::text::text_table::TextTable;
 use crate::reading_budget::VariableFault;
 use crate::variable_fault::column_place::ColumnPlace;
 use crate::variable_fault::line_fault::LineFault;
 
-/// A frequency response in columns of a table; its frequencies are in another column, which all
-/// responses of the table share.
+/// A frequency response in table columns; its frequencies are in another column, shared by all
+/// responses in the table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecognisedResponse {
     /// Output, if the column names give it.
@@ -49,12 +49,12 @@ pub(crate) struct ResponsePoints {
     pub(crate) omega: Vec<f64>,
     pub(crate) re: Vec<f64>,
     pub(crate) im: Vec<f64>,
-    /// Coherence γ² as a fraction of 1; NaN at points where it is missing.
+    /// Coherence γ² as a fraction; NaN at points where it is missing.
     pub(crate) coherence: Option<Vec<f64>>,
 }
 
 impl CoherenceColumn {
-    /// Returns γ² in a row, as a fraction of 1.
+    /// Returns γ² in a row, as a fraction.
     fn gamma_squared(self, table: &TextTable, row: usize) -> f64 {
         let value = self.factor * table.columns[self.column][row];
         if self.is_gamma { value * value } else { value }
@@ -62,8 +62,8 @@ impl CoherenceColumn {
 }
 
 impl RecognisedResponse {
-    /// Returns the points of the response. Rows in which both parts of the complex number are
-    /// missing are omitted; `omega` is the frequency of each row \[rad/s\].
+    /// Returns the response's points. Rows in which both parts of the complex number are missing
+    /// are omitted; `omega` is the frequency of each row \[rad/s\].
     ///
     /// # Errors
     /// [`VariableFault`] with the line if only one part of a complex number is missing, a part is
@@ -119,7 +119,7 @@ impl RecognisedResponse {
 }
 
 impl ResponseParts {
-    /// Returns the indices of the two columns: magnitude and phase, or real and imaginary part.
+    /// Returns the two column indices: magnitude and phase, or real and imaginary part.
     pub(super) fn columns(self) -> [usize; 2] {
         match self {
             ResponseParts::Polar {
@@ -155,7 +155,7 @@ impl ResponseParts {
     }
 }
 
-/// Returns the name of a column; for example "column 5" if it has no name.
+/// Returns a column's name; for example "column 5" if it has no name.
 pub(super) fn column_name(table: &TextTable, column: usize) -> String {
     match table.name(column) {
         Some(name) => name.to_owned(),

@@ -1,8 +1,8 @@
-//! Output and input of a response, as named in a column heading.
+//! A response's output and input, as named in a column heading.
 
 use gdcm_model::names::response_name::{KnownChannels, ResponseName};
 
-/// Output and input of a response, where its name gives them.
+/// A response's output and input, where its name gives them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct ResponseLabel {
     pub(super) output: Option<String>,
@@ -20,7 +20,7 @@ const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
 
 impl ResponseLabel {
     /// Parses a response name such as "P/LAT", "LAT->P", "LAT to P" or "P_LAT"; any other text is
-    /// the name of an output.
+    /// an output name.
     pub(super) fn parse(text: &str) -> Self {
         let text = clean(text);
         if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {
@@ -45,7 +45,7 @@ impl ResponseLabel {
         }
     }
 
-    /// Creates a label from the texts of output and input, either of which may be empty.
+    /// Creates a label from output and input texts, either of which may be empty.
     fn from_parts(output: &str, input: &str) -> Self {
         Self {
             output: channel(output),
@@ -68,7 +68,7 @@ impl ResponseLabel {
     }
 }
 
-/// Returns the channel in a part of a name; `None` if only brackets, punctuation and blanks remain.
+/// Returns the channel in a name part; `None` if only brackets, punctuation and blanks remain.
 fn channel(part: &str) -> Option<String> {
     let channel = clean(part);
     if channel.is_empty() {

@@ -1,9 +1,9 @@
-//! Assembly of frequency responses from the columns of a table.
+//! Assembles frequency responses from table columns.
 //!
 //! A response needs two columns: real and imaginary part, or magnitude and phase. Columns belong to
 //! the same response if their names give the same output and input; a column whose name gives none
-//! belongs to the response of the columns before it. A missing unit that the numbers do not reveal is
-//! not guessed: it is added to `unsaid`, and the user is asked.
+//! belongs with the columns before it. A missing unit that the numbers do not reveal is not
+//! guessed: it is added to `unsaid`, and the user is asked.
 //!
 //! `Recognition::frequency` is called before `Recognition::responses`, so that notes and missing
 //! units are listed with the frequency first; afterwards, the results are in the public fields.
@@ -22,8 +22,8 @@ use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
 use crate::variable_fault::found_content::ResponseLack;
 
-/// Maximum difference between the rectangular and the polar form of a response, relative to its
-/// magnitude; tables are printed with few digits.
+/// Maximum difference between a response's rectangular and polar forms, relative to its magnitude;
+/// tables are printed with few digits.
 const FORM_TOLERANCE: f64 = 0.01;
 /// Maximum coherence that counts as a fraction; larger values are in percent. Values slightly above
 /// 1 result from rounding and noise.
@@ -38,7 +38,7 @@ pub(super) struct FrequencyColumn {
     pub(super) factor: f64,
 }
 
-/// State of recognising the responses in a table.
+/// State while the responses in a table are recognised.
 pub(super) struct Recognition<'t> {
     table: &'t TextTable,
     meanings: Vec<ColumnMeaning>,
@@ -46,7 +46,7 @@ pub(super) struct Recognition<'t> {
     pub(super) notes: Vec<ReadingNote>,
     /// Columns with a missing unit that the user must state.
     pub(super) unsaid: Vec<UnsaidUnit>,
-    /// Names of unused columns.
+    /// Unused column names.
     pub(super) unused: Vec<String>,
 }
 
@@ -136,7 +136,7 @@ impl<'t> Recognition<'t> {
         responses
     }
 
-    /// Returns the columns that give the complex numbers of a group; real and imaginary parts are
+    /// Returns the columns that give a group's complex numbers; real and imaginary parts are
     /// preferred to magnitude and phase. Returns `None` if a part is missing.
     fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
         let polar = group.polar_columns();
@@ -148,7 +148,7 @@ impl<'t> Recognition<'t> {
             self.note(im, ColumnReading::Imaginary, UnitReason::NotNeeded);
             if let Some(columns) = polar {
                 let polar = self.read_polar(columns);
-                // Do not ask for missing units of the polar form, which serves only as a check.
+                // Do not ask for missing units in the polar form, which serves only as a check.
                 if polar.unsaid.is_empty() {
                     self.note_agreement(parts, polar.parts);
                 }
@@ -160,8 +160,7 @@ impl<'t> Recognition<'t> {
         Some(polar.parts)
     }
 
-    /// Notes that the columns of a group are not used because one part of the complex number is
-    /// missing.
+    /// Notes that a group's columns are not used because one part of the complex number is missing.
     fn note_incomplete(&mut self, group: &Group) {
         for known in &group.columns {
             if known.quantity == Quantity::Error {
@@ -301,8 +300,7 @@ impl<'t> Recognition<'t> {
                 .any(|&value| value < 0.0)
     }
 
-    /// Notes whether the rectangular and the polar form of a response agree within
-    /// `FORM_TOLERANCE`.
+    /// Notes whether a response's rectangular and polar forms agree within `FORM_TOLERANCE`.
     fn note_agreement(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differing = (0..table.lines.len()).find(|&row| {
@@ -332,29 +330,29 @@ struct Group {
     columns: Vec<GroupColumn>,
 }
 
-/// Column that holds a quantity of a response.
+/// Column that holds a response quantity.
 struct GroupColumn {
     quantity: Quantity,
     /// Column index, from 0.
     column: usize,
 }
 
-/// Indices of the columns with magnitude and phase.
+/// Indices of the magnitude and phase columns.
 #[derive(Clone, Copy)]
 struct PolarColumns {
     magnitude: usize,
     phase: usize,
 }
 
-/// Interpretation of a magnitude and a phase column.
+/// How a magnitude and a phase column were interpreted.
 struct PolarReading {
     parts: ResponseParts,
-    /// Those columns of the two whose missing unit the user must state.
+    /// Columns among these two with a missing unit that the user must state.
     unsaid: Vec<UnsaidUnit>,
 }
 
 impl Group {
-    /// Returns the index of the column with a quantity.
+    /// Returns the index of the column that holds a quantity.
     fn column(&self, quantity: Quantity) -> Option<usize> {
         let found = self.columns.iter().find(|known| known.quantity == quantity);
         found.map(|known| known.column)
@@ -373,8 +371,7 @@ impl Group {
 /// label, otherwise the last group with the same label. A group that already has the quantity is
 /// not eligible; `None` if no group is.
 fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
-    // The label of an error column names a quantity, not a channel, so the column joins the last
-    // group.
+    // An error column's label names a quantity, not a channel, so the column joins the last group.
     let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
     if joins_last
         && let Some(last) = groups.last()
@@ -387,7 +384,7 @@ fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Opt
         .rposition(|group| group.label == *label && group.column(quantity).is_none())
 }
 
-/// Returns the meaning of each column.
+/// Returns each column's meaning.
 fn column_meanings(table: &TextTable) -> Vec<ColumnMeaning> {
     let mut meanings = Vec::with_capacity(table.columns.len());
     for column in 0..table.columns.len() {

@@ -19,7 +19,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         }
         let is_heading = is_heading(line);
         if is_heading && has_rows {
-            // Offset of the line, which is a slice of the text.
+            // Line offset: the line is a slice of the text.
             let end = line.as_ptr() as usize - text.as_ptr() as usize;
             sections.extend(text.get(start..end).map(|part| (first_line, part)));
             first_line = number;

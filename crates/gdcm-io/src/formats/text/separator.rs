@@ -1,16 +1,16 @@
-//! Separators between the cells of a line.
+//! Separators between cells in a line.
 
 use std::borrow::Cow;
 
-/// Separator between the cells of a line.
+/// Separator between cells in a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     Tab,
     Semicolon,
-    /// A vertical bar; a bar at the beginning of a line is ignored.
+    /// A vertical bar; a bar that begins a line is ignored.
     Pipe,
     Comma,
-    /// Any sequence of blanks and tabs.
+    /// Any run of blanks and tabs.
     Blanks,
 }
 
@@ -24,7 +24,7 @@ impl Separator {
         Separator::Blanks,
     ];
 
-    /// Returns the name of the separator, for messages.
+    /// Returns the separator's name, for messages.
     pub fn words(self) -> &'static str {
         match self {
             Separator::Tab => "tabulators",
@@ -35,7 +35,7 @@ impl Separator {
         }
     }
 
-    /// Returns the cells of a line, without quotation marks around them.
+    /// Returns a line's cells, without quotation marks around them.
     pub(super) fn cells(self, line: &str) -> Cells<'_> {
         let line = match self {
             Separator::Pipe => line.trim_start().strip_prefix('|').unwrap_or(line),
@@ -88,7 +88,7 @@ impl Separator {
     }
 }
 
-/// Iterator over the cells of a line. No list is allocated, because a line may have millions of
+/// Iterates over a line's cells without allocating a list, because a line may have millions of
 /// cells.
 pub(super) struct Cells<'t> {
     rest: Option<&'t str>,
@@ -107,7 +107,7 @@ impl<'t> Iterator for Cells<'t> {
                 return None;
             }
         }
-        // `behind` is the text in which the end of the cell is sought: without the quotation.
+        // `behind` is the text searched for the end of the cell: without the quotation.
         let Quoted { cell, behind } = Quoted::parse(rest).unwrap_or(Quoted {
             cell: Cow::Borrowed(""),
             behind: rest,
@@ -124,7 +124,7 @@ impl<'t> Iterator for Cells<'t> {
     }
 }
 
-/// Removes the first character of a text, if there is one.
+/// Removes a text's first character, if there is one.
 fn without_first(text: &str) -> &str {
     let mut characters = text.chars();
     characters.next();
@@ -139,7 +139,7 @@ fn unquoted(cell: &str) -> &str {
 
 /// A cell in quotation marks at the beginning of a text.
 struct Quoted<'t> {
-    /// Content of the cell; each doubled quotation mark is replaced by a single one.
+    /// Cell content; each doubled quotation mark is replaced by a single one.
     cell: Cow<'t, str>,
     /// Text after the closing quotation mark.
     behind: &'t str,

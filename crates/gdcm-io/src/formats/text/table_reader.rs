@@ -1,6 +1,6 @@
-//! Reading of tables of numbers in columns, written by programs or by hand.
+//! Reads tables of numbers in columns, written by programs or by hand.
 //!
-//! 1. Recognise separator, decimal mark and number of columns (`layout.rs`).
+//! 1. Recognise separator, decimal mark and column count (`layout.rs`).
 //! 2. Take each line as a row, or keep it as skipped.
 //! 3. Find names and units in the lines above the first row (`heading.rs`).
 
@@ -17,7 +17,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::found_content::FoundContent;
 use crate::variable_fault::line_fault::LineFault;
 
-/// Name of the expected contents in error messages.
+/// Expected contents, as named in error messages.
 const EXPECTED: &str = "a table of numbers in columns";
 /// Number of lines before the first row among which a repeated heading is looked up.
 const COMPARED_HEADINGS: usize = 20;
@@ -36,7 +36,7 @@ pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, Varia
     reading.finish(text)
 }
 
-/// Returns the error for a text without a row of numbers.
+/// Returns the error for a text without any row of numbers.
 fn no_numbers(text: &str) -> VariableFault {
     let found = match excerpt(text).as_str() {
         "" => FoundContent::EmptyFile,
@@ -47,14 +47,14 @@ fn no_numbers(text: &str) -> VariableFault {
     VariableFault::format(EXPECTED, found)
 }
 
-/// State of reading a table. Each line is a row, or it is skipped: an empty line, a comment, a ruled
-/// line, and a line before the first row that may be a heading. Skipped lines other than empty lines
-/// are kept, because names and units are looked up in them at the end.
+/// State while a table is read. Each line is a row, or it is skipped: an empty line, a comment, a
+/// ruled line, and a line before the first row that may be a heading. Skipped lines other than
+/// empty lines are kept, because names and units are looked up in them at the end.
 struct Reading<'m> {
     layout: Layout,
     budget: &'m ReadingBudget<'m>,
     columns: Vec<Vec<f64>>,
-    /// Line number of each row.
+    /// Each row's line number.
     lines: Vec<usize>,
     skipped: Vec<NumberedLine>,
     notes: Vec<ReadingNote>,
@@ -62,7 +62,7 @@ struct Reading<'m> {
 
 impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
-        // Memory of an empty column, and later of its unit and name.
+        // Memory for an empty column, and later for its unit and name.
         budget.take(layout.columns as u64, 128, "")?;
         Ok(Self {
             layout,
@@ -135,8 +135,8 @@ impl<'m> Reading<'m> {
         &self.skipped[..count]
     }
 
-    /// Adds a line that is not a row of numbers as the first row if it is probably a row with errors,
-    /// which are then reported; otherwise skips it.
+    /// Adds a line that is not a row of numbers as the first row if it is probably a row with
+    /// errors, which are then reported; otherwise skips it.
     fn take_text_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let columns = self.layout.columns;
         let cells: Vec<_> = self
@@ -175,7 +175,7 @@ impl<'m> Reading<'m> {
             self.layout.trailing = false;
             self.columns.push(Vec::new());
         }
-        // Take twice the memory of a row: vectors grow by doubling.
+        // Take twice a row's memory: vectors grow by doubling.
         self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
         let mut cells = self.layout.cells(line);
         let mut ends_empty = false;
@@ -268,7 +268,7 @@ impl<'m> Reading<'m> {
     }
 
     /// Returns whether the table could instead be a single column with decimal commas: it has two
-    /// columns of integers, separated by commas.
+    /// integer columns, separated by commas.
     fn may_have_decimal_commas(&self) -> bool {
         self.layout.separator == Separator::Comma
             && self.layout.columns == 2

@@ -12,11 +12,11 @@ use crate::variable_fault::found_content::FoundContent;
 pub struct TextTable {
     /// Column names; `None` if the text has none.
     pub names: Option<Vec<String>>,
-    /// Unit of each column, where the text gives it.
+    /// Each column's unit, where the text gives it.
     pub units: Vec<Option<String>>,
     /// Numbers by column. A missing number is NaN; code that needs the number reports its position.
     pub columns: Vec<Vec<f64>>,
-    /// Line number of each row, counted from 1.
+    /// Each row's line number, counted from 1.
     pub lines: Vec<usize>,
     pub separator: Separator,
     pub decimal_comma: bool,
@@ -27,7 +27,7 @@ pub struct TextTable {
 }
 
 impl TextTable {
-    /// Returns the name of a column, if the text gives one.
+    /// Returns a column's name, if the text gives one.
     pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names.as_ref()?.get(column).map(String::as_str)
     }
@@ -48,7 +48,7 @@ impl TextTable {
         }
     }
 
-    /// Replaces the names and units of all columns by those in `headings`, in the notation of
+    /// Replaces all column names and units by those in `headings`, written as in
     /// [`TextTable::headings`].
     ///
     /// # Errors

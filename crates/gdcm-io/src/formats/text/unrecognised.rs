@@ -7,7 +7,7 @@ use crate::variable_fault::found_content::FoundContent;
 use crate::variable_fault::found_content::MissingUnit;
 use crate::variable_fault::found_content::ResponseLack;
 
-/// A column whose unit is not given and may be either of two.
+/// A column whose unit is not given, with the two units that it may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnsaidUnit {
     /// Column index, from 0.

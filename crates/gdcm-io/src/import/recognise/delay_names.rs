@@ -14,11 +14,11 @@ pub(super) enum Delayed {
     Responses,
     /// Internal delays, which MATLAB stores for feedback loops.
     Inside,
-    /// The name does not tell to which signals the delay applies.
+    /// The name leaves open to which signals the delay applies.
     Unclear,
 }
 
-/// Unit of a delay, according to its name.
+/// A delay's unit, according to its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DelayUnit {
     Seconds,
@@ -30,7 +30,7 @@ pub(super) enum DelayUnit {
     Unknown,
 }
 
-/// Signals and unit of a delay, according to the name of its field.
+/// A delay's signals and unit, according to its field name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DelayMeaning {
     pub(super) delayed: Delayed,
@@ -94,7 +94,7 @@ pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
     found
 }
 
-/// Returns the signals to which a field of the struct `Delay` in a MATLAB object applies.
+/// Returns the signals to which a field in a MATLAB object's struct `Delay` applies.
 fn delayed_in_matlab_object(part: &str) -> Delayed {
     match part {
         "Input" => Delayed::Inputs,
@@ -105,12 +105,12 @@ fn delayed_in_matlab_object(part: &str) -> Delayed {
     }
 }
 
-/// Returns whether a name is the name of a delay, or resembles one.
+/// Returns whether a name is a delay name, or resembles one.
 pub(super) fn is_delay(name: &str) -> bool {
     delay_meaning(name).is_some()
 }
 
-/// Returns the meaning of a field name; `None` if it does not resemble the name of a delay.
+/// Returns what a field name means; `None` if it does not resemble a delay name.
 fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     let (stem, unit) = split_unit(name);
     let folded = folded_name(stem);
@@ -163,8 +163,8 @@ fn is_mark(letter: char) -> bool {
     !letter.is_alphanumeric()
 }
 
-/// Returns whether a folded name resembles the name of a delay. Returns false for phase and group
-/// delays, which are curves over frequency.
+/// Returns whether a folded name resembles a delay name. Returns false for phase and group delays,
+/// which are curves over frequency.
 fn resembles_delay(folded: &str) -> bool {
     const NAMES: [&str; 14] = [
         "tau",

@@ -1,4 +1,4 @@
-//! Sample time and delays of a model, in seconds.
+//! A model's sample time and delays, in seconds.
 
 use nalgebra::DMatrix;
 
@@ -18,13 +18,13 @@ const LONGEST_PLAIN_S: f64 = 1.0;
 /// Maximum difference between delays that count as equal \[s\].
 const ROUNDING_S: f64 = 1e-9;
 
-/// Sample time and delays of a model, with notes on the conventions that were applied.
+/// A model's sample time and delays, with notes on the conventions that were applied.
 pub(super) struct NotedTiming {
     pub(super) timing: Timing,
     pub(super) notes: Vec<ReadingNote>,
 }
 
-/// Reads the sample time and the delays of a model with `outputs` outputs and `inputs` inputs.
+/// Reads sample time and delays for a model with `outputs` outputs and `inputs` inputs.
 ///
 /// # Errors
 /// The question to the user if a field may be a delay, but its signals or its unit are ambiguous:
@@ -75,10 +75,10 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), RecognitionFault>
     Ok(())
 }
 
-/// State of reading the delay fields of a model.
+/// State while a model's delay fields are read.
 struct DelayReading {
     sample_time_s: Option<f64>,
-    /// Whether the model is a MATLAB or GNU Octave object, for which the unit of delays is defined.
+    /// Whether the model is a MATLAB or GNU Octave object, for which the delay unit is defined.
     is_object: bool,
     outputs: usize,
     inputs: usize,
@@ -88,8 +88,7 @@ struct DelayReading {
     notes: Vec<ReadingNote>,
 }
 
-/// Delays of single responses, split into delays of inputs and of outputs: `tau_oi = tau_o + tau_i`
-/// \[s\].
+/// Delays of single responses, split into input and output delays: `tau_oi = tau_o + tau_i` \[s\].
 struct SplitDelays {
     inputs: Vec<f64>,
     outputs: Vec<f64>,
@@ -125,7 +124,7 @@ impl DelayReading {
         }
     }
 
-    /// Returns the delays \[s\] of `count` inputs or outputs; a single number applies to all.
+    /// Returns the delays \[s\] for `count` inputs or outputs; a single number applies to all.
     fn channel_delays(
         &mut self,
         field: &DelayField<'_>,
@@ -148,9 +147,9 @@ impl DelayReading {
         self.in_seconds(field, &delays)
     }
 
-    /// Splits the delays of single responses (a matrix, outputs x inputs) into delays of inputs and
-    /// of outputs, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay to input
-    /// 0, `tau_f = 0`, hence `tau_i = tau_fi` and `tau_o = tau_o0 - tau_f0`.
+    /// Splits the delays of single responses (a matrix, outputs x inputs) into input and output
+    /// delays, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay to input 0,
+    /// `tau_f = 0`, hence `tau_i = tau_fi` and `tau_o = tau_o0 - tau_f0`.
     ///
     /// # Errors
     /// The reason if the delays cannot be split within `ROUNDING_S`.
@@ -193,7 +192,7 @@ impl DelayReading {
         Ok(SplitDelays { inputs, outputs })
     }
 
-    /// Returns the delays of all responses in the unit of the file, output index fastest; a single
+    /// Returns the delays of all responses in the file's unit, output index fastest; a single
     /// number applies to all responses.
     fn response_delay_values(&self, field: &DelayField<'_>) -> Result<Vec<f64>, RecognitionFault> {
         let [outputs, inputs] = [self.outputs, self.inputs];
@@ -237,8 +236,8 @@ impl DelayReading {
         Ok(delays)
     }
 
-    /// Returns the factor that converts the delays of a field to seconds. Notes the convention if
-    /// the name contains no unit.
+    /// Returns the factor that converts a field's delays to seconds. Notes the convention if the
+    /// name contains no unit.
     fn seconds_per_unit(
         &mut self,
         field: &DelayField<'_>,
@@ -314,7 +313,7 @@ fn question(name: &str, unit: UnclearDelayUnit) -> RecognitionFault {
     }
 }
 
-/// Stores the delays of the inputs or outputs; rejects a second list with different delays.
+/// Stores the input or output delays; rejects a second list with different delays.
 fn store(
     stored: &mut Option<Vec<f64>>,
     delays: Vec<f64>,

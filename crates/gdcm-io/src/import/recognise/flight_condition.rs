@@ -1,4 +1,4 @@
-//! Flight condition and origin of a model, from the fields beside it and in the enclosing records.
+//! A model's flight condition and origin, from the fields beside it and in the enclosing records.
 //!
 //! A quantity may be given as a field (`airspeed_kt`) or in a struct (`trim.airspeed_kt`), beside the
 //! model or in a record that encloses it. A list beside an array of models has an entry for each.
@@ -18,21 +18,21 @@ const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
 const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
 const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
 const MASSES: &[&str] = &["mass_kg", "m_kg"];
-/// Paths of the structs that may hold a flight condition.
+/// Paths to the structs that may hold a flight condition.
 const CONDITION_STRUCTS: [&[&str]; 4] = [
     &["trim"],
     &["flight_condition"],
     &["flight_state"],
     &["condition"],
 ];
-/// Names of the struct that holds trim offsets by coordinate.
+/// Struct names for trim offsets by coordinate.
 const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
-/// Prefix of a field with a single trim offset, such as `by_roll_deg`.
+/// Prefix for a field with a single trim offset, such as `by_roll_deg`.
 const OFFSET_PREFIX: &str = "by_";
-/// Limit of the absolute value of a condition's number.
+/// Limit on the absolute value of a condition id.
 const GREATEST_CONDITION: f64 = 1e9;
 
-/// Position of a model in an array of models.
+/// A model's position in an array of models.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Page {
     /// Index, counted from 0.
@@ -41,14 +41,14 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Index of a single model.
+    /// Position of a model outside any array.
     pub(super) const ONLY: Self = Self { index: 0, count: 1 };
 }
 
 /// Returns the flight condition that is given beside a model and in enclosing records.
 ///
 /// # Errors
-/// The reason if the length of a list differs from the number of models, or a value contradicts an
+/// The reason if a list's length differs from the number of models, or a value contradicts an
 /// enclosing record.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, RecognitionFault> {
     let condition = match quantity(record, CONDITIONS, page)? {
@@ -166,7 +166,7 @@ fn is_fact_name(name: &str) -> bool {
             .any(|names| names.contains(&name))
 }
 
-/// Returns the name given beside a model, or the entry of a list of names. A single name beside
+/// Returns the name given beside a model, or its entry in a list of names. A single name beside
 /// several models is ignored.
 fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     if record.is_shared {

@@ -1,4 +1,4 @@
-//! Recognition of models given by measured frequency responses.
+//! Recognises models given by measured frequency responses.
 
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
@@ -17,7 +17,7 @@ use crate::files::model_collection::bare_draft;
 use crate::formats::reading_note::ReadingNote;
 use crate::formats::variables::Array;
 
-/// Names of complex responses. python-control uses `frdata` and, in earlier versions, `fresp`.
+/// Names for complex responses. python-control uses `frdata` and, in older versions, `fresp`.
 const RESPONSES: &[&str] = &[
     "ResponseData",
     "Response",
@@ -38,11 +38,11 @@ const COHERENCES: &[&str] = &[
     "gamma_squared",
     "Cxy",
 ];
-/// Names that are used for both γ and γ².
+/// Names used for both γ and γ².
 const GAMMAS: &[&str] = &["gamma", "γ"];
 
 /// Returns whether fields form a frequency response: more than one frequency, and either complex
-/// values or real and imaginary parts. Marks the fields of these values as used.
+/// values or real and imaginary parts. Marks the fields with these values as used.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
     has_several_frequencies(record)
         && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
@@ -90,7 +90,7 @@ pub(super) fn response(
     })
 }
 
-/// Returns the array of complex values and marks its field as used; `None` if there is none.
+/// Returns the complex array and marks its field as used; `None` if there is none.
 fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
     let field = record.find(RESPONSES)?;
     let array = array_of(field.value)?;
@@ -110,7 +110,7 @@ fn real_and_imaginary<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)>
     Some(parts)
 }
 
-/// Values of a response, in the order of the file.
+/// A response's values, in file order.
 struct StoredResponse<'v> {
     re: &'v [f64],
     im: &'v [f64],
@@ -142,8 +142,8 @@ impl<'v> StoredResponse<'v> {
 /// Returns the coherence γ²; `None` if the record has none.
 ///
 /// # Errors
-/// The reason if the number of values differs from that of the response, or a field may hold γ or
-/// γ².
+/// The reason if the coherence and the response have different value counts, or a field may hold γ
+/// or γ².
 fn coherence_of(
     record: &Record<'_>,
     stored: &StoredResponse<'_>,
@@ -168,11 +168,11 @@ fn coherence_of(
     }
 }
 
-/// Dimensions and index order of a stored response.
+/// A stored response's dimensions and index order.
 struct ResponseLayout {
     outputs: usize,
     inputs: usize,
-    /// Number of frequencies.
+    /// Frequency count.
     count: usize,
     // Distances in the file between values whose output, input or frequency index differs by 1. In
     // a file, the first index runs fastest.
@@ -182,7 +182,7 @@ struct ResponseLayout {
 }
 
 impl ResponseLayout {
-    /// Determines the layout of a response with `count` frequencies: the frequency is the last
+    /// Determines the layout for a response with `count` frequencies: the frequency is the last
     /// index, as in MATLAB, or the first, as in NumPy. A single response may be a row or a column.
     fn new(shape: &[usize], count: usize) -> Result<Self, RecognitionFault> {
         match *shape {

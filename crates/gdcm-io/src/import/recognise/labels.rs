@@ -1,4 +1,4 @@
-//! Names of channels and states, and units of channels, given beside a model.
+//! Channel and state names, and channel units, given beside a model.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::channel::ChannelSide;
@@ -42,11 +42,11 @@ const STATE_NAMES: &[&str] = &[
     "x_names",
     "xnames",
 ];
-/// Fields of a channel object that may hold its name.
+/// Fields in a channel object that may hold its name.
 const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
-/// Returns the labels of `count` inputs.
+/// Returns the labels for `count` inputs.
 pub(super) fn inputs_of(
     record: &Record<'_>,
     count: usize,
@@ -54,7 +54,7 @@ pub(super) fn inputs_of(
     labels(record, ChannelSide::Input, count)
 }
 
-/// Returns the labels of `count` outputs.
+/// Returns the labels for `count` outputs.
 pub(super) fn outputs_of(
     record: &Record<'_>,
     count: usize,
@@ -62,7 +62,7 @@ pub(super) fn outputs_of(
     labels(record, ChannelSide::Output, count)
 }
 
-/// Returns the state names; empty unless each of the `order` states has a name.
+/// Returns the state names; empty unless all `order` states have names.
 pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     let names = record
         .get(STATE_NAMES)
@@ -75,7 +75,7 @@ pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     }
 }
 
-/// Returns the labels of `count` inputs or outputs, from lists beside the model or, if they have
+/// Returns the labels for `count` inputs or outputs, from lists beside the model or, if they have
 /// `count` entries, in an enclosing record.
 ///
 /// # Errors
@@ -188,7 +188,7 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, Recogn
     }
 }
 
-/// Returns the label of a channel object as a string, with its unit in brackets: "P [deg/s]".
+/// Returns a channel object's label as a string, with its unit in brackets: "P [deg/s]".
 fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
     let record = Record::from_struct(records, index);
     let name = record.get(LABEL_NAMES).and_then(first_text_of)?;

@@ -1,9 +1,9 @@
-//! Recognition of models among the variables of a file of any format.
+//! Recognises models among a file's variables, whatever the format.
 //!
 //! A group of fields is a model if the fields have the customary names: `A`, `B`, `C`, `D`; a
 //! response over frequencies; numerators and denominators; zeros, poles and gains. The group is a
-//! struct, a MATLAB object, or the variables of a file. Structs and objects may be inside structs,
-//! cells and arrays.
+//! struct, a MATLAB object, or a file's variables. Structs and objects may be inside structs, cells
+//! and arrays.
 
 mod delay_names;
 mod delays;

@@ -13,18 +13,18 @@ use crate::variable_fault::unread::Unread;
 /// Remedy in questions about delays.
 const CHANNEL_DELAYS: &str = "call it input_delays_s or output_delays_s (a number for each \
     channel, in s), or rename it if it is not a delay";
-/// Remedy for delays that are not the sum of a delay of the input and a delay of the output.
+/// Remedy for delays that are not the sum of an input delay and an output delay.
 const APPROXIMATE: &str =
     "approximate them first: sys = pade(sys, 3); in discrete time: sys = absorbDelay(sys)";
 
 /// Reason why a model or a record cannot be read, with the place among the variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FoundFault {
-    /// Files with the matrices of the model; empty if the model is in a single file.
+    /// Files with the model's matrices; empty if the model is in a single file.
     pub(crate) files: String,
-    /// Path of the variable; empty if the variables of a file together form the model.
+    /// Path to the variable; empty if a file's variables together form the model.
     pub(crate) variable: String,
-    /// Class of an object that could not be read.
+    /// Class name if the value is an object that could not be read.
     pub(crate) class: Option<String>,
     pub(crate) fault: RecognitionFault,
 }
@@ -40,7 +40,7 @@ impl FoundFault {
     }
 }
 
-/// Returns the messages of faults, for the user.
+/// Returns the messages of the faults, for the user.
 pub(crate) fn fault_messages(faults: Vec<FoundFault>) -> Vec<String> {
     faults.iter().map(ToString::to_string).collect()
 }
@@ -59,8 +59,8 @@ impl Display for FoundFault {
     }
 }
 
-/// Reason why a model or a record cannot be read; the message contains its remedy. Field `name` is
-/// the name of the affected field of the model, such as "B".
+/// Reason why a model or a record cannot be read; the message contains its remedy. Field `name`
+/// names the affected model field, such as "B".
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum RecognitionFault {
     #[error("matrix {name} is missing")]
@@ -73,7 +73,7 @@ pub(crate) enum RecognitionFault {
         name: String,
         /// Expected kind of value.
         expected: &'static str,
-        /// Description of the value.
+        /// Description of the found value.
         found: String,
     },
     #[error("{name}, row {row}, column {column}: expected a finite number, found {value}")]
@@ -97,14 +97,14 @@ pub(crate) enum RecognitionFault {
     #[error("{name}, frequency {frequency}: expected a finite number")]
     ResponseNotFinite {
         name: &'static str,
-        /// Index of the frequency, from 1.
+        /// Frequency index, from 1.
         frequency: usize,
     },
     #[error("{name}: expected {expected} matrices as in A, found {found}")]
     PageCount {
         name: String,
         expected: usize,
-        /// Description of the value.
+        /// Description of the found value.
         found: String,
     },
     #[error("{place}: {count} {counted}; at most {MOST_STATES} are read")]
@@ -145,7 +145,7 @@ pub(crate) enum RecognitionFault {
     NoTransferFunction,
     #[error("response {response}: no {part}")]
     ResponseWithout {
-        /// Number of the response, from 1.
+        /// Response number, from 1.
         response: usize,
         /// "denominator", "poles" or "gain".
         part: &'static str,
@@ -172,7 +172,7 @@ pub(crate) enum RecognitionFault {
     )]
     ResponseShape {
         frequencies: usize,
-        /// Length of each dimension.
+        /// Length along each dimension.
         found: Vec<usize>,
     },
     #[error("frequencies are missing")]
@@ -218,9 +218,9 @@ pub(crate) enum RecognitionFault {
     )]
     NotASumOfDelays {
         name: String,
-        /// Number of the output, from 1.
+        /// Output number, from 1.
         output: usize,
-        /// Number of the input, from 1.
+        /// Input number, from 1.
         input: usize,
     },
     #[error(
@@ -231,7 +231,7 @@ pub(crate) enum RecognitionFault {
         name: String,
         outputs: usize,
         inputs: usize,
-        /// Description of the value.
+        /// Description of the found value.
         found: String,
     },
     #[error(
@@ -252,7 +252,7 @@ pub(crate) enum RecognitionFault {
     SampleTime { value: f64 },
     #[error("the sample time: expected a number, found {found}")]
     SampleTimeKind {
-        /// Description of the value.
+        /// Description of the found value.
         found: String,
     },
     #[error("its time unit is {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')")]
@@ -285,7 +285,7 @@ pub(crate) enum RecognitionFault {
     #[error("{name}: expected the names of channels, found {found}")]
     Labels {
         name: String,
-        /// Description of the value.
+        /// Description of the found value.
         found: String,
     },
     #[error(
@@ -306,12 +306,12 @@ pub(crate) enum RecognitionFault {
     /// A value that its format reader could not read.
     #[error("{0}")]
     Unread(Box<Unread>),
-    /// The memory or the steps of work are exhausted.
+    /// The memory or the work limit is exhausted.
     #[error("{0}")]
     Variables(VariableFault),
 }
 
-/// Reason why the unit of a delay is unclear.
+/// Why a delay unit is unclear.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum UnclearDelayUnit {
     #[error("in samples, but the model has no sample time")]

@@ -1,4 +1,4 @@
-//! Named fields that belong together: a struct, an object, or the variables of a file.
+//! Named fields that belong together: a struct, an object, or a file's variables.
 //!
 //! A record knows the record that encloses it, whose labels and flight condition apply to its models,
 //! and remembers which of its fields were used, so that the others can be reported. MATLAB objects
@@ -15,15 +15,15 @@ use super::delay_names::{DelayField, delay_fields};
 use super::values::Field;
 use crate::formats::variables::{StructArray, Value, Variable};
 
-/// Parts of MATLAB and GNU Octave objects that hold the fields which other files store directly.
+/// Parts in MATLAB and GNU Octave objects with the fields that other files store directly.
 const INNER_PARTS: [&str; 4] = ["data", "structure", "lti", RESPONSE_PART];
-/// Field of this program's models that holds the measured response.
+/// Field in this program's models that holds the measured response.
 const RESPONSE_PART: &str = "frequencyresponse";
 /// Maximum nesting depth of parts.
 const DEEPEST_PART: usize = 3;
 
-/// First field with each name. The index is built at the first query, because a file of n bytes may
-/// create a record with nearly n fields.
+/// First field with each name. The index is built at the first query, because a file with n bytes
+/// may create a record with nearly n fields.
 #[derive(Clone, Debug, Default)]
 struct FieldIndex<'v> {
     exact: HashMap<&'v str, Field<'v>>,
@@ -48,21 +48,21 @@ pub(crate) struct Record<'v> {
     fields: Vec<Field<'v>>,
     index: OnceCell<FieldIndex<'v>>,
     used: RefCell<BTreeSet<&'v str>>,
-    /// Paths of unused fields inside structs that were used.
+    /// Paths to unused fields inside structs that were used.
     unused_inside: RefCell<Vec<String>>,
     delays: OnceCell<Vec<DelayField<'v>>>,
     /// The enclosing record, whose labels and flight condition apply to all models inside.
     outer: Option<Rc<Record<'v>>>,
     /// Whether the fields apply to several models at once.
     pub(super) is_shared: bool,
-    /// Class, if the record is an object of MATLAB or Octave.
+    /// Class, if the record is a MATLAB or Octave object.
     pub(crate) class: Option<&'v str>,
     /// Whether the record is a struct or an object; false for the variables in a file.
     pub(crate) stands_alone: bool,
 }
 
 impl<'v> Record<'v> {
-    /// Creates a record from the variables of a file.
+    /// Creates a record from a file's variables.
     pub(crate) fn from_variables(variables: &'v [Variable]) -> Self {
         Self::from_fields(variables.iter().map(|variable| Field {
             name: &variable.name,
@@ -83,9 +83,9 @@ impl<'v> Record<'v> {
         Self::from_object(records, index, None, 0)
     }
 
-    /// Creates a record from element `index` of a struct array or, if `class` is given, of an object
-    /// array. The fields in the parts of an object are added to its own; of a part that is an array,
-    /// those of the element `page`.
+    /// Creates a record from element `index` of a struct array or, if `class` is given, of an
+    /// object array. The fields in an object's parts are added to its own; from a part that is an
+    /// array, those in the element `page`.
     pub(super) fn from_object(
         records: &'v StructArray,
         index: usize,
@@ -135,7 +135,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the value of the first field found under these names and marks it as used. Exact
+    /// Returns the value in the first field found under these names and marks it as used. Exact
     /// names are tried before names without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         Some(self.take(self.find(names)?))
@@ -156,18 +156,18 @@ impl<'v> Record<'v> {
         None
     }
 
-    /// Returns the value of the field with exactly this name and marks it as used.
+    /// Returns the value in the field with exactly this name and marks it as used.
     pub(crate) fn exact(&self, name: &str) -> Option<&'v Value> {
         Some(self.take(*self.index().exact.get(name)?))
     }
 
-    /// Returns the value of the field with exactly this name, without marking it as used.
+    /// Returns the value in the field with exactly this name, without marking it as used.
     pub(super) fn peek(&self, name: &str) -> Option<&'v Value> {
         let field = self.index().exact.get(name)?;
         Some(field.value)
     }
 
-    /// Returns the value of a field and marks it as used.
+    /// Returns a field's value and marks it as used.
     pub(super) fn take(&self, field: Field<'v>) -> &'v Value {
         self.mark_used(field.name);
         field.value
@@ -181,7 +181,7 @@ impl<'v> Record<'v> {
         self.used.borrow().contains(name)
     }
 
-    /// Adds the path of an unused field inside a struct of this record, such as "trim.theta_deg".
+    /// Adds the path to an unused field inside a struct in this record, such as "trim.theta_deg".
     pub(super) fn note_unused_inside(&self, path: String) {
         let mut unused = self.unused_inside.borrow_mut();
         if !unused.contains(&path) {
@@ -189,7 +189,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the names of unused fields; empty for objects, which hold much internal data.
+    /// Returns the unused field names; empty for objects, which hold much internal data.
     pub(super) fn unused(&self) -> Vec<String> {
         if self.class.is_some() {
             return Vec::new();
@@ -224,7 +224,7 @@ impl<'v> Record<'v> {
     }
 }
 
-/// Returns the fields of element `index` of a struct array.
+/// Returns the fields in element `index` of a struct array.
 fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     let mut fields = Vec::with_capacity(records.fields.len());
     for (name, values) in &records.fields {
@@ -235,7 +235,7 @@ fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     fields
 }
 
-/// Appends the fields in the parts of an object, down to `levels` levels, after its other fields.
+/// Appends the fields in an object's parts, down to `levels` levels, after its other fields.
 fn add_inner(fields: &mut Vec<Field<'_>>, page: usize, levels: usize) {
     if levels == 0 {
         return;

@@ -1,4 +1,4 @@
-//! Frequencies of a measured response: their field and their unit.
+//! A measured response's frequencies: their field and their unit.
 
 use std::f64::consts::TAU;
 
@@ -8,13 +8,13 @@ use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::values::{Field, array_of, first_text_of, list_of};
 
-/// Names of frequencies in rad/s.
+/// Names for frequencies in rad/s.
 const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
-/// Names of frequencies in an unspecified unit.
+/// Names for frequencies in an unspecified unit.
 const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
-/// Names of frequencies in Hz.
+/// Names for frequencies in Hz.
 const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
-/// Names of the field with the unit of the frequencies.
+/// Field names for the frequency unit.
 const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
 
 /// Returns whether a record has a field with more than one frequency.
@@ -29,11 +29,11 @@ pub(super) fn has_several_frequencies(record: &Record<'_>) -> bool {
     array_of(frequencies.value).is_some_and(|array| array.len() > 1)
 }
 
-/// Frequencies of a response.
+/// A response's frequencies.
 pub(super) struct Frequencies {
     /// Angular frequencies \[rad/s\].
     pub(super) omega: Vec<f64>,
-    /// Whether the file gives the frequencies in Hz or in a multiple of Hz.
+    /// Whether the file gives the frequencies in Hz or a multiple, such as kHz.
     pub(super) is_hertz: bool,
 }
 
@@ -54,14 +54,14 @@ impl Frequencies {
     }
 }
 
-/// Field with the frequencies of a response.
+/// Field with a response's frequencies.
 struct GivenFrequencies<'v> {
     field: Field<'v>,
     is_hertz: bool,
 }
 
 impl<'v> GivenFrequencies<'v> {
-    /// Finds the field; its name decides about the unit, unless a unit is given.
+    /// Finds the field; its name decides the unit, unless a unit is given.
     ///
     /// # Errors
     /// The reason if there are no frequencies, or neither their name nor a unit tells whether they
@@ -95,7 +95,7 @@ impl<'v> GivenFrequencies<'v> {
 
 /// Unit that is given beside the frequencies.
 struct FrequencyUnit {
-    /// Name of the unit; empty if none is given.
+    /// Unit name; empty if none is given.
     text: String,
     /// The unit, if it is Hz, kHz, ...
     multiple_of_hertz: Option<PhysicalUnit>,

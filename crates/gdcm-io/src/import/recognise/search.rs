@@ -1,4 +1,4 @@
-//! Search for models or flight records through structs, objects, cells and arrays.
+//! Searches for models or flight records through structs, objects, cells and arrays.
 //!
 //! ```text
 //! 1  recognise the variables of the file together               (try_record)
@@ -10,8 +10,8 @@
 //! 3  list the unused fields beside what was found; without any result, list all variables
 //! ```
 //!
-//! The functions that search return whether they found anything, so that a field that holds a model is
-//! not listed as unused.
+//! The functions that search return whether they found anything, so that a field that holds a model
+//! is not listed as unused.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -26,7 +26,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Maximum number of variables listed as not recognised.
 const MOST_LISTED: usize = 20;
-/// Memory of a complex number \[bytes\].
+/// Memory for a complex number \[bytes\].
 const COMPLEX_BYTES: u64 = 16;
 /// Memory charged for a listed path and for a fault, beside their characters \[bytes\].
 const PATH_BYTES: u64 = 64;
@@ -57,7 +57,7 @@ impl<T> Default for Found<T> {
 }
 
 impl<T> Found<T> {
-    /// Adds the results of reading a variable; `variable` is empty for the whole file.
+    /// Adds what was read from a variable; `variable` is empty for the whole file.
     pub(super) fn add(&mut self, variable: &str, items: Vec<Result<T, RecognitionFault>>) {
         for item in items {
             match item {
@@ -72,8 +72,8 @@ impl<T> Found<T> {
     }
 }
 
-/// Function that reads the models (or the flight records) that the fields of a record form, given
-/// the variable name; `None` if they form none.
+/// Function that reads the models (or the flight records) that a record's fields form, given the
+/// variable name; `None` if they form none.
 pub(super) type Recognise<'r, T> =
     &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, RecognitionFault>>>;
 
@@ -116,8 +116,8 @@ pub(crate) fn search<T>(
     Ok(found)
 }
 
-/// Returns the unused fields of a record. A field in which something was found is not unused;
-/// `empty` lists the fields in which nothing was found. Paths into structs are always kept.
+/// Returns a record's unused fields. A field in which something was found is not unused; `empty`
+/// lists the fields in which nothing was found. Paths into structs are always kept.
 fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
     let mut unused = record.unused();
     unused.retain(|name| empty.contains(name.as_str()) || name.contains('.'));
@@ -131,15 +131,15 @@ struct Search<'r, T> {
 }
 
 impl<T> Search<'_, T> {
-    /// Adds the models or flight records formed by the fields of a record; returns whether there
-    /// are any.
+    /// Adds the models or flight records formed by a record's fields; returns whether there are
+    /// any.
     fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
         let Some(items) = (self.recognise)(record, variable) else {
             return Ok(false);
         };
-        // Take the memory of all fields, because the results contain copies of their values.
+        // Take the memory for all fields, because the results contain copies of their values.
         for field in record.fields() {
             if let Value::Array(array) = field.value {
                 self.budget
@@ -257,7 +257,7 @@ impl<T> Search<'_, T> {
         Ok(is_any_known)
     }
 
-    /// Adds the paths of unused fields of a variable.
+    /// Adds the paths to a variable's unused fields.
     fn note_unused(&mut self, variable: &str, names: &[String]) -> Result<(), VariableFault> {
         for name in names {
             let path = if variable.is_empty() {

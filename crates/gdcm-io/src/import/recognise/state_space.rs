@@ -1,5 +1,5 @@
-//! Recognition of models given by matrices: `x' = A x + B u`, `y = C x + D u`, or with `E x'` on
-//! the left.
+//! Recognises models given by matrices: `x' = A x + B u`, `y = C x + D u`, or with `E x'` on the
+//! left.
 
 use nalgebra::DMatrix;
 
@@ -19,7 +19,7 @@ use crate::files::model_collection::bare_draft;
 use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::variables::{Array, Value};
 
-/// Name of a matrix: a capital letter; in structs and objects, a small letter is accepted too.
+/// Matrix name: a capital letter; in structs and objects, a small letter is accepted too.
 #[derive(Clone, Copy)]
 struct MatrixName {
     large: &'static str,
@@ -37,7 +37,7 @@ impl MatrixName {
         Self { large, small }
     }
 
-    /// Returns the value of the matrix in a record and marks it as used; `None` if there is none.
+    /// Returns the matrix value in a record and marks it as used; `None` if there is none.
     fn value<'v>(self, record: &Record<'v>) -> Option<&'v Value> {
         record
             .exact(self.large)
@@ -58,7 +58,7 @@ pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     MatrixName::A.is_in(record) && MatrixName::B.is_in(record) && MatrixName::C.is_in(record)
 }
 
-/// Reads the model that the matrices in `record` form, or each model of an array: `A(:,:,k)` in
+/// Reads the model that the matrices in `record` form, or each model in an array: `A(:,:,k)` in
 /// MATLAB, `A[k,:,:]` in NumPy. If the shapes are ambiguous, `pages_first` decides whether the
 /// first or the last index selects the model.
 pub(super) fn state_spaces(
@@ -96,7 +96,7 @@ pub(super) fn state_spaces(
     models
 }
 
-/// Returns whether A, B and C have consistent dimensions and numbers of models if the first index
+/// Returns whether A, B and C have consistent dimensions and model counts if the first index
 /// (`pages_first`) or the last index selects the model.
 fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     let a = PagedShape::new(a, pages_first);
@@ -108,7 +108,7 @@ fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     a.rows == a.columns && b.rows == a.rows && c.columns == a.rows && counts_fit
 }
 
-/// Returns the matrix of a model from an array; a single matrix applies to all models.
+/// Returns a model's matrix from an array; a single matrix applies to all models.
 fn matrix_in_page(
     name: &str,
     value: &Value,
@@ -279,7 +279,7 @@ fn check_shape(
 /// Maximum condition number of E; beyond it, solving with E loses most digits.
 const WORST_CONDITION: f64 = 1e12;
 
-/// Computes `E^-1 A` and `E^-1 B` of the descriptor model `E x' = A x + B u` (M2a).
+/// Computes `E^-1 A` and `E^-1 B` for the descriptor model `E x' = A x + B u` (M2a).
 fn solve_descriptor(
     e: DMatrix<f64>,
     a: DMatrix<f64>,

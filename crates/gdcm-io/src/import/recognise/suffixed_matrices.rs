@@ -26,7 +26,7 @@ pub(super) struct SuffixedModels {
 }
 
 /// Finds the models whose matrices have a common suffix. Other variables, such as labels, apply to
-/// all models; delays may have the suffix of a model.
+/// all models; delays may have a model's suffix.
 pub(super) fn suffixed_models(
     variables: &[Variable],
     read: Recognise<'_, FoundModel>,
@@ -68,7 +68,7 @@ pub(super) fn suffixed_models(
     Ok(models)
 }
 
-/// Returns the values by name; the first of several with the same name.
+/// Returns the values by name; the first if several have the same name.
 fn values_by_name(variables: &[Variable]) -> HashMap<&str, &Value> {
     let mut by_name = HashMap::with_capacity(variables.len());
     for variable in variables {
@@ -93,9 +93,9 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
 }
 
 /// Returns the fields that apply to the model with this suffix, other than its matrices: all
-/// variables but matrices without a suffix and delays with the suffix of another model. The suffix
-/// is removed from its own delays. Matrices of other models remain: their names, with a suffix,
-/// mean nothing in the record.
+/// variables but matrices without a suffix and delays with another model's suffix. The suffix is
+/// removed from its own delays. Other models' matrices remain: their suffixed names mean nothing in
+/// the record.
 fn fields_beside<'v>(
     variables: &'v [Variable],
     suffix: &str,
@@ -133,7 +133,7 @@ fn delays_with_suffix<'v>(
         .collect()
 }
 
-/// Returns whether a name consists of the name of a delay and one of the suffixes.
+/// Returns whether a name is a delay name followed by one of the suffixes.
 fn has_delay_stem(name: &str, suffixes: &BTreeSet<&str>) -> bool {
     name.char_indices().any(|(at, _)| {
         let (stem, end) = name.split_at(at);

@@ -1,5 +1,5 @@
-//! Recognition of models given by transfer functions: numerators and denominators, or zeros, poles
-//! and gains.
+//! Recognises models given by transfer functions: numerators and denominators, or zeros, poles and
+//! gains.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -44,9 +44,9 @@ pub(super) fn transfer_function(
     let mut b = DMatrix::zeros(order, inputs);
     let mut c = DMatrix::zeros(outputs, order);
     let mut d = DMatrix::zeros(outputs, inputs);
-    // Index of the first state of the current response, from 0.
+    // Index of the current response's first state, from 0.
     let mut start = 0;
-    // The index of a response counts the outputs first, then the inputs.
+    // A response's index counts the outputs first, then the inputs.
     for (index, fraction) in fractions.iter().enumerate() {
         let output = index % outputs;
         let input = index / outputs;
@@ -193,8 +193,8 @@ impl Fraction {
     /// Creates a transfer function; removes leading zeros and makes the denominator monic.
     ///
     /// # Errors
-    /// The reason if the denominator is zero, the degree of the numerator exceeds that of the
-    /// denominator, or there are too many poles.
+    /// The reason if the denominator is zero, the numerator's degree exceeds the denominator's, or
+    /// there are too many poles.
     fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, RecognitionFault> {
         at_most(denominator.len().saturating_sub(1), "states", place)?;
         let numerator = without_leading_zeros(numerator);

@@ -1,11 +1,11 @@
-//! Conversion of values in files to numbers, matrices and strings.
+//! Converts values in files to numbers, matrices and strings.
 
 use nalgebra::{Complex, DMatrix};
 
 use super::recognition_fault::RecognitionFault;
 use crate::formats::variables::{Array, Value};
 
-/// A named value: a variable of a file, or a field of a struct.
+/// A named value: a variable in a file, or a field in a struct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field<'v> {
     pub(crate) name: &'v str,
@@ -49,7 +49,7 @@ fn kind_fault(name: &str, expected: &'static str, found: String) -> RecognitionF
     }
 }
 
-/// Value of `pages_first` for an array whose last index selects the page, as in MATLAB.
+/// `pages_first` for an array whose last index selects the page, as in MATLAB.
 pub(super) const PAGES_LAST: bool = false;
 
 /// Shape of an array that holds several matrices with equal dimensions, called pages.
@@ -58,15 +58,15 @@ pub(super) struct PagedShape {
     pub(super) pages: usize,
     pub(super) rows: usize,
     pub(super) columns: usize,
-    /// Distance between the first numbers of successive pages.
+    /// Distance between the first numbers in successive pages.
     page_step: usize,
-    /// Distance between successive numbers of a page, which are in column order.
+    /// Distance between successive numbers in a page, which are in column order.
     number_step: usize,
 }
 
 impl PagedShape {
-    /// Determines the shape of an array. In an array with three dimensions, the first index selects
-    /// the matrix if `pages_first`; otherwise all indices after the second do.
+    /// Determines an array's shape. In an array with three dimensions, the first index selects the
+    /// matrix if `pages_first`; otherwise all indices after the second do.
     pub(super) fn new(array: &Array, pages_first: bool) -> Self {
         let shape = &array.shape;
         if shape.len() == 3 && pages_first {
@@ -74,7 +74,7 @@ impl PagedShape {
                 pages: shape[0],
                 rows: shape[1],
                 columns: shape[2],
-                // The first index runs fastest: the numbers of the pages alternate.
+                // The first index runs fastest: numbers from different pages alternate.
                 page_step: 1,
                 number_step: shape[0].max(1),
             };
@@ -135,7 +135,7 @@ pub(super) fn page_of(
     Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
 
-/// Returns whether any number of an array has a nonzero imaginary part.
+/// Returns whether any number in an array has a nonzero imaginary part.
 pub(in crate::import) fn has_imaginary_part(array: &Array) -> bool {
     match &array.im {
         Some(im) => im.iter().any(|part| *part != 0.0),
@@ -187,7 +187,7 @@ pub(super) fn complex_list_of(
     Ok(parts.map(|(re, im)| Complex::new(re, im)).collect())
 }
 
-/// Returns the strings in a value, without surrounding blanks: those of a string array, the first
+/// Returns the strings in a value, without surrounding blanks: those in a string array, the first
 /// string in each cell of a cell array (empty for a cell without strings), or none for an empty
 /// array, which MATLAB writes for an empty list. Returns `None` for any other value.
 pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {

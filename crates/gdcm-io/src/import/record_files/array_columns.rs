@@ -24,17 +24,17 @@ const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fsamp",
 ];
 
-/// Length of a record.
+/// Length of a record, and how it was determined.
 struct RecordLength {
-    /// Number of samples.
+    /// Sample count.
     rows: usize,
     /// Whether a time vector determines the length.
     is_timed: bool,
 }
 
-/// Returns the record that the arrays of equal length form: the length of the time vector,
-/// otherwise the length with the most columns. Returns `None` if there are too few samples or
-/// columns, and for a model.
+/// Returns the record formed by the arrays of equal length. Their length is that of the time
+/// vector, otherwise the length with the most columns. Returns `None` if there are too few samples
+/// or columns, and for a model.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
         .iter()
@@ -75,10 +75,10 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     })
 }
 
-/// Vectors and matrices with the length of a record.
+/// Vectors and matrices with the record's length.
 struct LongArrays {
     columns: Vec<RecordColumn>,
-    /// Whether the columns have names: not those of a single matrix without labels.
+    /// Whether the columns have names: not if they come from a single matrix without labels.
     have_names: bool,
     /// Names of the arrays with another length; single numbers are not listed.
     left_out: Vec<String>,
@@ -120,8 +120,8 @@ impl LongArrays {
     }
 }
 
-/// Returns the length of the longest time vector. Without a sufficiently long one, returns the
-/// length with the most columns; in a tie, the greater length.
+/// Returns the longest time vector's length. If none is long enough, returns the length with the
+/// most columns; in a tie, the greater length.
 fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     let mut timed = None;
     for field in record.fields() {

@@ -10,7 +10,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::texts_of;
 
-/// Names of fields that hold the inputs, without case and underscores.
+/// Fields that hold the inputs, by name without case and underscores.
 const INPUTS: [&str; 9] = [
     "u",
     "in",
@@ -22,7 +22,7 @@ const INPUTS: [&str; 9] = [
     "controls",
     "uin",
 ];
-/// Names of fields that hold the outputs, without case and underscores.
+/// Fields that hold the outputs, by name without case and underscores.
 const OUTPUTS: [&str; 9] = [
     "y",
     "out",
@@ -52,7 +52,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Names of fields that list the column names of a matrix of neither inputs nor outputs.
+/// Fields that list column names for a matrix of neither inputs nor outputs.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -65,7 +65,7 @@ const NAMES: [&str; 10] = [
     "colheaders",
     "varlab",
 ];
-/// Names of fields that list the column units of a matrix of neither inputs nor outputs.
+/// Fields that list column units for a matrix of neither inputs nor outputs.
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
 /// Labels of the columns in a field.
@@ -76,9 +76,9 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels of a field with `count` columns in lists named after the field (`u_names`).
-    /// Without these, a matrix of inputs or outputs takes the lists of all inputs or all outputs,
-    /// and any other matrix the lists of the record. Lists with another length are ignored.
+    /// Finds the labels for a field with `count` columns in lists named after the field
+    /// (`u_names`). Without these, a matrix of inputs or outputs takes the lists for all inputs or
+    /// all outputs, and any other matrix the record's lists. Lists with another length are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
         let side = side_of(&name, count);
@@ -116,12 +116,12 @@ impl ColumnLabels {
         }
     }
 
-    /// Returns whether the file gives names of the columns.
+    /// Returns whether the file gives column names.
     pub(super) fn has_names(&self) -> bool {
         self.names.is_some()
     }
 
-    /// Creates the columns of a field and applies the labels to them.
+    /// Creates a field's columns and labels them.
     pub(super) fn label(self, field: &str, values: Vec<Vec<f64>>) -> Vec<RecordColumn> {
         let mut columns = named_columns(field, values);
         for (index, column) in columns.iter_mut().enumerate() {
@@ -143,14 +143,14 @@ impl ColumnLabels {
     }
 }
 
-/// Names of the fields whose lists apply to several matrices of a record.
+/// Names of fields whose lists apply to several matrices in a record.
 struct SharedLists {
     names: &'static [&'static str],
     units: &'static [&'static str],
 }
 
-/// Returns the side to which a field belongs, by its folded name and number of columns; `None` if it
-/// is neither inputs nor outputs. A single column called u may be a velocity component instead of an
+/// Returns the side to which a field belongs, by its folded name and column count; `None` if it is
+/// neither inputs nor outputs. A single column called u may be a velocity component instead of an
 /// input.
 fn side_of(name: &str, count: usize) -> Option<ChannelSide> {
     if count <= 1 && name.len() <= 1 {

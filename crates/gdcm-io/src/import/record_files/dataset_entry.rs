@@ -6,8 +6,8 @@ use gdcm_model::dataset::condition::ConditionRecord;
 
 use crate::relative_folder::relative_folder;
 
-/// Returns the entry for a record in a dataset file: makes the path of the record's file relative
-/// to the path `dataset`. `requested` lists the files and folders from which records were read.
+/// Returns the entry for a record in a dataset file: makes the record file's path relative to the
+/// path `dataset`. `requested` lists the files and folders from which records were read.
 pub fn relative_entry(
     mut entry: ConditionRecord,
     requested: &[PathBuf],
@@ -28,9 +28,9 @@ pub fn relative_entry(
     entry
 }
 
-/// Finds the path of a record's file: a requested file of this name, or the file in a requested
-/// folder. A record joined from the topics of several files has an empty file name; its path is the
-/// folder of the first requested file.
+/// Finds the path of a record's file: a requested file with this name, or the file in a requested
+/// folder. A record joined from topics in several files has an empty file name; its path is the
+/// first requested file's folder.
 fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {
         let is_file = path

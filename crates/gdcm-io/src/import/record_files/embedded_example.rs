@@ -1,4 +1,4 @@
-//! Flight records of the embedded examples.
+//! Flight records in the embedded examples.
 
 use gdcm_model::names::standard_patterns;
 use gdcm_sysid::records::RecordTable;
@@ -9,7 +9,7 @@ use crate::file_error::FileError;
 use crate::files::example::Example;
 use crate::reading_budget::ReadingBudget;
 
-/// Returns the records of a condition in an example; empty unless the condition is one of
+/// Returns a condition's records in an example; empty unless the condition is one of
 /// [`Example::record_conditions`].
 pub fn example_records(example: Example, condition: i64) -> Result<Vec<RecordTable>, FileError> {
     if !example.record_conditions().contains(&condition) {

@@ -1,4 +1,4 @@
-//! Data of the identification tools in MATLAB and GNU Octave.
+//! Data objects from the identification tools in MATLAB and GNU Octave.
 //!
 //! An `iddata` object holds `OutputData` and `InputData` (a matrix, or a cell for each experiment),
 //! `Ts` or `SamplingInstants`, and names and units; the field names may end in an underscore.
@@ -21,7 +21,7 @@ struct SideFields {
     data: [&'static str; 2],
     names: [&'static str; 2],
     units: [&'static str; 2],
-    /// Letter with which the names of unnamed columns begin.
+    /// Letter with which names for unnamed columns begin.
     letter: char,
 }
 
@@ -40,7 +40,7 @@ const OUTPUT_FIELDS: SideFields = SideFields {
     letter: 'y',
 };
 
-/// Returns whether fields are identification data.
+/// Returns whether the fields are identification data.
 pub(super) fn is_iddata(record: &Record<'_>) -> bool {
     let has_both = record.get(&["OutputData"]).is_some() && record.get(&["InputData"]).is_some();
     record.class == Some("iddata") || has_both
@@ -115,7 +115,7 @@ fn experiment(
     })
 }
 
-/// Returns the columns of the inputs, or of the outputs, in the experiment at `index`.
+/// Returns the input or output columns in the experiment at `index`.
 fn side_columns(
     record: &Record<'_>,
     fields: &SideFields,
@@ -157,7 +157,7 @@ fn nonempty_text(texts: &[String], at: usize) -> Option<String> {
     }
 }
 
-/// Returns the value of each experiment: the cells of a cell array, or the value itself.
+/// Returns each experiment's value: the cells in a cell array, or the value itself.
 fn parts_of(value: &Value) -> Vec<&Value> {
     match value {
         Value::Cell(cell) => cell.values.iter().collect(),

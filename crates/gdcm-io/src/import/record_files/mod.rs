@@ -1,5 +1,4 @@
-//! Reading of flight records from files: text tables, MATLAB, NumPy, JSON, logs, and archives of
-//! these.
+//! Reads flight records from files: text tables, MATLAB, NumPy, JSON, logs, and archives of these.
 //!
 //! ```text
 //! bytes -> format, from the first bytes

@@ -5,7 +5,7 @@ use gdcm_sysid::records::RecordColumn;
 use crate::formats::variables::{Array, Value};
 use crate::import::recognise::values::has_imaginary_part;
 
-/// Samples of one or more signals at common times.
+/// Samples from one or more signals at common times.
 pub(super) struct Samples {
     pub(super) rows: usize,
     /// Values over time, column by column.
@@ -28,7 +28,7 @@ pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> 
     if has_imaginary_part(array) || array.is_empty() {
         return None;
     }
-    // Whether the second index of the array counts the time, that is, each column is an instant.
+    // Whether the array's second index counts the time, that is, each column is an instant.
     let is_time_in_columns = match rows {
         Some(rows) => first != rows && second == rows,
         None => second > first,
@@ -54,8 +54,7 @@ fn strided_values(array: &Array, from: usize, step: usize) -> Vec<f64> {
     array.re.iter().skip(from).step_by(step).copied().collect()
 }
 
-/// Reads cells that each hold a single number, or nothing (NaN): the form of JSON lists with
-/// "null".
+/// Reads cells that each hold a single number, or nothing (NaN): as in JSON lists with "null".
 fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     if cells.is_empty() {
         return None;
@@ -75,7 +74,7 @@ fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     })
 }
 
-/// Returns the first column of samples in a value; time runs along the longer dimension.
+/// Returns the first sample column in a value; time runs along the longer dimension.
 pub(super) fn first_column_of(value: &Value) -> Option<Vec<f64>> {
     samples_of(value, None)?.columns.into_iter().next()
 }

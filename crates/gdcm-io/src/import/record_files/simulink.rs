@@ -10,7 +10,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::first_text_of;
 
-/// Reads the columns of a structure with time; `None` if the record is none.
+/// Reads the columns from a structure with time; `None` for any other record.
 pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let time = samples_of(record.get(&["time"])?, None)?;
     let Some(Value::Struct(signals)) = record.get(&["signals"]) else {

@@ -9,8 +9,8 @@ use crate::formats::text::sections::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads the columns of a text table. If the text is not a single table, each of its tables that is
-/// long enough for a record becomes a separate entry.
+/// Reads a text table's columns. If the text is not a single table, each table that is long enough
+/// for a record becomes a separate entry.
 pub(super) fn text_columns(
     text: &str,
     budget: &ReadingBudget<'_>,
@@ -52,7 +52,7 @@ pub(super) fn text_columns(
     }
 }
 
-/// Whether a fault is in the text itself, rather than an exceeded limit of the budget.
+/// Whether a fault is in the text itself, rather than an exceeded budget limit.
 fn is_of_the_text(fault: &VariableFault) -> bool {
     matches!(
         fault,

@@ -3,7 +3,7 @@
 //! A timetable is saved as a struct `any` with `data` (a cell for each variable), `varNames`,
 //! `varUnits` and `rowTimes`: a `duration` (`millis`), a `datetime` (`data`, ms since 1970), or
 //! `origin` with `stepSize` or `sampleRate`. A table has `data`, `varnames` and
-//! `props.VariableUnits`. Source: files of MATLAB R2017a to R2024a as described by the mat-io
+//! `props.VariableUnits`. Source: files from MATLAB R2017a to R2024a as described by the mat-io
 //! project.
 
 use gdcm_sysid::records::RecordColumn;
@@ -17,7 +17,7 @@ use crate::import::recognise::values::texts_of;
 
 const MILLISECOND: f64 = 1e-3;
 
-/// Reads the columns of a timetable or a table; `None` for objects of other classes.
+/// Reads the columns from a timetable or a table; `None` for objects of other classes.
 pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     match record.class? {
         "timetable" => read_timetable(record, variable),
@@ -75,7 +75,7 @@ fn read_table(record: &Record<'_>, variable: &str) -> Option<Columns> {
     Some(Columns::new(variable.to_owned(), columns))
 }
 
-/// Returns the fields of a struct or an object (of the first element, if it is an array).
+/// Returns the fields of a struct or an object (the first element's, if it is an array).
 fn inner_record(value: &Value) -> Option<Record<'_>> {
     let records = match value {
         Value::Struct(records) => records,
@@ -108,10 +108,10 @@ fn numeric_columns(data: &[Value], names: &[String], units: &[String]) -> Vec<Re
     columns
 }
 
-/// Sample times of a timetable.
+/// How a timetable gives its sample times.
 enum RowTimes {
     Stamps {
-        /// Times \[s\] of the rows.
+        /// Row times \[s\].
         time_s: Vec<f64>,
         /// Whether the file contains clock times; `time_s` is then relative to the first.
         is_clock: bool,
@@ -159,7 +159,7 @@ fn regular_step(record: &Record<'_>) -> Option<f64> {
     if rate > 0.0 { Some(1.0 / rate) } else { None }
 }
 
-/// Returns the values \[ms\] of a `duration`.
+/// Returns a `duration`'s values \[ms\].
 fn millis_of(value: &Value) -> Option<Vec<f64>> {
     first_column_of(inner_record(value)?.get(&["millis"])?)
 }

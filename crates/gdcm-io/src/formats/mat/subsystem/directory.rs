@@ -11,9 +11,9 @@
 //! regions 4 to 7 are not read
 //! ```
 //!
-//! A property list is the number of its properties, 3 words for each (index of the name, kind of
-//! content, content), and padding to a multiple of 8 bytes. Classes, objects and lists are counted
-//! from 0; their entries 0 are empty.
+//! A property list consists of its property count, 3 words per property (name index, content kind,
+//! content), and padding to a multiple of 8 bytes. Classes, objects and lists are counted from 0;
+//! their entries 0 are empty.
 
 use crate::formats::mat::cursor::ByteOrder;
 use crate::formats::mat::element::decode_name;
@@ -21,11 +21,11 @@ use crate::formats::mat::subsystem::damaged;
 use crate::reading_budget::VariableFault;
 use crate::variable_fault::damage::Damage;
 
-/// Length of the header \[bytes\].
+/// Header length \[bytes\].
 const HEADER_BYTES: usize = 40;
-/// Number of words for a class.
+/// Number of words per class.
 const CLASS_WORDS: usize = 4;
-/// Number of words for a property in a list.
+/// Number of words per property in a list.
 const PROPERTY_WORDS: usize = 3;
 /// Newest supported layout version.
 const NEWEST: u32 = 4;
@@ -46,9 +46,9 @@ pub(super) struct Directory {
     /// Class names by class number; class 0 is not used.
     classes: Vec<String>,
     objects: Vec<ObjectEntry>,
-    /// Property lists of objects whose class saves another value instead of the object.
+    /// Property lists for objects whose class saves another value instead of the object.
     created: Vec<Vec<Property>>,
-    /// Property lists of all other objects.
+    /// Property lists for all other objects.
     plain: Vec<Vec<Property>>,
     /// Number of cells after the property values, which depends on the version.
     pub(super) cells_after_values: usize,
@@ -63,7 +63,7 @@ struct ObjectEntry {
     plain: u32,
 }
 
-/// Properties of an object, with its class.
+/// An object's properties, with its class.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ObjectProperties<'d> {
     pub(super) class: u32,
@@ -72,7 +72,7 @@ pub(super) struct ObjectProperties<'d> {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Property {
-    /// Index of the name, counted from 1.
+    /// Name index, counted from 1.
     pub(super) name: u32,
     pub(super) content: Content,
 }
@@ -88,7 +88,7 @@ pub(super) enum Content {
     Number(u32),
 }
 
-/// Bytes of a directory, with its decoded header.
+/// A directory's bytes, with its decoded header.
 struct DirectoryBytes<'b> {
     bytes: &'b [u8],
     order: ByteOrder,
@@ -99,7 +99,7 @@ struct DirectoryBytes<'b> {
 }
 
 impl Directory {
-    /// Reads the directory from the bytes of the first cell.
+    /// Reads the directory from the first cell's bytes.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, VariableFault> {
         let bytes = DirectoryBytes::read(bytes)?;
         let names = bytes.names()?;
@@ -221,7 +221,7 @@ impl<'b> DirectoryBytes<'b> {
             .collect())
     }
 
-    /// Returns the words of a region.
+    /// Returns a region's words.
     fn words(&self, region: Region) -> Result<Vec<u32>, VariableFault> {
         let number = region as usize;
         let words = match self.regions.get(number..number + 2) {
@@ -241,7 +241,7 @@ fn decode_words(bytes: &[u8], order: ByteOrder) -> Vec<u32> {
     words.iter().map(|&word| order.u32(word)).collect()
 }
 
-/// Decodes the entries of all objects.
+/// Decodes all object entries.
 fn object_entries(words: &[u32]) -> Vec<ObjectEntry> {
     let (entries, _) = words.as_chunks();
     entries
@@ -265,7 +265,7 @@ fn property_lists(words: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
         };
         let (properties, _) = list.as_chunks();
         lists.push(properties.iter().copied().map(decode_property).collect());
-        // With its count, a list has `length` + 1 words; one word of padding makes them even.
+        // With its count, a list has `length` + 1 words; one padding word makes them even.
         let padding = (length + 1) % 2;
         rest = after.get(padding..).unwrap_or_default();
     }

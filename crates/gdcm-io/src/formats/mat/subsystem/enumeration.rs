@@ -10,11 +10,11 @@
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::variables::{Object, StructArray, Value};
 
-/// Field by which a record of enumeration members is recognised.
+/// Field by which a record with enumeration members is recognised.
 const TAG: &str = "EnumerationInstanceTag";
 /// Estimated memory of a member without its name \[bytes\].
 const VALUE: u64 = 256;
-/// Property that holds the name of the member.
+/// Property that holds the member name.
 const MEMBER: &str = "Name";
 
 /// Enumeration members, given by their names.
@@ -80,7 +80,7 @@ pub(super) fn is_enumeration(records: &StructArray) -> bool {
     records.field(TAG).is_some()
 }
 
-/// Returns the numbers of a field as integers; `None` unless the field has a single array.
+/// Returns a field's numbers as integers; `None` unless the field has a single array.
 fn integers(records: &StructArray, field: &str) -> Option<Vec<u32>> {
     match records.field(field)? {
         [Value::Array(array)] => Some(array.re.iter().map(|&number| number as u32).collect()),

@@ -9,8 +9,8 @@
 //!               defaults of the properties, a record for each class; the others are not used
 //! ```
 //!
-//! A variable holds only a reference: the class number and the object numbers (`reference.rs`). The
-//! properties of these objects are put together by `object_assembly.rs`; a property may in turn be a
+//! A variable holds only a reference: the class number and the object numbers (`reference.rs`).
+//! `object_assembly.rs` puts together these objects' properties; a property may in turn be a
 //! reference.
 //!
 //! The format is not published by The MathWorks; this reader follows the descriptions by the
@@ -42,23 +42,23 @@ pub(super) const CLASS_SYSTEM: &str = "MCOS";
 /// Number of cells before the property values.
 const CELLS_BEFORE_VALUES: usize = 2;
 
-/// Exact values of cells that hold unsigned 64-bit integers, by cell index from 0.
+/// Exact values for cells that hold unsigned 64-bit integers, by cell index from 0.
 pub type LongWords = HashMap<usize, Vec<u64>>;
 
 /// Properties of all objects in a MATLAB file.
 #[derive(Clone, Debug)]
 pub struct Subsystem {
     directory: Directory,
-    /// Values of the properties, by the index used in the directory.
+    /// Property values, by the index used in the directory.
     values: Vec<Value>,
-    /// Defaults of the properties, a record for each class number.
+    /// Property defaults, one record per class number.
     defaults: Vec<Value>,
-    /// Exact values of 64-bit integers, by index in `values`.
+    /// Exact 64-bit integer values, by index in `values`.
     long_words: LongWords,
 }
 
 impl Subsystem {
-    /// Reads the cells of a `FileWrapper__`; the first cell is the directory.
+    /// Reads the cells from a `FileWrapper__`; the first cell is the directory.
     pub fn new(cells: Vec<Value>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let bytes = directory_bytes(cells.first())?;
         // An empty name needs one byte in the file but a whole `String` in memory.
@@ -69,7 +69,7 @@ impl Subsystem {
             Some(Value::Cell(defaults)) => defaults.values,
             _ => Vec::new(),
         };
-        // The defaults, which were removed above, are one of the cells after the values.
+        // The defaults, removed above, were in one of the cells after the values.
         let unused = directory.cells_after_values.saturating_sub(1);
         values.truncate(values.len().saturating_sub(unused));
         Ok(Self {
@@ -81,7 +81,7 @@ impl Subsystem {
     }
 
     /// Adds exact values by cell index, because `string` objects are packed into 64-bit integers,
-    /// of which a [`Value`] keeps only 53 bits.
+    /// and a [`Value`] would keep only 53 bits.
     pub fn with_long_words(mut self, cells: LongWords) -> Self {
         for (cell, words) in cells {
             if let Some(value) = cell.checked_sub(CELLS_BEFORE_VALUES) {
@@ -91,7 +91,7 @@ impl Subsystem {
         self
     }
 
-    /// Returns the object, or the object array, to which the words of a reference point.
+    /// Returns the object, or the object array, to which a reference's words point.
     ///
     /// Parts that cannot be decoded become [`Value::Opaque`]; the only error is an exhausted
     /// budget.
@@ -142,7 +142,7 @@ impl Subsystem {
     }
 }
 
-/// Returns the bytes of the directory, which are stored as the numbers in a cell.
+/// Returns the directory bytes, stored as numbers in a cell.
 fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
     let Some(Value::Array(array)) = cell else {
         return Err(damaged(Damage::DirectoryMissing));

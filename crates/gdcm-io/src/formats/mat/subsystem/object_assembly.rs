@@ -1,8 +1,8 @@
-//! Assembly of objects from the cells that hold their properties.
+//! Assembles objects from the cells that hold their properties.
 //!
-//! An object becomes a record with its saved properties, followed by the class defaults of the
-//! properties that are not saved. References in the values of properties are replaced by the objects
-//! to which they point; `Assembly::open` prevents endless recursion.
+//! An object becomes a record with its saved properties, followed by the class defaults for the
+//! properties that are not saved. References in property values are replaced by the objects to
+//! which they point; `Assembly::open` prevents endless recursion.
 
 use std::collections::{HashMap, HashSet};
 
@@ -34,7 +34,7 @@ pub(super) struct Assembly<'s> {
     open: Vec<u32>,
 }
 
-/// Property of an object.
+/// Property of an object: its name and value.
 struct NamedValue {
     name: String,
     value: Value,
@@ -43,14 +43,14 @@ struct NamedValue {
 /// Fields of records that are being assembled.
 #[derive(Default)]
 struct Fields {
-    /// Name and values of each field, in the order in which the fields were found.
+    /// Each field's name and values, in the order found.
     fields: Vec<(String, Vec<Value>)>,
     /// Index in `fields`, by name.
     indices: HashMap<String, usize>,
 }
 
 impl Fields {
-    /// Returns the values of a field; adds the field if it is new.
+    /// Returns a field's values; adds the field if it is new.
     fn values_mut(&mut self, name: String) -> &mut Vec<Value> {
         let index = match self.indices.get(&name) {
             Some(&index) => index,
@@ -117,7 +117,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Unpacks the strings of a `string` object; `None` if the form of packing is unknown.
+    /// Unpacks the strings in a `string` object; `None` if the packing is unknown.
     fn packed_texts(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
         let subsystem = self.subsystem;
         let Some(object) = subsystem.directory.object(object) else {
@@ -142,8 +142,8 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Returns a record for each object of a reference; the fields are all properties that occur in
-    /// any of the objects.
+    /// Returns a record for each referenced object; the fields are all properties that occur in any
+    /// of them.
     fn records(
         &mut self,
         reference: &Reference,
@@ -184,8 +184,8 @@ impl<'s> Assembly<'s> {
         Ok(())
     }
 
-    /// Returns the saved properties of an object, and the class defaults of the properties that are
-    /// not saved.
+    /// Returns an object's saved properties, and the class defaults for the properties that are not
+    /// saved.
     fn properties(
         &mut self,
         object: u32,
@@ -230,7 +230,7 @@ impl<'s> Assembly<'s> {
         Ok(properties)
     }
 
-    /// Returns the value of a saved property.
+    /// Returns a saved property's value.
     fn property(
         &mut self,
         property: &Property,

@@ -1,17 +1,17 @@
-//! Strings of a `string` object, packed into 64-bit integers.
+//! Strings in a `string` object, packed into 64-bit integers.
 
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// The only supported version of the packing.
+/// The only supported packing version.
 const VERSION: u64 = 1;
-/// Upper bound of the memory for a word: a length with its string, or four units and their
+/// Upper bound for the memory per word: a length with its string, or four units and their
 /// characters \[bytes\].
 const MEMORY_PER_WORD: u64 = 64;
 /// Length that marks a missing string.
 const MISSING: u64 = u64::MAX;
 
-/// Unpacks strings from words: version, number of dimensions, dimensions, string lengths \[UTF-16
+/// Unpacks strings from words: version, dimension count, dimensions, string lengths \[UTF-16
 /// units\], and the units of all strings, four in each word. A missing string becomes an empty
 /// string. Returns `None` for words in any other form.
 pub(super) fn unpack_texts(
@@ -36,7 +36,7 @@ fn parse_words(words: &[u64]) -> Option<TextArray> {
         count = count.checked_mul(side)?;
     }
     let (lengths, packed_units) = after_sides.split_at_checked(count)?;
-    // The first unit is in the lowest 16 bits of a word.
+    // The first unit is in a word's lowest 16 bits.
     let units: Vec<u16> = packed_units
         .iter()
         .flat_map(|word| [0, 16, 32, 48].map(|shift| (word >> shift) as u16))

@@ -3,7 +3,7 @@
 use crate::formats::element_order::element_count;
 use crate::formats::variables::{ElementKind, Value};
 
-/// First word of every reference.
+/// First word in every reference.
 const REFERENCE: u32 = 0xdd00_0000;
 
 /// A reference to an object or an object array.
@@ -16,8 +16,8 @@ pub(in crate::formats::mat) struct Reference {
 }
 
 impl Reference {
-    /// Parses the words of a reference: 0xDD000000, number of dimensions, dimensions, object
-    /// numbers and class number. Returns `None` for any other words.
+    /// Parses a reference's words: 0xDD000000, dimension count, dimensions, object numbers and
+    /// class number. Returns `None` for any other words.
     pub(super) fn parse(words: &[u32]) -> Option<Self> {
         let [REFERENCE, dimensions, rest @ ..] = words else {
             return None;

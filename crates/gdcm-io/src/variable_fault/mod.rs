@@ -79,6 +79,9 @@ pub enum VariableFault {
         /// The limit \[million steps\].
         most_millions: u64,
     },
+    /// The log contains more flights than the limit.
+    #[error("{found} flights, more than {most}; split the file")]
+    TooManyFlights { found: usize, most: usize },
     /// Values are nested more deeply than the limit, or in a cycle.
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
     TooDeep { variable: String },
@@ -101,6 +104,7 @@ impl VariableFault {
             Self::Unsupported { .. } => "unsupported-content",
             Self::TooLarge { .. } => "too-much-memory",
             Self::TooMuchWork { .. } => "too-much-work",
+            Self::TooManyFlights { .. } => "too-many-flights",
             Self::TooDeep { .. } => "values-too-deep",
             Self::Duplicate { .. } => "duplicate-name",
             Self::Stopped => "stopped",
@@ -193,7 +197,10 @@ impl VariableFault {
                     *variable = name();
                 }
             }
-            Self::Format { .. } | Self::Duplicate { .. } | Self::Stopped => {}
+            Self::Format { .. }
+            | Self::TooManyFlights { .. }
+            | Self::Duplicate { .. }
+            | Self::Stopped => {}
         }
         self
     }
@@ -203,7 +210,10 @@ impl VariableFault {
     pub fn is_of_the_budget(&self) -> bool {
         matches!(
             self,
-            Self::TooLarge { .. } | Self::TooMuchWork { .. } | Self::Stopped
+            Self::TooLarge { .. }
+                | Self::TooMuchWork { .. }
+                | Self::TooManyFlights { .. }
+                | Self::Stopped
         )
     }
 }

@@ -161,6 +161,27 @@ fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() 
 }
 
 #[test]
+fn a_log_of_too_many_flights_is_refused_with_their_number() {
+    let bytes = b"H Product:Blackbox\n".repeat(1001);
+    for refusal in refusals("long.bbl", &bytes) {
+        let error = refusal.expect("the file is not read");
+        assert!(
+            matches!(
+                error,
+                FileError::Variables {
+                    fault: VariableFault::TooManyFlights {
+                        found: 1001,
+                        most: 1000,
+                    },
+                    ..
+                }
+            ),
+            "{error:?}"
+        );
+    }
+}
+
+#[test]
 fn every_reader_stops_when_it_is_asked_to() {
     let lines = "0.02,1.5,-2.25,3.125,4\n".repeat(400_000);
     let list = format!("{{\"t\": [{}0]}}", "[0.25,1.5],".repeat(600_000));

@@ -60,10 +60,9 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
-        // Too many flights are reported like an exhausted work budget.
-        return Err(VariableFault::TooMuchWork {
-            variable: String::new(),
-            most_millions: 0,
+        return Err(VariableFault::TooManyFlights {
+            found: count,
+            most: MOST_RECORDS,
         });
     }
     let mut flights = Vec::new();

@@ -3,8 +3,8 @@
 //! **Question answered:** does this program, on this machine, compute what other programs and closed
 //! forms give?
 //!
-//! [`CHECKS`] lists the comparisons: what is compared, the section in `docs/method.md`, where the
-//! expected values come from, and the tolerance with its reason. [`Verification::new`] runs all
+//! [`CHECKS`] lists the comparisons: what is compared, the section of the method (`docs/method.md` and
+//! the pages beside it), where the expected values come from, and the tolerance with its reason. [`Verification::new`] runs all
 //! comparisons from embedded reference values, within seconds, without files. [`page`] makes
 //! `docs/verification.md` from the figures that the tests record.
 //!

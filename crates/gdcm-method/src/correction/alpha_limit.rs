@@ -45,6 +45,15 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
 /// Returns the shift for a group's scales that minimises the regularised deviations from neutral;
 /// it raises the input coordinates and lowers the output coordinates by the same amount. The
 /// outputs are regularised (the inputs, if the group has no output); for signed delays, both.
+///
+/// ```text
+/// signed delays               (sum y - sum x) / (count of x and y)
+/// no output                   -mean x;  0 without any channel
+/// delays, gains in dB         mean y
+/// gains compared as ratios    ln(sum k^2 / sum k),  k = e^y
+/// ```
+///
+/// `x` are the input, `y` the output coordinates.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;
     if quantity.regularises_inputs() {

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! value of a node = offset + s,      s: the scale of its component
+//! value of an input's node = x_i,  of an output's node = -y_o      x_i, y_o: coordinates (ln gains or delays)
 //! ```
 //!
 //! The *components* are the connected components in a graph with the channels as nodes and the

@@ -36,8 +36,8 @@ pub(crate) struct EntryConflict {
 /// for each missed entry
 ///     1  loop <- the entry, and the shortest way along the flow from its end back to its start
 ///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
-///     3  the shorter of both, where each bound counts as one entry
-///     4  its shortest part that the bounds at both ends do not permit, if any
+///     3  the shorter of both, where each bound counts as one entry; the loop if they are equal; no conflict without either
+///     4  its shortest part that the bounds at both ends do not permit; without such a part, the whole
 /// ```
 pub(crate) fn entry_conflicts(
     problem: &Problem,
@@ -88,8 +88,8 @@ struct ConflictSearch<'a> {
 }
 
 impl ConflictSearch<'_> {
-    /// Steps 1 to 4: returns the smaller conflict: the shortest loop through `pull`, or the
-    /// shortest path through it from bound to bound; each bound counts as one entry.
+    /// Steps 1 to 4: returns the smallest conflict through `pull`; `None` if no loop and no path
+    /// leads through it.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.flow.way_back(pull);
         let path = self.flow.path_through(pull);

@@ -31,6 +31,12 @@ pub(super) struct Misses {
 }
 
 /// Finds the constrained entries whose delta was infeasible in stage 1, each with its conflict.
+///
+/// ```text
+/// for each constrained entry whose target differs from its delta by more than the matching tolerance:
+/// 1  conflict: the one found for the entry; otherwise unclear, with all constrained entries
+/// 2  agreeing, if the conflict is a loop, and loop and entry deviate by at most the problem's tolerance; otherwise unmatched
+/// ```
 pub(super) fn misses(
     problem: &Problem,
     constraints: &Constraints,

@@ -113,6 +113,13 @@ pub(super) struct Multipliers {
 impl Multipliers {
     /// Solves the conditions `dF/dx_c = mu_c + sum lambda_e` for the multipliers.
     ///
+    /// ```text
+    /// 1  groups of channels that constrained entries connect
+    /// 2  for each group: slope of F along its common movement;  mu_c <- the slope, divided equally
+    ///    among the channels whose bounds stop it;  0 for all others
+    /// 3  lambda <- least squares of  dF/dx - mu = (incidence matrix) lambda
+    /// ```
+    ///
     /// The slope that pushes a group of connected channels against a bound is divided equally among
     /// the channels on that bound. The constrained entries' multipliers balance the remainder; in a
     /// loop, where they are not unique, their sum of squares is minimal.

@@ -33,6 +33,7 @@ pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 /// ```text
 /// min  sum w_oi (G_oi - k_o k_i)^2 + alpha sum (k_o - 1)^2         k_o k_i = G_oi (constrained)        (eq. 7)
 /// min  sum w_oi (D_oi - tau_o - tau_i)^2 + alpha sum tau_o^2       tau_o + tau_i = D_oi (constrained)  (eq. 11)
+/// M15.4: as eq. 11, with alpha (sum tau_o^2 + sum tau_i^2), and bounds that permit tau < 0
 /// ```
 ///
 /// subject to `lower <= k, tau <= upper` for every channel. The weight `w_oi` is 1 for a fitted
@@ -243,15 +244,15 @@ impl Problem {
         if self.quantity.is_gain() {
             return Coordinate::Logarithm;
         }
-        let asked_s = self
+        let longest_delta_s = self
             .delta
             .iter()
             .filter_map(|(_, delay_s)| *delay_s)
             .fold(0.0_f64, |most, delay_s| most.max(delay_s.abs()));
         // Use the deltas rather than a bound, which may be far above any value that a channel can
         // take.
-        let unit_s = if asked_s > 0.0 {
-            asked_s
+        let unit_s = if longest_delta_s > 0.0 {
+            longest_delta_s
         } else {
             self.bounds.upper.max(-self.bounds.lower)
         };
@@ -270,10 +271,10 @@ impl Problem {
             // Limit the range: along a path through constrained entries, channels differ by at most
             // one unit per entry, so that an upper bound beyond this sum is never active.
             Coordinate::Time { .. } => {
-                let most = (self.delta.outputs() + self.delta.inputs()) as f64;
+                let channels = (self.delta.outputs() + self.delta.inputs()) as f64;
                 Interval {
-                    low: low.max(-most),
-                    high: high.min(most),
+                    low: low.max(-channels),
+                    high: high.min(channels),
                 }
             }
         }

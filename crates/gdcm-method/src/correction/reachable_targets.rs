@@ -27,8 +27,14 @@ pub(crate) struct Reached {
 
 /// Finds the targets.
 ///
-/// Feasible components keep their prescribed sums exactly. `minimise` minimises a sum of squares
-/// over a box; it is called only if an entry is infeasible.
+/// ```text
+/// 1  components with the prescribed sums; if all are feasible, these are the targets
+/// 2  point: node values in the box that come nearest to the sums of the infeasible components
+/// 3  targets: the point's sums in the infeasible components, the prescribed sums in the others
+/// 4  components with the targets
+/// ```
+///
+/// `minimise` minimises a sum of squares over a box (step 2).
 pub(crate) fn reach<E>(
     constraints: &Constraints,
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,

@@ -13,6 +13,9 @@ use super::problem::Problem;
 use super::quantity::Quantity;
 use super::three_digits::three_digits;
 
+/// Rounding error in a range end, relative to `1 + |low| + |high|`.
+const RANGE_ROUNDING: f64 = 1e-12;
+
 /// Single changes that each make all constrained entries feasible at their delta; empty if several
 /// changes are needed.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +34,13 @@ pub struct Remedy {
 impl Remedy {
     /// Finds the remedy for conflicts between the `constraints` of `problem`; `None` without
     /// conflicts.
+    ///
+    /// ```text
+    /// 1  free: each entry of a conflict without which all others are feasible
+    /// 2  upper, lower: the end of the range that suffices with the other end unchanged (`SufficientRange`);
+    ///    none if a loop is inconsistent, or if both ends would have to move
+    /// 3  rounded outwards to three digits, and never narrower than the present bounds
+    /// ```
     pub(crate) fn new(
         problem: &Problem,
         constraints: &Constraints,
@@ -141,7 +151,7 @@ impl SufficientRange {
         }
         // Changing one end is sufficient only if the pairs do not require the other end to move.
         let Interval { low, high } = constraints.range;
-        let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
+        let rounding = RANGE_ROUNDING * (1.0 + low.abs() + high.abs());
         let mut sufficient = Self::default();
         if highest <= high + rounding {
             sufficient.low = Some(low.min(high - widest).min(lowest));

@@ -19,6 +19,12 @@ use super::components::Components;
 use super::problem::{Entry, Problem};
 use super::quantity::{Coordinate, GainObjective, Quantity, SQUARED_DECIBEL};
 
+/// Rounding level of the objective, relative to the summed squares of the deltas: rounding in a sum
+/// of squares is proportional to the summed values.
+const RELATIVE_ROUNDING: f64 = 1e-9;
+/// Rounding level of an output's squared deviation from neutral: the square of a rounding error.
+const SQUARED_ROUNDING: f64 = 1e-20;
+
 /// Builds the objective of `problem` over the scales of `components`, in the problem's coordinate.
 pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Objective {
     let mut entries = fit_entries(problem, components);
@@ -149,19 +155,21 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
 
 /// Returns the objective's rounding level, in the problem's coordinate.
 ///
-/// It is 1e-9 times the objective without correction (rounding in a sum of squares is proportional
-/// to the summed values), plus `1e-20 alpha` per output, the square of a rounding error.
+/// It is 1e-9 times the summed squares of the fitted deltas, plus `1e-20 alpha` per output, and never
+/// zero.
 pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
-    let energy: f64 = problem
+    let delta_squares: f64 = problem
         .fit_entries()
-        .map(|entry| uncorrected_square(problem.quantity, coordinate, entry.delta))
+        .map(|entry| delta_square(problem.quantity, coordinate, entry.delta))
         .sum();
-    (1e-9 * energy + 1e-20 * problem.alpha * problem.delta.outputs() as f64).max(f64::MIN_POSITIVE)
+    let departure_squares = SQUARED_ROUNDING * problem.alpha * problem.delta.outputs() as f64;
+    (RELATIVE_ROUNDING * delta_squares + departure_squares).max(f64::MIN_POSITIVE)
 }
 
-/// Returns an entry's squared residual without correction.
-fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) -> f64 {
+/// Returns the square of an entry's delta, in the unit of its squared residual. In dB a squared
+/// neper is added, so that a delta gain of 1, which is 0 dB, has a rounding level too.
+fn delta_square(quantity: Quantity, coordinate: Coordinate, delta: f64) -> f64 {
     match quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,
         Quantity::Gain(GainObjective::Decibel) => SQUARED_DECIBEL * (delta.ln().powi(2) + 1.0),

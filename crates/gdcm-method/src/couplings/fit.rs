@@ -38,12 +38,22 @@ const FITTING: &str = "mixing and feedback";
 /// Fits the couplings by successive weighted linear least-squares problems, one per pass: weights
 /// and closed loop follow from the previous pass's couplings (M16.2).
 ///
+/// ```text
+/// 1  outputs that can be fed back, unknowns in M and K, conditions arranged by frequency
+/// 2  matrices <- M = I, K = 0                                              step 2 in `couplings`
+/// 3  for each pass (five by default):
+/// 4     normal equations with weights and loop of the matrices             steps 4 to 6
+/// 5     matrices <- their regularised solution                             step 7
+/// 6  refuse a mixing that reverses an input
+/// ```
+///
 /// The result is identical to the last bit in any order of execution. `progress` is notified after
 /// every condition in every pass, and polled every few frequencies for cancellation.
 ///
 /// # Errors
 /// [`CouplingError`] if tables differ in shape, no response has a weight, the loop is singular in a
-/// pass, the responses do not determine the unknowns, or `progress` is cancelled.
+/// pass, the responses do not determine the unknowns, the mixing reverses an input's sign, or
+/// `progress` is cancelled.
 pub fn fit_couplings(
     problem: &CouplingProblem,
     executor: &dyn Executor,

@@ -4,6 +4,7 @@
 //! 1  G, b <- the conditions' blocks summed, with powers of the airspeed v for the unknowns M_ji
 //! 2  divide rows and columns by the root of the diagonal, because the entries of K differ in unit
 //! 3  (G + rho diag G) theta = b + rho diag G theta_0,   theta_0: M = I, K = 0;  solved as an arrow
+//!    an unknown with a zero on the diagonal, which no response determines, keeps its value in theta_0
 //! ```
 //!
 //! `G theta = b` are the equations for the entries `theta` in the mixing M and the feedback K

@@ -54,7 +54,8 @@ pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair])
         .collect()
 }
 
-/// Computes `d(a, b)`.
+/// Computes `d(a, b)`. Both models have every compared response, because a model that lacks one is
+/// set aside ([`MeasuredPairs`]).
 fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> f64 {
     let sum: f64 = compared
         .iter()

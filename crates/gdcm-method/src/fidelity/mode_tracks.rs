@@ -2,6 +2,14 @@
 //!
 //! Each model's modes are matched to a reference model's modes by the assignment with the minimum
 //! sum of s-plane distances, so that one close match does not force a distant one.
+//!
+//! ```text
+//! 1  match each model's poles to the reference's poles (assignment)
+//! 2  track: the matches of one reference mode; of a conjugate pair only the upper one's,
+//!    unless a model breaks the pair
+//! 3  centre <- median real and imaginary part;  spread <- median distance from the centre
+//! 4  jump: a pole more than 5 spreads and more than 0.05 rad/s from the centre
+//! ```
 
 use nalgebra::Complex;
 

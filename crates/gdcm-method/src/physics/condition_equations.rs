@@ -12,7 +12,8 @@
 //! ```
 //!
 //! Shared unknowns: the fitted parameters, the output delays, the input delays. Own unknowns: the
-//! output ln gains, then the input ln gains.
+//! output ln gains, then the input ln gains. The target `y`, the design matrix `J`, `nu`, `N` and
+//! `s^2` are those of step 7 in `physics`.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 

@@ -82,7 +82,8 @@ pub struct ConditionDiagnosis {
 
 /// A parameter's value from a single condition, without its prior, with the other parameters and
 /// the delays at the solution, and with the condition's gains free: `z = x_k + (g'_k - (S' x)_k) /
-/// S'_kk`.
+/// S'_kk`, where `x` are the parameters and delays at the solution, and `S' x = g'` the condition's
+/// equations without its gains (`condition_equations`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueHere {
     /// In plausible standard deviations.
@@ -156,6 +157,16 @@ impl PhysicsDiagnosis {
 }
 
 /// Fits the parameters, and derives intervals, scores, names and the verdict.
+///
+/// ```text
+/// steps in `physics`
+/// 1 to 8  passes                                                       fit, stored equations
+/// 11      how well the data determine each parameter                   identifiability
+/// 9       intervals                                                    none with fewer than four conditions
+/// 10      scores                                                       none with fewer than two conditions
+/// 12      verdict, from the share explained, the misfit, the spread    none without intervals or scores
+///         names, one parameter at a time (`NamingFacts`)
+/// ```
 ///
 /// # Errors
 /// [`PhysicsError`], as from [`fit_parameters`](super::fit_parameters).

@@ -7,7 +7,8 @@
 //! X = (j omega I - A)^-1 B,   Y = C (j omega I - A)^-1
 //! ```
 //!
-//! In discrete time, `j omega` is `e^(j omega T)`. Channel delays multiply H and its derivatives. A
+//! In discrete time, `j omega` is `e^(j omega T)`; both `e^(j omega T)` and A are stored less 1 (I),
+//! which leaves their difference. Channel delays multiply H and its derivatives. A
 //! representative with other states than the runs' base has no increments for its matrices; its
 //! responses then change like the base's, `H = H_rep + sum_k (z_k L_k + z_k^2 Q_k)`, with `L_k` and
 //! `Q_k` from the responses.
@@ -80,6 +81,7 @@ impl ModelFamily {
         if sample_time_s.is_some() {
             base.a -= DMatrix::identity(model.order(), model.order());
         }
+        // Only the scales are needed: `balanced` applies them to all matrices.
         let scales = balance_square(&mut base.a.clone());
         let mut delays_s = Vec::with_capacity(model.outputs() * model.inputs());
         for output in 0..model.outputs() {
@@ -104,7 +106,8 @@ impl ModelFamily {
     }
 
     /// Creates the family for a representative whose responses on the grid `omega` \[rad/s\] change
-    /// like the runs' bases; `None` if a parameter has no run, two runs with the same step, or a
+    /// like the runs' bases, with `L_k` and `Q_k` from the responses by the formulas in
+    /// `increments`; `None` if a parameter has no run, two runs with the same step, or a
     /// run that does not fit its base.
     pub fn from_responses(
         representative: &Model,

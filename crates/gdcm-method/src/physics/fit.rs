@@ -71,6 +71,14 @@ pub fn fit_parameters(
 }
 
 /// Fits the parameters, and keeps the normal equations at the solution.
+///
+/// ```text
+/// 1  point <- parameters at zero or at the values set by hand; no delays, no ln gains       step 2 in `physics`
+/// 2  normal equations at the point, and their solution                                     steps 3 to 7
+/// 3  point <- towards the solution, as far as no value moves by more than 1                 step 7
+/// 4  repeat from 2: at least three passes, until no value moves by more than 1e-3 or the passes are used up   step 8
+/// 5  normal equations at the last point
+/// ```
 pub(super) fn solve(
     problem: &PhysicsProblem,
     executor: &dyn Executor,
@@ -89,13 +97,12 @@ pub(super) fn solve(
     let mut still_moving = None;
     for pass in 1..=problem.options.passes.max(1) {
         let equations = fitting.equations(&point)?;
-        let step = point.step_to(&equations.solution(&point, &fitting.fitted)?);
+        still_moving = point.step_to(&equations.solution(&point, &fitting.fitted)?);
         passes.push(FitPass {
             z: point.z.clone(),
             misfit_square: equations.misfit_square,
             weighted_square: equations.weighted_square,
         });
-        still_moving = step;
         if still_moving.is_none() && pass >= FEWEST_PASSES {
             break;
         }

@@ -6,6 +6,9 @@
 //! channels can take of k   1 - F_kk / F°_kk,  F° the same with the channels known
 //! correlation of k and l   (P^-1)_kl / sqrt((P^-1)_kk (P^-1)_ll)
 //! ```
+//!
+//! `F` is the parameters' normal matrix after eliminating delays and ln gains (`shared_system`): the
+//! information in the data. `I` is the prior's.
 
 use nalgebra::{Cholesky, DMatrix};
 

@@ -35,6 +35,17 @@ pub(super) struct PassEquations {
 }
 
 impl PassEquations {
+    /// Sums the conditions' blocks to equations.
+    ///
+    /// ```text
+    /// 1  s^2 <- max(sum q^2 |ln(R / H^)|^2 / (2 sum q^2), 0.01^2),   w <- nu / (N s^2)
+    /// 2  for each condition: equations, and the same with its ln gains eliminated (`condition_equations`)
+    /// 3  system <- sum of the latter over the conditions (`shared_system`)
+    /// ```
+    ///
+    /// # Errors
+    /// [`PhysicsError::NothingToFit`] without any weight, [`PhysicsError::SingularNormalMatrix`] if a
+    /// condition's ln gains are not determined.
     pub(super) fn new(
         problem: &PhysicsProblem,
         parameters: usize,
@@ -89,6 +100,9 @@ impl PassEquations {
     /// Returns the solution, with parameter values limited to
     /// [`GREATEST_VALUE`](super::problem::GREATEST_VALUE) in magnitude; parameters that are not
     /// fitted stay.
+    ///
+    /// # Errors
+    /// [`PhysicsError::SingularNormalMatrix`] if the system has no Cholesky factors.
     pub(super) fn solution(
         &self,
         point: &FitPoint,

@@ -73,6 +73,7 @@ impl<'a> MatchedRuns<'a> {
     ) -> Self {
         let mut matched = Self::default();
         for moved in condition.moved_models() {
+            // A rerun at proposed values is only compared with the prediction for them.
             let Some(change) = moved.run() else {
                 continue;
             };
@@ -122,7 +123,8 @@ impl<'a> MatchedRuns<'a> {
     /// Computes the condition's increments, ordered as `parameters`.
     ///
     /// # Errors
-    /// [`ConditionOmission`] if a parameter has no run.
+    /// [`ConditionOmission`] if the condition or a parameter has no run, or if the runs give no
+    /// increments.
     pub fn increments(
         &self,
         parameters: &[OfferedParameter],
@@ -140,7 +142,7 @@ impl<'a> MatchedRuns<'a> {
     /// states as the base, otherwise by responses on the grid `omega` \[rad/s\].
     ///
     /// # Errors
-    /// [`ConditionOmission`] if a parameter has no run.
+    /// As for [`Self::increments`].
     pub fn family(
         &self,
         representative: &Model,
@@ -183,7 +185,8 @@ impl<'a> MatchedRuns<'a> {
     }
 }
 
-/// Finds a run's base, and checks that both fit together.
+/// Finds a run's base, and checks that both fit together. The first fault counts: step, unit, base,
+/// use of the base, matrices, shape and states, timing, and matrices that do not change.
 fn checked_run<'a>(
     condition: &'a Condition,
     model: &'a Model,

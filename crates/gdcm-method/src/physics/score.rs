@@ -49,14 +49,14 @@ pub struct Scores {
 
 impl Scores {
     /// Computes the scores; `fitted` are the fitted parameters' indices. Returns `None` for fewer
-    /// than two conditions, or if a condition cannot be predicted.
+    /// than two conditions, if a condition cannot be predicted, or if there is no misfit to explain.
     pub(super) fn new(equations: &PassEquations, fitted: &[usize]) -> Option<Self> {
         if equations.counting_conditions() < 2 {
             return None;
         }
         let scorer = Scorer::new(equations);
-        let nothing = scorer.score(&[])?;
-        let baseline: f64 = nothing.iter().sum();
+        let without_parameters = scorer.score(&[])?;
+        let baseline: f64 = without_parameters.iter().sum();
         if baseline.is_nan() || baseline <= 0.0 {
             return None;
         }
@@ -66,7 +66,7 @@ impl Scores {
         }
         let mut stepwise = vec![ScoreStep {
             added: None,
-            score: Score::new(nothing, baseline),
+            score: Score::new(without_parameters, baseline),
         }];
         let mut chosen: Vec<usize> = Vec::with_capacity(fitted.len());
         while chosen.len() < fitted.len() {

@@ -3,7 +3,8 @@
 //!
 //! A parameter is named if all of these are true: its interval excludes 0; its step in the stepwise
 //! list lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or
-//! more are in the fit.
+//! more are in the fit. Ratio, stepwise list and explained share are those of `score`, the learned
+//! share that of `identifiability`.
 
 use super::intervals::LEAST_CONDITIONS;
 use super::problem::GREATEST_VALUE;
@@ -109,7 +110,17 @@ pub(super) struct NamingFacts {
 }
 
 impl NamingFacts {
-    /// Returns why the parameter is not named; `None` for a named parameter.
+    /// Returns why the parameter is not named; `None` for a named parameter. The first reason that
+    /// applies:
+    ///
+    /// ```text
+    /// fewer than four conditions, or no intervals or scores      few conditions
+    /// |z| at its limit of 3                                      at bound
+    /// interval contains 0, and learned below 0.5                 data silent
+    /// interval contains 0                                        interval contains zero
+    /// explained below 0.1                                        nothing explained
+    /// gain below 0.01                                            little gain
+    /// ```
     pub(super) fn why_not_named(&self) -> Option<WhyNotNamed> {
         let (Some(half_width), Some(explained), Some(gain)) =
             (self.half_width, self.explained, self.gain)

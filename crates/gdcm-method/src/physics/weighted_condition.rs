@@ -5,6 +5,7 @@
 //! l <- ln(R / H^), phase: principal value
 //! d_k <- (dH/dz_k) / H
 //! y <- l + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
+//! v <- (d_k of the fitted parameters, -j omega, 1, y)
 //! q^2 <- weight of the response at the frequency;  block += q^2 Re(conj(v) v')
 //! ```
 //!
@@ -100,7 +101,7 @@ struct Linearisation<'a> {
 }
 
 impl Linearisation<'_> {
-    /// Sets `v` for a response at frequency `k`, and returns `ln(R / H^)`; `None` if a value is
+    /// Sets `v` for a response at frequency `k`, and returns `l = ln(R / H^)`; `None` if a value is
     /// missing.
     fn set(&self, v: &mut [Complex<f64>], pair: Pair, k: usize) -> Option<Complex<f64>> {
         let WeightedCondition {

@@ -6,6 +6,7 @@
 //! 1  evaluate Theta on the grid; keep the first run of values without a gap
 //! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency of the band
 //! 3  between grid points: evaluate Theta exactly, on the branch of the neighbouring phases
+//! 4  beyond the grid: unwrap from a known phase (`phases_from`)
 //! ```
 
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -6,7 +6,8 @@
 //!    falls through -180, -135 deg; where the phase is below that level at the band's lowest
 //!    frequency: the next crossing below the band; without one, the first within
 //! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
-//! 4  omega_BW = min(omega_phase, omega_gain) for a rate response; omega_phase for attitude command
+//! 4  omega_BW = omega_phase for attitude command; min(omega_phase, omega_gain) for rate command; without omega_gain:
+//!    omega_phase if there is no omega_180 either, otherwise none, because omega_BW is below the lowest frequency
 //! 5  Phi at 400 logarithmic points in omega_180 ... 2 omega_180; its maximum departure from the
 //!    line between its ends
 //! 6  up to 10 deg: tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180)
@@ -15,7 +16,8 @@
 //!
 //! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
 //! 4; MIL-DTL-32742. `attitude_response` does step 1, `phase_delay` steps 5 to 7; standard
-//! deviations come from `bandwidth_deviation`.
+//! deviations come from `bandwidth_deviation`. A number read above the band is marked, or refused
+//! where [`AboveBand::Refused`] is set.
 
 use serde::{Deserialize, Serialize};
 
@@ -148,8 +150,9 @@ struct PhaseDelay {
 }
 
 impl Reading<'_> {
-    /// Returns the value read from these frequencies, or the reason why it is unavailable. A
-    /// deviation that is not finite becomes `None`.
+    /// Returns the value read from these frequencies (the lowest and the highest); refuses it if it
+    /// is read above the band and the settings say so. A deviation that is not finite becomes
+    /// `None`.
     fn metric(
         &self,
         value: f64,
@@ -251,7 +254,7 @@ impl Reading<'_> {
         self.metric(root, [root, top], deviation)
     }
 
-    /// Returns the bandwidth and the margin that sets it.
+    /// Returns the bandwidth and the margin that sets it (step 4).
     fn limiting_margin(
         &self,
         omega_180: Result<Metric, NoMetric>,

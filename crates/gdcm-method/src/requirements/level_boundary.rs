@@ -302,9 +302,10 @@ impl LevelBoundaries {
     ///
     /// ```text
     /// for the boundaries in ascending order of their levels:
-    ///     on it or to the right of it      the level of this boundary
-    ///     above its end                    not determined
-    /// none of them                         one more than the last level
+    ///     on it or to the right of it            the level of this boundary
+    ///     above its end and to the right of it   not determined
+    ///     to the left of it                      the next boundary decides
+    /// to the left of all                         one more than the last level
     /// ```
     pub fn level(
         &self,

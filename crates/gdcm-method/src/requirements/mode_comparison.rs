@@ -3,9 +3,13 @@
 //!
 //! ```text
 //! 1  pair every model's modes with the identified ones by distance and shape (mode_pairing)
-//! 2  each mode's period, time to half or double amplitude, and damping ratio (mode_values)
-//! 3  within: period, and time to half or double amplitude or damping ratio, each within its tolerance (mode_tolerance)
-//! 4  not determined: below the band, by M14.5, or a standard deviation beyond the tolerance
+//! 2  name each flown mode by the states of the first model that has named states and a partner, else by its frequency (mode_name);
+//!    of equal names only the surest stays
+//! 3  each mode's period, time to half or double amplitude, and damping ratio (mode_values)
+//! 4  determined: the flown mode is not below the band, M14.5 determines it, and its standard deviations are within the tolerance
+//! 5  verdict, the first that applies:
+//!    not paired | not determined (4) | no tolerance for the name |
+//!    within: period, and time to half or double amplitude or damping ratio, each within its tolerance (mode_tolerance) | outside
 //! ```
 //!
 //! 14 CFR part 60, appendix C, table C2A, 2.c.3.a and 2.d.3.a.
@@ -41,7 +45,7 @@ pub struct ModelModes<'a> {
 pub enum ModeVerdict {
     Within,
     Outside,
-    /// Flight does not determine the mode to within the tolerance.
+    /// The mode is below the band, or flight does not determine it to within the tolerance.
     NotDetermined,
     /// The table has no tolerance for the mode.
     NoTolerance,
@@ -93,8 +97,10 @@ pub struct ModeRow {
 /// identification; empty if unavailable. Returns no rows if the flown model has no modes (a
 /// measured response).
 ///
-/// A row takes its name from the first model with named states and a counterpart. No two rows have
-/// the same name: if two would, only the row with the lower pairing cost keeps it.
+/// A row takes its name from the first model with named states and a counterpart, the flown model
+/// first; without one, from the flown mode's frequency. No two rows have the same name: if two
+/// would, only the row with the lower pairing cost keeps it, and a name by frequency never prevails
+/// over a name by states.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],

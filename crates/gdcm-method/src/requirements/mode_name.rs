@@ -15,6 +15,8 @@
 //!    real: below 0.5 rad/s spiral; 1 to 10 rad/s roll subsidence
 //! ```
 //!
+//! A mode that meets no rule has no name.
+//!
 //! u, v, w are velocities along the body axes, p, q, r the angular rates about them, and phi, theta,
 //! psi the bank, pitch and heading angles.
 //!
@@ -34,6 +36,9 @@ const FUSELAGE_SHARE: f64 = 0.3;
 const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
 /// Frequency \[rad/s\] below which a real lateral mode without dominant roll rate is the spiral.
 const FASTEST_SPIRAL_RAD_S: f64 = 1.0;
+/// Roll rate's share in the lateral participation at or above which a real lateral mode is the roll
+/// subsidence.
+const ROLL_RATE_SHARE: f64 = 0.5;
 
 /// A helicopter mode (Padfield 2007, 4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -117,7 +122,9 @@ impl ModeName {
             (true, false) if shares.sum(&[Q]) > shares.sum(&[W]) => Some(Self::PitchSubsidence),
             (true, false) => Some(Self::Heave),
             (false, true) => Some(Self::DutchRoll),
-            (false, false) if shares.sum(&[P]) >= 0.5 * lateral => Some(Self::RollSubsidence),
+            (false, false) if shares.sum(&[P]) >= ROLL_RATE_SHARE * lateral => {
+                Some(Self::RollSubsidence)
+            }
             (false, false) if mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S => Some(Self::Spiral),
             (false, false) => None,
         }

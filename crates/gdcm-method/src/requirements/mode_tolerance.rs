@@ -57,7 +57,8 @@ impl ModeTolerance {
     }
 
     /// Returns whether `model` is within the tolerance around `flown`: the period, and either the
-    /// time to half or double amplitude or the damping ratio.
+    /// time to half or double amplitude or the damping ratio. A value that either mode lacks is
+    /// outside.
     pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
         self.holds_period(flown.period_s, model.period_s)
             && (self.holds_amplitude(flown.time_to_half_s, model.time_to_half_s)

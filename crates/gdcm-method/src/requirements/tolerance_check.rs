@@ -291,7 +291,7 @@ impl TrendSums {
     }
 }
 
-/// An output over all windows in a record, each with its own estimated initial state (M14, 6).
+/// An output over all windows in a record, each with its own estimated initial state (M14.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
     /// Record index, counted from 0.

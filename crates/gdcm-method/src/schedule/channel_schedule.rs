@@ -6,7 +6,7 @@
 //! 2  ln k (or k) by channel and condition
 //! 3  contribution gamma z from the second variable, if any, subtracted from these values
 //! 4  the remainder regressed on v: polynomial by least squares, or means by cluster
-//! 5  the delays, or the signed delays, regressed where these are scheduled
+//! 5  the signed delays regressed if the corrections have leads; otherwise the delays, if requested
 //! 6  checks between the conditions (interpolation_check)
 //! ```
 //!

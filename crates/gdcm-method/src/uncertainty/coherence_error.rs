@@ -61,7 +61,8 @@ impl Measurement {
 
     /// Computes the standard errors of `ln G` and `D` over a band from the coherence at ascending
     /// frequencies `omega` \[rad/s\]. Frequencies with zero coherence, or coherence below
-    /// `threshold`, are left out; `None` if no frequency remains.
+    /// `threshold`, are left out; `None` if no frequency remains, or if the average count is not
+    /// positive.
     pub fn error(
         &self,
         omega: &[f64],

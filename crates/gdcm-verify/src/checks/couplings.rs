@@ -32,6 +32,7 @@ pub(super) fn coupled_state_space(_: &mut ReferenceStudy) -> Result<Found, Check
     )
     .map_err(CheckFault::no_result)?;
     let couplings = constant_couplings(&case.matrix("M")?, &case.matrix("K")?)?;
+    // The model has no delays: the order does not matter.
     let Some(pade) = Pade::new(4) else {
         return Err(CheckFault::no_result("no approximant of order 4"));
     };
@@ -82,13 +83,13 @@ fn constant_couplings(
 
 /// Compares the synthetic aircraft's coupling coefficients after each solve.
 pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
-    let toy = MIXING.read()?.member("toy")?;
-    let omega: Arc<[f64]> = toy.numbers("omega_rad_s")?.into();
+    let aircraft = MIXING.read()?.member("toy")?;
+    let omega: Arc<[f64]> = aircraft.numbers("omega_rad_s")?.into();
     let mut at_frequencies = Vec::new();
-    for matrix in toy.list("sd")? {
+    for matrix in aircraft.list("sd")? {
         at_frequencies.push(matrix.as_matrix()?);
     }
-    let on_axis = toy.list("on_axis")?;
+    let on_axis = aircraft.list("on_axis")?;
     let outputs = on_axis.len();
     let inputs = at_frequencies.first().map_or(0, DMatrix::ncols);
     let deviation = PairTable::from_fn(outputs, inputs, |pair: Pair| {
@@ -104,10 +105,10 @@ pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckF
             marked[Pair::new(output, input)] = mark.as_flag()?;
         }
     }
-    let physics = toy.list("H")?;
-    let flight = toy.list("R_disturbed")?;
+    let physics = aircraft.list("H")?;
+    let flight = aircraft.list("R_disturbed")?;
     let mut conditions = Vec::new();
-    for (index, airspeed_kt) in toy.numbers("airspeeds_kt")?.into_iter().enumerate() {
+    for (index, airspeed_kt) in aircraft.numbers("airspeeds_kt")?.into_iter().enumerate() {
         conditions.push(CouplingCondition {
             id: ConditionId(index as i64 + 1),
             airspeed_kt,
@@ -126,7 +127,7 @@ pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckF
         options: CouplingOptions::default(),
     };
     let fit = fit_couplings(&problem, &Sequential, &Unobserved).map_err(CheckFault::no_result)?;
-    let solves = toy
+    let solves = aircraft
         .member("disturbed")?
         .list("coefficients_of_each_solve")?;
     let mut found = Found::default();

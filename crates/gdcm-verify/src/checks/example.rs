@@ -1,4 +1,5 @@
-//! The whole method on the reference dataset, against independent code (M3 to M12).
+//! The whole method on the reference dataset, against independent code (M3 to M12): a function for
+//! each comparison in [`CHECKS`](super::CHECKS).
 
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
 use gdcm_study::ConditionAnalysis;
@@ -7,6 +8,8 @@ use crate::check::{CheckFault, Found};
 use crate::reference::{EXAMPLE, Reference};
 use crate::reference_study::ReferenceStudy;
 
+/// Index of J before the correction in the reference's lists; J after the correction follows.
+const BEFORE: usize = 0;
 /// Scale for gains, ratios and their logarithms, whose order of magnitude is 1.
 const GAIN: f64 = 1.0;
 /// Scale for delays \[s\]: a tenth of the smallest delay that matters to an engineer.
@@ -131,13 +134,15 @@ pub(super) fn costs(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     })
 }
 
+/// Part of J.
 #[derive(Clone, Copy)]
 enum Part {
     Magnitude,
     Phase,
 }
 
-/// Compares one part of J for all responses: before the correction if `index` is 0, after it if 1.
+/// Compares one part of J for all responses, before the correction if `index` is [`BEFORE`], after it
+/// otherwise.
 fn compare_costs(
     found: &mut Found,
     result: &ConditionAnalysis,
@@ -152,7 +157,7 @@ fn compare_costs(
             continue;
         };
         let cost = match index {
-            0 => change.uncorrected,
+            BEFORE => change.uncorrected,
             _ => change.corrected,
         };
         let own = match part {

@@ -41,6 +41,7 @@ fn state_space(value: &Reference) -> Result<StateSpace, CheckFault> {
     .map_err(CheckFault::no_result)
 }
 
+/// Builds a condition from its base model and runs in `value`, and the flight responses.
 fn condition(
     id: i64,
     value: &Reference,
@@ -60,6 +61,7 @@ fn condition(
         }
         runs.push(of_parameter);
     }
+    // The steps borrow the models read above.
     let mut steps: Vec<Vec<RunStep<'_>>> = Vec::new();
     for runs in &runs {
         let mut of_parameter = Vec::new();
@@ -92,24 +94,24 @@ fn condition(
 /// Compares the synthetic aircraft's parameters after each pass, with exact and with disturbed
 /// flight responses.
 pub(super) fn synthetic_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
-    let toy = PHYSICS.read()?.member("toy")?;
-    let models = toy.list("models")?;
+    let aircraft = PHYSICS.read()?.member("toy")?;
+    let models = aircraft.list("models")?;
     let mut found = Found::default();
     for (flight, case) in [("R", "exact"), ("R_disturbed", "disturbed")] {
         let mut conditions = Vec::new();
-        for (index, value) in toy.list(flight)?.iter().enumerate() {
+        for (index, value) in aircraft.list(flight)?.iter().enumerate() {
             let id = index as i64 + 1;
             conditions.push(condition(id, &models[index], value.as_response()?)?);
         }
         let problem = PhysicsProblem {
-            omega: toy.numbers("omega_rad_s")?.into(),
+            omega: aircraft.numbers("omega_rad_s")?.into(),
             on_axis: PairTable::from_fn(2, 2, |pair: Pair| pair.output == pair.input),
             parameters: vec![ParameterValue::Fitted; PARAMETERS.len()],
             conditions,
             options: PhysicsOptions::default(),
         };
         let own = diagnose(&problem, &Sequential, &Unobserved).map_err(CheckFault::no_result)?;
-        let expected = toy.member(case)?;
+        let expected = aircraft.member(case)?;
         let passes = expected.list("passes")?;
         found.agree(own.fit.passes.len() == passes.len());
         for (own, expected) in own.fit.passes.iter().zip(passes) {

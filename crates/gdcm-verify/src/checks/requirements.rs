@@ -27,7 +27,8 @@ impl SecondOrderAttitude {
     }
 }
 
-/// Evaluates the attitude response for a reference case at `s`.
+/// Evaluates the closed form of the attitude response at `s` for a case, counted as in the
+/// reference.
 fn attitude(case: usize, s: Complex<f64>) -> Complex<f64> {
     match case {
         0 => SecondOrderAttitude {

@@ -1,4 +1,5 @@
-//! Subject and method section for each recorded figure.
+//! Tables behind `docs/verification.md`: for each recorded figure its subject and method section,
+//! and for each section the figures that test it.
 
 use crate::checks::CHECKS;
 

@@ -65,7 +65,8 @@ const NOT_VERIFIED: &str = "
   table on any machine.
 ";
 
-/// Returns the page.
+/// Returns the page: comparisons of `gdcm verify`, comparisons that only tests make, certified optima,
+/// coverage of intervals, the evidence by section, peers, and what is not verified.
 ///
 /// # Errors
 /// [`FigureFault::Missing`] if a row has no figure.

@@ -16,6 +16,9 @@ use super::expansion::{Expansion, ScaleBox};
 const RIDGE: f64 = 1e-12;
 /// Slopes below this, relative to the largest, are rounding errors.
 const SLOPE_ROUNDING: f64 = 1e-14;
+/// Pivots below this, relative to the ridge, show that the Hessian is not positive definite: the
+/// ridge alone would make them larger.
+const LEAST_PIVOT: f64 = 0.1;
 
 /// Quadratic model `g' d + d' H d / 2` over the box `low <= d <= high`: [`QuadraticModel::set_box`]
 /// sets the box, [`QuadraticModel::minimise`] finds `step`. The memory is reused.
@@ -73,7 +76,8 @@ impl QuadraticModel {
     /// 1  free: every scale, unless its slope pushes it against its bound
     /// 2  move to the minimum over the free scales, as far as the box allows
     /// 3  if a bound ends the move, make it active and repeat from 2
-    /// 4  release the active bound with the largest inward slope and repeat from 2; stop if there is none
+    /// 4  release the active bound with the largest inward slope and repeat from 2; stop if there is none,
+    ///    or after 8 n + 8 passes, with the decrease so far
     /// ```
     ///
     /// Returns the decrease, or `None` if the effort is stopped or `H` is not positive definite on
@@ -154,7 +158,7 @@ impl QuadraticModel {
                 }
                 self.factor[row * self.scales + column] = if row > column {
                     entry / self.factor[column * self.scales + column]
-                } else if entry > 0.1 * ridge {
+                } else if entry > LEAST_PIVOT * ridge {
                     entry.sqrt()
                 } else if hessian[self.free[row] * self.scales + self.free[row]] == 0.0
                     && ridge == 0.0
@@ -203,6 +207,7 @@ impl QuadraticModel {
                 continue;
             };
             let allowed = ((end - self.step[scale]) / self.move_to[scale]).max(0.0);
+            // A bound that is exceeded only by rounding still ends the move.
             if allowed < fraction || blocking.is_none() {
                 fraction = allowed.min(fraction);
                 blocking = Some(Blocking { scale, end });

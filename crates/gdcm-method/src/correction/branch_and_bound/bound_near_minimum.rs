@@ -12,7 +12,18 @@ const WITHIN: f64 = 0.01;
 
 impl NodeExclusion<'_> {
     /// Bounds the objective from below over a region on which it is convex, from its gradient and
-    /// Hessian at `minimum`. `None` if the gradient is too large for such a bound.
+    /// Hessian at `minimum`, a point of that region.
+    ///
+    /// ```text
+    /// 1  least Hessian: each term's minimum curvature within 0.01 of the minimum
+    /// 2  pressure of each scale against its active bound
+    /// 3  anchors: in each floating piece, a scale that does not move
+    /// 4  reach of each free scale: root of the diagonal of the least Hessian's inverse
+    /// 5  quadratic bound (`convex_bound`)
+    /// ```
+    ///
+    /// `None` if a piece has pressure, but less than its slopes without pressure add up to (3), the
+    /// least Hessian is not positive definite (4), or the gradient is too large (5).
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
         // The difference between two scales changes by up to twice the distance.
         let least = self.least_hessian(|term| {

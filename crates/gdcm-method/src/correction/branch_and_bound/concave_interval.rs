@@ -11,8 +11,26 @@
 use super::exponential::Exponential;
 use crate::correction::interval::Interval;
 
+/// Maximum iterations for the quartic's minimum; a few are typical.
+const NEWTON_STEPS: usize = 60;
+/// Relative step at which the quartic's minimum is found: rounding level.
+const NEWTON_ROUNDING: f64 = 1e-15;
+/// Maximum number of times that the outer end of a bracket is moved to double distance.
+const DOUBLINGS: usize = 40;
+/// Relative width at which the bisection ends, well below the interval's slack.
+const BRACKET_WIDTH: f64 = 1e-12;
+
 /// Finds the only interval on which the exponentials' sum is concave, widened slightly; `None` if
 /// the sum is convex everywhere.
+///
+/// ```text
+/// both exponentials zero   none
+/// only forward             -infinity to its inflection ln(c1 / 2)
+/// only backward            its inflection -ln(c2 / 2) to infinity
+/// both                     1  u at which the curvature's quartic is minimal
+///                          2  none, if the quartic is positive there by more than its rounding error
+///                          3  each end by bisection, between that u and a point where the sum is surely convex
+/// ```
 ///
 /// With `z = e^u` the curvature times `z^2 / 2` is the quartic
 /// `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`. Its coefficients change sign twice, so that it has
@@ -73,10 +91,10 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     let square = 3.0 * forward.centre / 8.0;
     let constant = backward.weight * backward.centre / (8.0 * forward.weight);
     let mut z = square + constant.cbrt();
-    for _ in 0..60 {
+    for _ in 0..NEWTON_STEPS {
         let step = (z * z * (z - square) - constant) / (z * (3.0 * z - 2.0 * square));
         z -= step;
-        if step.abs() <= 1e-15 * z {
+        if step.abs() <= NEWTON_ROUNDING * z {
             break;
         }
     }
@@ -89,13 +107,13 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
 fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
     let mut convex = outside;
     let mut other = inside;
-    for _ in 0..40 {
+    for _ in 0..DOUBLINGS {
         if is_surely_convex(forward, backward, convex) {
             break;
         }
         convex += convex - inside;
     }
-    while (convex - other).abs() > 1e-12 * (1.0 + convex.abs()) {
+    while (convex - other).abs() > BRACKET_WIDTH * (1.0 + convex.abs()) {
         let middle = 0.5 * (convex + other);
         if is_surely_convex(forward, backward, middle) {
             convex = middle;

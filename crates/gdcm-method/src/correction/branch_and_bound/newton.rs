@@ -24,9 +24,11 @@ const LEAST_STEP: f64 = 1e-15;
 /// A projected Newton method.
 ///
 /// ```text
-/// 1  quadratic model at the current point; the step leads to its minimum over the box
-/// 2  halve the step until the function decreases
-/// 3  repeat from 1, until the step is at rounding level or `enough` holds
+/// 1  quadratic model at the current point; the step leads to its minimum over the box;
+///    with the curvature's magnitude where the Hessian is not positive definite; end if there is no minimum either
+/// 2  halve the step until the function decreases; end if it does not
+/// 3  repeat from 1, until `enough` holds, the step is at rounding level, three steps were made near the minimum,
+///    or after 100 steps
 /// ```
 ///
 /// Each step minimises the model over the box exactly, so that the active bounds are correct as

@@ -87,6 +87,7 @@ impl<'a> NodeExclusion<'a> {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
         let ground = self.objective.ground();
+        // A scale in a floating piece stays free, because no bound stops it alone.
         let free: Vec<usize> = (0..ground)
             .filter(|&scale| self.bounded_by[scale] != [ground] || sign(&slopes[scale]) == 0)
             .collect();

@@ -14,7 +14,7 @@ use super::term::{Function, Term, TermSum};
 /// An entry in a least-squares objective: `weight (delta - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
-    /// Index of the output's scale.
+    /// Index of the output's scale; the ground, if the entry is an input's deviation from neutral.
     pub(crate) output: usize,
     /// Index of the input's scale; the ground, if the entry is an output's deviation from neutral.
     pub(crate) input: usize,

@@ -1,4 +1,5 @@
-//! Branch-and-bound search for the global minimum and for the other minima within 1 % above it.
+//! Branch-and-bound search for the global minimum and for the other minima within 1 % above it: the
+//! loop of the algorithm in [`super`], which defines scales, terms and nodes.
 
 use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
@@ -27,6 +28,12 @@ const SAME_MINIMUM: f64 = 1e-6;
 const SPLIT_MARGIN: f64 = 0.15;
 /// Minimum range width for splitting a term's range.
 const LEAST_SPLIT_WIDTH: f64 = 1e-11;
+/// Minimum distance between a term and its envelope, relative to the gap's denominator, for
+/// branching at that term; smaller distances are negligible beside [`AIM`].
+const LEAST_ENVELOPE_GAP: f64 = 1e-13;
+/// Ratio between the underestimators' outer curvature and the objective's largest curvature at the
+/// best minimum.
+const OUTER_CURVATURE_RATIO: f64 = 8.0;
 
 /// A local minimum.
 #[derive(Clone, Debug)]
@@ -240,7 +247,14 @@ impl<'a> Search<'a> {
     /// Line 5: returns the largest lower bound found by Newton's method on the underestimator.
     /// Moves `start` to the last point, near the underestimator's minimum.
     ///
-    /// `goal` is the bound above which the node need not be branched.
+    /// `goal` is the bound above which the node need not be branched. Newton's method ends early if
+    /// the bound
+    ///
+    /// - reaches the cutoff, so that the node is closed,
+    /// - is so far below `goal` that the node will be branched anyway, or
+    /// - is as sharp as desired, or as rounding permits;
+    ///
+    /// and if the work budget is exhausted.
     fn lower_bound(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -255,22 +269,22 @@ impl<'a> Search<'a> {
         let cutoff = self.cutoff();
         let tolerance = ACCEPTED_LOSS * AIM * self.denominator();
         let effort = self.effort;
-        let most = self.budget.work;
+        let work_budget = self.budget.work;
         let bounds = ScaleBox {
             lower: &self.lower,
             upper: &self.upper,
         };
         let exact = underestimator.is_exact();
-        let mut best = f64::NEG_INFINITY;
+        let mut highest = f64::NEG_INFINITY;
         self.newton
             .minimise(underestimator, bounds, start, |scales, at| {
-                best = best.max(tangent_bound(scales, at, bounds));
-                let loss = at.value.value - best;
+                highest = highest.max(tangent_bound(scales, at, bounds));
+                let loss = at.value.value - highest;
                 let branched_anyway = !exact && loss <= ACCEPTED_LOSS * (goal - at.value.value);
                 let sharp = loss <= tolerance.max(2.0 * at.value.error);
-                best >= cutoff || branched_anyway || sharp || effort.spent() >= most
+                highest >= cutoff || branched_anyway || sharp || effort.spent() >= work_budget
             });
-        best
+        highest
     }
 
     /// Line 6: minimises the objective from `start` over the whole box, and stores the minimum if
@@ -291,7 +305,7 @@ impl<'a> Search<'a> {
                 .hessian
                 .iter()
                 .fold(0.0_f64, |most, entry| most.max(entry.abs()));
-            self.outer_curvature = 8.0 * curvature;
+            self.outer_curvature = OUTER_CURVATURE_RATIO * curvature;
         }
         self.effort
             .spend((self.minima.len() * self.objective.terms.len()) as u64);
@@ -376,9 +390,14 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// Line 9: branches at the term whose envelope loses most of the node's bound. If nothing is
-    /// lost or the best minimum is already proven, separates convex from concave parts; where this
-    /// is not possible either, splits the range for the term whose slope varies most.
+    /// Line 9: branches the node, by the first of these that applies:
+    ///
+    /// - before the proof, at the term whose envelope loses most of the node's bound;
+    /// - at a concave interval's end (in the listing, at all ends), to separate convex from concave
+    ///   parts;
+    /// - at the term whose slope varies most.
+    ///
+    /// Closes the node if there is no such term, or the term's range is too narrow to be split.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -391,7 +410,7 @@ impl<'a> Search<'a> {
         let listing = self.proven_at.is_some();
         let mut term = None;
         if !listing {
-            term = underestimator.widest_gap(start, 1e-13 * self.denominator());
+            term = underestimator.widest_gap(start, LEAST_ENVELOPE_GAP * self.denominator());
         }
         if term.is_none() {
             let ends = underestimator.concave_ends(start);
@@ -458,6 +477,9 @@ impl<'a> Search<'a> {
     }
 
     /// Line 10: returns the lower bound, and the minima within 1 % above the best.
+    ///
+    /// A gap that is no proof is due to full memory; otherwise to exhausted work, if the bound is
+    /// that of an open node; otherwise to rounding.
     fn into_minima(mut self) -> Minima {
         let left = self.open.least_bound();
         let cutoff = self.cutoff();

@@ -3,7 +3,7 @@
 //! ```text
 //! F(s) = constant + sum over terms f(s_to - s_from)  >=  constant + sum over terms e(s_to - s_from)
 //! e: f itself where f is convex over the node's range of the difference, otherwise the sum of the envelopes
-//!    of its two exponentials
+//!    of its two exponentials: forward in u = s_to - s_from, backward in -u
 //! ```
 
 use super::derivatives::Derivatives;

@@ -84,7 +84,8 @@ impl Vertex {
         deviations
     }
 
-    /// Returns the vertex along an edge at which the summed deviations stop falling.
+    /// Returns the vertex along an edge at which the summed deviations stop falling; `None` if
+    /// no constraint stops the fall, or if no vertex is defined there.
     ///
     /// Each row whose deviation changes sign along the edge raises the sum's slope by twice the
     /// row's rate of change; the sum stops falling where the slope is no longer negative.

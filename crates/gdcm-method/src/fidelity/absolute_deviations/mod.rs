@@ -46,8 +46,12 @@ pub enum FitError {
 /// ```
 ///
 /// Barrodale and Roberts' simplex method (SIAM J. Numer. Anal. 10(5), 1973): exact, and identical
-/// on every machine. `x` (rows with equal length) and `y` must not be negative. The search ends
-/// without a result at the first vertex at which it is `cancelled`.
+/// on every machine. `x` (rows with equal length) and `y` must not be negative. If all `y` are zero,
+/// so are the weights.
+///
+/// # Errors
+/// [`FitError::Cancelled`] at the first vertex at which the search is `cancelled`,
+/// [`FitError::NotSolved`] if the linear program in step 4 fails.
 pub fn least_absolute_deviations(
     x: &[Vec<f64>],
     y: &[f64],

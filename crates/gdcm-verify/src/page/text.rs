@@ -119,7 +119,7 @@ pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
     }
     text.push_str(
         "\nMore populations: [uncertainty.md](uncertainty.md#measured-coverage), \
-         [physics.md](physics.md#limits).\n",
+         [physics.md](physics.md#m187-limits).\n",
     );
     text.push_str("\n## By section\n\n| section | evidence |\n|---|---|\n");
     for section in SECTIONS {

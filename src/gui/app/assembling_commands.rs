@@ -53,6 +53,8 @@ impl GdcmApp {
             AssemblingCommand::SaveRules(path) => self.save_rules(path),
             AssemblingCommand::MakeDataset(path) => self.make_dataset(path),
         }
+        // Tables are read with the headings in the rules, so other headings require another
+        // reading.
         if let Some(import) = &self.state.assembling
             && import.assembly().rules().headings != headings
         {

@@ -8,13 +8,15 @@
 //! |--------|----------------------------------------|-------------------------------------|
 //! | live   | live analysis                          | follows every drag                  |
 //! | short  | curves, modes                          | first picture of the condition      |
-//! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
+//! | short  | assessment, across conditions          | tables and plots in visible views   |
 //! | short  | trade-off of α                         | plot beside its slider              |
+//! | short  | requirements                           | tables and plots in visible views   |
 //! | short  | dry run of an export                   | list of files in the dialog         |
 //! | short  | test input, record history, simulation | time responses in visible views     |
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
-//! | long   | couplings, responses to all records    | views that show their progress      |
+//! | long   | couplings, physics parameters          | views that show their progress      |
+//! | long   | responses to all records               | a view that shows its progress      |
 //! | long   | report                                 | requested explicitly; seconds       |
 //! | long   | error bars                             | repeated after every change         |
 //! | long   | identification                         | minutes; occupies a thread longest  |

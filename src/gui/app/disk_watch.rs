@@ -58,8 +58,10 @@ struct LastCheck {
 }
 
 impl LastCheck {
-    /// Checks the file once; returns its content if it has changed. A file that is being written is
-    /// read once time and length are equal in two checks.
+    /// Checks the file once; returns its content if it has changed. The bytes are read if time and
+    /// length (the stamp) equal those of the last check, so that a file that is being written is
+    /// not read, and differ from those at the last reading. `None` in every other case: the file
+    /// is missing, cannot be read, was written meanwhile, or has the same bytes as before.
     fn check(&mut self, path: &Path) -> Option<ChangedFile> {
         if self.path != path {
             *self = LastCheck {

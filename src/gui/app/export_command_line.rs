@@ -152,7 +152,12 @@ fn given_options(form: &ExportForm, breakpoints_kt: Option<&[f64]>) -> Vec<Given
 }
 
 /// Returns the file that a command reads, and options that turn its study into `study`; `None` if
-/// options cannot express the difference.
+/// options cannot express the difference:
+///
+/// 1. begin with a trial, the study that the command reads;
+/// 2. for each difference in settings, held responses, rejected models and held-out conditions, add
+///    an option, and apply it to the trial;
+/// 3. the trial must then equal the study; anything else that differs cannot be expressed.
 fn study_words(study: &Study, source: &CommandSource) -> Option<Vec<String>> {
     let mut trial = source.study.clone()?;
     let mut words = Vec::new();

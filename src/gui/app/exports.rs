@@ -51,8 +51,12 @@ impl GdcmApp {
         }
     }
 
-    /// Writes the files that the export dialog lists, once its dry run has ended. Errors stay in
-    /// the dialog.
+    /// Writes the files that the export dialog lists. Errors stay in the dialog:
+    ///
+    /// 1. the form is incomplete;
+    /// 2. the results are incomplete;
+    /// 3. the dry run has not ended: [`Self::take_export_plan`] calls this function again;
+    /// 4. write the files; if that fails, a new dry run sees what is in the folder now.
     pub(super) fn export(&mut self) {
         let form = &mut self.state.forms.export;
         form.error = None;
@@ -80,7 +84,6 @@ impl GdcmApp {
             Err(error) => {
                 let form = &mut self.state.forms.export;
                 form.error = Some(error.into());
-                // Files in the folder may have changed since the dry run.
                 form.revision += 1;
             }
         }
@@ -116,6 +119,7 @@ impl GdcmApp {
                 counted(count, "file"),
                 sanitized_path(&folder)
             );
+            // The notice offers the folder of a file.
             let any_file = folder.join("file");
             self.notify_written_to(Activity::Export, Message::new("exported", text), &any_file);
         }

@@ -78,7 +78,13 @@ struct Running<J> {
     run: Arc<Run>,
 }
 
-/// Requested jobs and their states.
+/// Requested jobs and their states:
+///
+/// ```text
+/// waiting → running → done         until it is no longer requested
+///                   → stopped      by hand or by a fault; `resume` makes it wait again
+///                   → cancelled    no longer requested; nothing is kept
+/// ```
 struct Orders<J> {
     /// Requested jobs, the most urgent first.
     wanted: Vec<J>,

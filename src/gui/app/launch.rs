@@ -40,6 +40,12 @@ const WRONG_FILE: u8 = 2;
 /// window is closed. A folder, or a file from another program, opens the model import. Returns the
 /// exit status.
 ///
+/// 1. Without a display, only report whether the file can be read.
+/// 2. Read the file in a thread.
+/// 3. Repair a stored zoom factor with which the window would be unusable.
+/// 4. Run the window (`run`); a panic counts as its end.
+/// 5. Report why it ended (`ending`), unless it was closed.
+///
 /// Without a display, or if the window cannot be created, prints one line on standard error, which
 /// names the command that works without a window.
 pub fn open(path: Option<PathBuf>) -> u8 {

@@ -66,7 +66,8 @@ impl GdcmApp {
         });
     }
 
-    /// Adds the models that were read to the import.
+    /// Adds the models that were read to the import. Additional files count as far as they were
+    /// read before a stop. Files read again replace all models, so after a stop they are ignored.
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
         let Some(import) = &mut self.state.assembling else {
             return;

@@ -92,6 +92,7 @@ impl GdcmApp {
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.files.at_home(path);
         let moved = moved.map(|dataset| self.files.at_home(dataset));
+        // A path without an extension, usually a folder, gets the message of `load_any`.
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             let text = format!(

@@ -117,8 +117,13 @@ impl GdcmApp {
 }
 
 impl DatasetRequest {
-    /// Builds a dataset from the records that contain the requested channels; completes the
-    /// channels' units.
+    /// Builds a dataset from the records that contain the requested channels:
+    ///
+    /// 1. read the records; what cannot be read is a problem;
+    /// 2. combine tables that are topics of one record, and propose a layout for each record;
+    /// 3. a record without problems completes the channels' units and becomes an entry in the
+    ///    dataset;
+    /// 4. build the dataset; the problems say what it leaves out.
     ///
     /// # Errors
     /// The problems in the records, if no record is suitable, or the fault in the dataset.

@@ -32,7 +32,14 @@ struct ReadingStart {
 
 impl GdcmApp {
     /// Reads the displayed condition's records once a view that needs them is shown, then the other
-    /// conditions' records.
+    /// conditions' records. In each frame:
+    ///
+    /// 1. adapt the displayed condition's records to its band, and in the Records view show a
+    ///    record that excites the input in focus;
+    /// 2. stop here if no view shows records, if files are being read, or if every condition has
+    ///    an entry;
+    /// 3. if none of the unread conditions can have records of its own, only create their entries;
+    /// 4. otherwise read their records in a thread, which creates the entries when it ends.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
@@ -219,7 +226,13 @@ impl GdcmApp {
         }
     }
 
-    /// Adds records to their conditions, or to those without a condition; this can be undone.
+    /// Adds records to their conditions, or to those without a condition; this can be undone:
+    ///
+    /// 1. if a record has problems, unfold the columns, where they are solved;
+    /// 2. add the records condition by condition; a condition with new records is outdated, its
+    ///    common clock unknown if older records have another, and copies are left out;
+    /// 3. add the records without a condition;
+    /// 4. record an undo step with what has changed, and report the counts.
     fn store_added_records(
         &mut self,
         added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
@@ -232,7 +245,6 @@ impl GdcmApp {
             .chain(&unassigned)
             .any(|row| !row.problems.is_empty());
         if has_problems {
-            // Adding records includes assigning columns: ask for them at once.
             self.state.records.open_fold = Some(RecordsFold::Columns);
         }
         let mut before = self.state.records.before(added.keys().copied());

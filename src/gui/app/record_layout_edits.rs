@@ -91,8 +91,9 @@ struct LayoutChange {
 }
 
 impl LayoutChange {
-    /// Returns a record's new layout; `None` if it keeps its layout. Records that the dataset lists
-    /// are in the dataset's units, so a change applies only to listed or only to unlisted records.
+    /// Returns a record's new layout: first, for the edited record itself, the layout as edited;
+    /// `None`, if only one of both is listed by the dataset, because listed records are in its
+    /// units; else the record's own layout with the same changes, as far as its columns are alike.
     fn layout_for(&self, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());

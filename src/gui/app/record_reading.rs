@@ -158,10 +158,14 @@ pub(super) struct AddedFiles {
 }
 
 impl AddedFiles {
-    /// Reads the records in the files and assigns each to the condition that its file or folder
-    /// name states; other records remain unassigned. Units that neither the files nor the samples
-    /// determine are assumed to be the dataset's. Also reads these conditions' own records if they
-    /// are not yet loaded.
+    /// Reads the records in the files:
+    ///
+    /// 1. read tables; what is no record becomes a fault;
+    /// 2. combine tables that are topics of one record;
+    /// 3. assign columns to channels; units that neither the files nor the samples determine are
+    ///    assumed to be the dataset's;
+    /// 4. assign each record to its condition ([`condition_of`]); others remain unassigned;
+    /// 5. read these conditions' own records if they are not yet loaded.
     ///
     /// # Errors
     /// The fault in a path; faults in single files are collected.
@@ -205,9 +209,14 @@ impl AddedFiles {
     }
 }
 
-/// Returns an added record's condition: the dataset's only condition; or the condition whose
-/// dataset entry names the record; or the condition stated in the name of the record, its file or
-/// its folder, by number or by an airspeed that no other condition has.
+/// Returns an added record's condition, by the first rule that applies:
+///
+/// 1. the dataset has only one condition: that;
+/// 2. a condition's entry in the dataset lists the record: that condition;
+/// 3. the name of the record or its file, else of its folder, states a number: the condition with
+///    this number, or none, because an airspeed must not hide a wrong number;
+/// 4. one of these names states an airspeed: the only condition at this airspeed, if there is one;
+/// 5. none.
 fn condition_of(
     row: &LaidOutRecord,
     file: Option<&Path>,
@@ -231,7 +240,6 @@ fn condition_of(
         if let Some(id) = guess.condition_of(dataset) {
             return Some(id);
         }
-        // A number without a condition is a mistake that an airspeed must not hide.
         if guess.condition.is_some() {
             return None;
         }
@@ -257,8 +265,8 @@ fn only_condition_at(airspeed_kt: f64, dataset: &Dataset) -> Option<ConditionId>
     Some(first.id())
 }
 
-/// Assigns a record's columns to channels: as the dataset states, or by a proposal without a
-/// dataset.
+/// Assigns a record's columns to channels: as `dataset` states for a record that it names; other
+/// records by a proposal. A resampled record keeps the notes about its resampling.
 fn laid_out(
     table: RecordTable,
     channels: &RecordChannels,
@@ -280,7 +288,8 @@ fn canonical_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// Finds a record's file among the added paths: a path itself, or a file inside an added folder.
+/// Finds a record's file, by its name, among the added paths: a path itself, or a file directly
+/// inside an added folder; the first that fits.
 fn find_file(name: &str, paths: &[PathBuf]) -> Option<PathBuf> {
     for path in paths {
         let own_name = path.file_name().map(|name| name.to_string_lossy());

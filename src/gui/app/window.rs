@@ -148,15 +148,18 @@ impl GdcmApp {
         self.ctx.input(|input| input.time)
     }
 
-    /// Opens or imports the files dropped on the window.
+    /// Opens or imports the files dropped on the window:
+    ///
+    /// 1. while models are imported, everything is added to the import;
+    /// 2. else a single dataset or study is opened;
+    /// 3. else, while a condition's records are shown, the files are added to them;
+    /// 4. else several files, a folder, and files from other programs are imported as models.
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped
             .iter()
             .map(|file| file.path().to_path_buf())
             .collect();
-        // A single dataset or study is opened; several files, a folder, and files from other
-        // programs are imported as models.
         let is_importing = self.state.assembling.is_some();
         let arrangement = &self.state.display.layout.arrangement;
         match paths.as_slice() {
@@ -164,7 +167,6 @@ impl GdcmApp {
             [path] if !is_importing && !holds_models(path) => {
                 commands.push(FileCommand::Open(path.clone()).into())
             }
-            // While a condition's records are shown, dropped files are added to them.
             _ if !is_importing && arrangement.is_shown(View::Records) => {
                 commands.push(RecordsCommand::Add(paths).into());
             }
@@ -237,6 +239,7 @@ impl eframe::App for GdcmApp {
         tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus_ring::focus_ring_ui(&ctx, &palette);
         escape_key::note_focus(&ctx);
+        // The first frame hands over the autosave; see `launch.rs`.
         self.recovery
             .drawn
             .get_or_init(|| self.recovery.autosave.clone());

@@ -27,7 +27,9 @@ use crate::gui::widgets::panel_layout::restore_panel_size;
 /// Minimum window width \[pt\] for full names and the full left panel.
 const WIDE: f32 = 1400.0;
 
-/// Draws the bars, the side panels and the middle, or the page that covers them.
+/// Draws the bars at the top and at the foot, and between them: the model import, if it is open;
+/// else the start page, if it is shown; else the side panels, the views, and the open sheet over
+/// the views.
 pub(super) fn panels_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -72,7 +74,9 @@ pub(super) fn panels_ui(
 /// depends on the dataset alone, so that it looks the same beside every view.
 const CONDITIONS_PART: f32 = 0.365;
 
-/// Draws the left panel with conditions and models, or their records, in full or as a narrow rail.
+/// Draws the left panel: as a narrow rail, with the settings beside it while they are open; or in
+/// full, with the condition list above. Below the list are the settings while they are open, else
+/// what belongs to the view in front: records, physics parameters or, for the others, models.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     let layout = &state.display.layout;
@@ -191,7 +195,8 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.advance_cursor_after_rect(room);
 }
 
-/// Draws the open sheet, if any, over the views.
+/// Draws the open sheet over the views: first a derivation, else another sheet. The reasons are not
+/// among them: they are drawn below the verdict.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let sheet = if state.display.selection.explained.is_some() {
         Sheet::Derivation

@@ -15,7 +15,8 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 
-/// Returns the entries in the View menu.
+/// Returns the entries in the View menu, by its groups, which lines separate; and those that show a
+/// view, which are in the palette only.
 pub(super) fn view_entries(state: &State) -> Vec<Entry> {
     let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),

@@ -82,8 +82,9 @@ impl Advice {
     /// 2. Reject the suggested physics models.
     /// 3. Constrain responses, if none are constrained.
     /// 4. Resolve a gain conflict.
-    /// 5. Correct the phase.
-    /// 6. Use worthwhile couplings, or switch the others off.
+    /// 5. Correct the phase, if it is not corrected, or if held delays are not matched.
+    /// 6. Use worthwhile couplings, or switch couplings off that are not worth it or make poles
+    ///    within the band unstable.
     /// 7. Export.
     pub(super) fn new(state: &State, shown: &ConditionAnalysis) -> Self {
         if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
@@ -136,7 +137,8 @@ impl Advice {
         }
     }
 
-    /// Recommends using worthwhile couplings, or removing couplings that are not worthwhile.
+    /// Recommends using worthwhile couplings, or switching off couplings that are not worth it or
+    /// make poles within the band unstable; `None` if neither applies.
     fn on_couplings(state: &State) -> Option<Self> {
         let look = Step::new(
             INSPECT,

@@ -152,8 +152,9 @@ impl<'a> ConditionRows<'a> {
         cell.expand2(vec2(margin, 2.0))
     }
 
-    /// Paints a condition's mark as in the Net gain view: the shape shows the altitude class, the
-    /// fill the weight class.
+    /// Paints a condition's mark as in the Net gain view: the shape shows the altitude class (a
+    /// circle for the first, else a square on its corner), the fill the weight class (filled for
+    /// the first).
     pub(super) fn paint_mark(
         &self,
         ui: &Ui,

@@ -93,6 +93,8 @@ impl<'a> Cell<'a> {
         self.shown?.comparison.undefined[self.pair]
     }
 
+    /// Draws the cell and its box. A click on the box, a double click or the space bar constrains
+    /// or releases the response, unless it is undefined; any other click brings it into focus.
     pub(super) fn ui(
         &self,
         ui: &mut Ui,
@@ -188,6 +190,8 @@ impl<'a> Cell<'a> {
         response.on_hover_text(hint)
     }
 
+    /// Paints background and outline: of the outlines, the focus comes before a conflict, and a
+    /// conflict before a constraint, which has none because its background shows it.
     fn paint(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let painter = ui.painter();
         let fill = if self.constrained {
@@ -211,7 +215,7 @@ impl<'a> Cell<'a> {
     }
 
     /// Paints G above D \[ms\], each with the half-width of its error bar and its part of J as an
-    /// underline.
+    /// underline; for a response without G, only "no G", or "nothing" if it is numerically zero.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
         let gain = shown.wanted_gain(self.pair);
@@ -331,8 +335,9 @@ impl<'a> Cell<'a> {
         sign_reversal_entry(self.state, channel, role)
     }
 
-    /// Draws four aligned rows. The submenu [`QUESTION`](crate::gui::plot::questions::QUESTION) in
-    /// the cell's menu leads to the derivation of every value.
+    /// Draws four aligned rows. The submenu
+    /// [`QUESTION`](crate::gui::plot::derivation_menu::QUESTION) in the cell's menu leads to the
+    /// derivation of every value.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {

@@ -220,7 +220,7 @@ struct ChannelName<'a> {
     name: &'a str,
     place: Pos2,
     align: Align2,
-    /// Whether the channel is involved in a gain conflict.
+    /// Whether the channel is involved in a gain conflict, or has a doubtful sign or unit.
     is_blamed: bool,
     is_focused: bool,
 }
@@ -244,8 +244,8 @@ impl ChannelName<'_> {
     }
 }
 
-/// Returns the responses and channels with conflicting gain constraints, and the channels whose
-/// sign or unit is doubtful.
+/// Returns the responses with conflicting gain constraints; and the channels involved in these
+/// conflicts, with those whose sign or unit is doubtful.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let mut pairs = BTreeSet::new();
     let mut channels = BTreeSet::new();

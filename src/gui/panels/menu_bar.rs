@@ -93,7 +93,8 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     rect.left()
 }
 
-/// Draws menu entries, in groups separated by lines.
+/// Draws menu entries, in groups separated by lines. In the File menu, the recent files come before
+/// the first example; at the end of the View menu is the submenu for curves.
 fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) {
     let mut last = None;
     let first_example = Command::File(FileCommand::OpenExample(Example::ALL[0]));

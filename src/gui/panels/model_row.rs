@@ -65,7 +65,8 @@ pub(super) struct ModelRow<'a> {
     pointed: bool,
     /// Mean distance to the other kept models.
     score: Option<f64>,
-    /// Discontinuity ratio, for physics models only.
+    /// Discontinuity ratio, for physics models only: the distance from the other models, relative
+    /// to the distance that the perturbation of the trim explains.
     ratio: Option<f64>,
     /// Reason why the model is excluded from the comparison.
     set_aside: Option<String>,
@@ -275,8 +276,9 @@ impl<'a> ModelRow<'a> {
         }
     }
 
-    /// Paints "set aside", the discontinuity ratio with its bar, or the order ("measured" without
-    /// an order); returns the occupied width on the right \[pt\].
+    /// Paints "set aside"; else, for a physics model, the discontinuity ratio with its bar, if it
+    /// is computed; else, for an identified model, the order ("measured" without an order). Returns
+    /// the occupied width on the right \[pt\].
     fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
         if self.set_aside.is_some() {
             row_text(ui, rect, -5.0, "set aside", SMALL_SIZE, palette.warning);
@@ -372,7 +374,7 @@ impl<'a> ModelRow<'a> {
     }
 
     /// Draws the name above at most five aligned rows. The submenu
-    /// [`QUESTION`](crate::gui::plot::questions::QUESTION) in the row's menu leads to the
+    /// [`QUESTION`](crate::gui::plot::derivation_menu::QUESTION) in the row's menu leads to the
     /// derivation of every value.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));

@@ -91,7 +91,9 @@ fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     rows_ui(ui, state, palette, kind, commands);
 }
 
-/// Draws the actions on all models at once, above the list so that they do not scroll.
+/// Draws the actions on all models at once, above the list so that they do not scroll: *Restore
+/// all*, if a model is rejected, and *Reject* for suggested outliers (`open`), if the verdict
+/// recommends another step first.
 fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);

@@ -129,7 +129,11 @@ pub fn reasons_inspector_ui(
         .show(ui, |ui| reasons_ui(ui, state, palette, commands));
 }
 
-/// Draws the reasons for the displayed result.
+/// Draws the reasons for the displayed result, or why there is none:
+///
+/// 1. remarks with their remedies, worthwhile couplings, suggested runs;
+/// 2. possible sources of a lag, if delays are not matched or leads are in use; the leads;
+/// 3. the proof of optimality, the objectives, and details about the solution.
 fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(Ok(shown)) = state.outcome() else {
         let words = match state.outcome() {

@@ -70,6 +70,7 @@ pub fn record_conditions_ui(
             kind: TableKind::Conditions,
         };
         heading.ui(ui, palette, commands);
+        // 112 and 152 are `LIST.records_end` and `LIST.cost_end`.
         let heads = [
             (LIST.number_end, "no."),
             (LIST.airspeed_end, "kt"),
@@ -160,6 +161,7 @@ struct RecordsRow<'a> {
 }
 
 impl RecordsRow<'_> {
+    /// Draws the row; `map` paints the flight-state mark as in the usual list.
     fn ui(
         &self,
         ui: &mut Ui,
@@ -248,7 +250,8 @@ impl RecordsRow<'_> {
         self.paint_cell(ui, row, columns.held_out_end, &words, color(is_bad));
     }
 
-    /// Paints the fit state: ✓, ⚠ with a count, progress, "queued", "outdated".
+    /// Paints the fit state: progress, "queued", "failed", "outdated", or for a finished fit ✓ and,
+    /// with cautions, ⚠ and their count; in the rail, a single short mark.
     fn paint_status(&self, ui: &Ui, row: Rect, palette: &Palette) {
         let left = self.columns.status_left;
         let is_rail = self.columns.records_end.is_none();

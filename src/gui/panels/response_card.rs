@@ -29,7 +29,8 @@ pub struct CardRow {
     pub left: String,
     /// Error bar's half-width, with its unit.
     pub half: String,
-    /// Whether the correction has hardly reduced the value; always false for the gain.
+    /// Whether the correction has hardly reduced the value: a delay of which more than 0.5 ms and
+    /// at least 99 % remain, a part of J as in `is_not_reduced`; always false for the gain.
     pub is_missed: bool,
 }
 

@@ -34,7 +34,8 @@ const DELAY_END: f32 = 0.85;
 /// Opacity of error bars that belong to earlier settings.
 pub(super) const OLDER: f32 = 0.5;
 
-/// Draws every channel's gain and delay; in a low window only the smallest and the largest gain.
+/// Draws every channel's gain and delay; in a low window (`is_folded`) only the smallest and the
+/// largest gain; without a result the reason, with the same height.
 pub fn result_ui(
     ui: &mut Ui,
     state: &State,

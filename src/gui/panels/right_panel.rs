@@ -42,7 +42,9 @@ const LEAST_WITH_CARD: f32 = 860.0;
 /// line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
-/// Draws verdict, result and matrix above the settings line and the export row.
+/// Draws the settings line and the export row at the foot, the verdict at the top, and between
+/// them: the reasons, if they are open; else what the view in front puts there; else result, matrix
+/// and, in a high window, the focused response's card.
 pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let shown = shown_verdict(ui, state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
@@ -175,8 +177,8 @@ impl LinePart {
     }
 }
 
-/// Returns the parts "α 1", "0.5–12 rad/s", "delays", "representatives", and the count of other
-/// changed settings.
+/// Returns the count of changed settings that have no part of their own, if there are any, and the
+/// parts "α 1", "0.5–12 rad/s", "delays", "representatives".
 fn settings_parts(state: &State) -> Vec<LinePart> {
     let settings = &state.study.settings;
     let gains = number(settings.alpha_gain);

@@ -87,12 +87,13 @@ fn head_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
 /// Settings drawn on the same line.
 type Line = Vec<&'static Setting>;
 
+/// Returns whether a line belongs to the frequently changed settings.
 fn is_frequent(line: &Line) -> bool {
     let place = line[0].control.place;
     matches!(place, Place::Slider | Place::Top) || *line[0] == setting_table::BAND
 }
 
-/// Returns a line's rank among the frequent settings: sliders first, then segmented controls, then
+/// Returns a line's rank among the frequent settings: sliders, segmented controls, the band,
 /// others.
 fn rank(line: &Line) -> usize {
     match line[0].control.place {
@@ -108,6 +109,8 @@ fn is_segmented(line: &Line) -> bool {
     line.len() == 1 && matches!(line[0].kind, Kind::Choice { words, .. } if words.len() <= 4)
 }
 
+/// Draws the frequently changed settings by rank, the trade-off below the slider for α, and the
+/// advanced settings if they are unfolded.
 fn body_ui(
     ui: &mut Ui,
     state: &State,
@@ -259,7 +262,8 @@ fn foot_ui(
     painted_text(ui, area, AT_RIGHT_END, &words, small(), palette.dim_text);
 }
 
-/// Returns the settings that currently have an effect, line by line.
+/// Returns the settings that currently have an effect, line by line; a setting with the place
+/// `Beside` joins the line before it.
 fn lines_of(state: &State) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for setting in SETTINGS {

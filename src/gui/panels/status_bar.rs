@@ -38,6 +38,8 @@ fn small_button_ui(ui: &mut Ui, text: &str, command: Command, commands: &mut Vec
     button_ui(ui, Button::new(text).small(), "", command, commands);
 }
 
+/// Draws status, other work, *Compute* or *Stop*, the size of the data, and cautions. *Compute* is
+/// offered after a stop, *Stop* while files are read, the analysis runs or background work runs.
 fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let now = ui.input(|input| input.time);
     let status = Status::new(state, now, palette);
@@ -86,6 +88,8 @@ struct Status {
 }
 
 impl Status {
+    /// Returns the first status that applies: a file is being opened; the analysis was stopped; the
+    /// results are up to date, or have been pending only briefly; the analysis is running.
     fn new(state: &State, now: f64, palette: &Palette) -> Self {
         if let Some(name) = &state.opening {
             return Self::colored(format!("reading {name} …"), palette.accent);
@@ -124,8 +128,9 @@ impl Status {
     }
 }
 
-/// Describes the background work other than the live analysis; `None` if there is none, or if it
-/// began only recently.
+/// Describes the work other than the live analysis: first the reading of records, else that
+/// background work was stopped, else the background work, unless it began only recently. `None` if
+/// there is none.
 fn words_beside(state: &State, now: f64) -> Option<String> {
     let background = &state.results.background;
     if let Some(reading) = &state.records.reading {

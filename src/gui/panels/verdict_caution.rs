@@ -12,9 +12,13 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::used_couplings;
 use crate::message::Message;
 
-/// Returns the most important caution: couplings that are requested but missing or that make poles
-/// unstable; else the lead price; else any other caution about couplings; else the schedule's cost
-/// in this condition.
+/// Returns the most important caution, by the first rule that applies:
+///
+/// 1. couplings are requested but missing, or make poles unstable within the band;
+/// 2. physics parameters are requested but not applied;
+/// 3. the leads have a price;
+/// 4. there are other cautions about the couplings;
+/// 5. the schedule costs more than the condition's own correction.
 pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
     let couplings = coupling_caution(state);
     if let Some(caution) = &couplings

@@ -47,8 +47,9 @@ pub(super) struct ShownVerdict {
     pub(super) is_primary: bool,
 }
 
-/// Returns the verdict to be displayed. While results are being computed, the verdict on the
-/// condition's previous results stays, so that the steps do not change twice.
+/// Returns the verdict to be displayed: while results are being computed, the verdict on the same
+/// condition's previous results, kept in egui's memory, so that the steps do not change twice;
+/// otherwise a new verdict, which is kept if the results are up to date.
 pub(super) fn shown_verdict(ui: &Ui, state: &State) -> ShownVerdict {
     let id = Id::unique("verdict");
     let now = ui.input(|input| input.time);
@@ -229,6 +230,9 @@ struct StepsLine<'a> {
 }
 
 impl<'a> StepsLine<'a> {
+    /// Sorts the verdict's steps: the first is primary, unless it exports or shows the reasons; the
+    /// step that shows the reasons has its own place, and without one there is a link with the
+    /// number of notes, if there are any; the others are alternatives.
     fn new(verdict: &'a Verdict, is_primary: bool) -> Self {
         // Skip the export step: the primary button at the foot of the panel already exports.
         let primary = verdict
@@ -262,6 +266,13 @@ impl<'a> StepsLine<'a> {
         }
     }
 
+    /// Draws the line:
+    ///
+    /// 1. reserve the right end for the link to the reasons;
+    /// 2. draw the primary step at the left, then the alternatives that leave room for the caution
+    ///    in its short form;
+    /// 3. draw the caution, or without one the note, in the rest;
+    /// 4. draw the link to the reasons.
     fn ui(&self, ui: &mut Ui, line: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let mut left = line.left();
         let mut right = line.right();
@@ -336,8 +347,8 @@ fn short_caution(caution: &str) -> String {
     format!("⚠ {short}")
 }
 
-/// Draws "⚠ Price: +21 dB above 12 rad/s"; without "Price: ", or only "⚠ +21 dB", if there is no
-/// room.
+/// Draws the first text that fits: "⚠ Price: +21 dB above 12 rad/s"; "⚠ +21 dB above 12 rad/s";
+/// "⚠ +21 dB"; else the last with its middle elided.
 fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
     let subject = ui.max_rect();
     let whole = format!("⚠ {caution}");

@@ -176,6 +176,7 @@ fn tab_ui(
 /// Draws the button that shows a second view beside the view in front, or hides it.
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let arrangement = &state.display.layout.arrangement;
+    // The spaces make room for the symbol, which is painted over the button.
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
         let others = View::ALL
             .into_iter()

@@ -29,7 +29,13 @@ use crate::gui::widgets::palette::Palette;
 /// Minimum size with room for two plots \[pt\].
 const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
 
-/// Draws a Bode plot into the remaining space in `ui`.
+/// Draws a Bode plot into the remaining space in `ui`:
+///
+/// 1. nothing if the space is too small; only the message if no curve has a point to draw;
+/// 2. leave out the hidden curves;
+/// 3. move the axes: request a fit if the frequency range has changed, carry out requested fits,
+///    and let the values follow new curves;
+/// 4. draw chips, panes and headings (`BodePlot::ui`), with the events on them.
 pub fn bode_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,
@@ -179,7 +185,13 @@ struct Panes<'a> {
 }
 
 impl Panes<'_> {
-    /// Draws the panes and handles their interaction.
+    /// Draws the panes and handles their interaction:
+    ///
+    /// 1. find the curve under the pointer, in the panes as drawn in the last frame;
+    /// 2. draw each pane, then handle clicks, its band ends, and the context menu on it;
+    /// 3. report the curves in a finished selection box.
+    ///
+    /// The cursor is the frequency under the pointer, or else that of another plot.
     fn ui(&self, ui: &mut Ui, view: &mut BodeView) -> PanesResponse {
         let scene = self.scene;
         let mut events = Vec::new();

@@ -1,4 +1,13 @@
 //! Texts around the Bode panes: quantities, effect of the correction, curve names.
+//!
+//! ```text
+//! heading       quantity [unit]        J before → after   leads +19.4 dB   matched
+//! pane                                                         names beside the curve ends
+//! between       values at the cursor
+//! below         frequency unit at the right; coherence strip
+//! ```
+//!
+//! The price is the magnitude that the leads add where the curves end (`InvalidRegion`).
 
 use egui::{Align2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -38,8 +47,8 @@ pub(super) struct BodeHeadings<'a> {
 }
 
 impl BodeHeadings<'_> {
-    /// Draws the quantities, the effect of the correction, the values at the cursor, names for the
-    /// heavy curves, and a note while the curves are being updated.
+    /// Draws the texts. While the curves are older than the settings, the scene's message or
+    /// "updating…" is above the magnitudes, unless a note is there.
     pub(super) fn ui(&self, ui: &Ui, layout: &BodeLayout) {
         let scene = self.scene;
         for pane in PANES {
@@ -52,8 +61,10 @@ impl BodeHeadings<'_> {
                 let words = scene.message.unwrap_or("updating…");
                 row_text(ui, line, AT_RIGHT, words, SMALL_SIZE, self.palette.dim_text);
             }
+            let has_margin_names =
+                scene.names_curves || !scene.rules.is_empty() || !scene.end_names.is_empty();
             if let Some(transform) = self.view.transform(pane)
-                && (scene.names_curves || !scene.rules.is_empty() || !scene.end_names.is_empty())
+                && has_margin_names
             {
                 let labels = self.pane_labels(pane, transform);
                 paint_end_labels(ui, *transform.frame(), labels);
@@ -92,8 +103,8 @@ impl BodeHeadings<'_> {
         row_text(ui, line, beside, unit, BODY_SIZE, self.palette.dim_text).right()
     }
 
-    /// Paints a note at the right of a heading: verdict, leads' price, and J as far as there is
-    /// room.
+    /// Paints a note at the right of a heading, from right to left: verdict, leads' price, and J as
+    /// far as there is room.
     fn paint_note(&self, ui: &Ui, room: Rect, note: &PaneNote, price: Option<String>) {
         let palette = self.palette;
         let color = if note.warns {
@@ -111,8 +122,9 @@ impl BodeHeadings<'_> {
         row_text(ui, rest, AT_RIGHT, &cost, BODY_SIZE, palette.dim_text);
     }
 
-    /// Returns names for the heavy curves and the reference lines, and the magnitude added by the
-    /// leads.
+    /// Returns the labels in the right margin: names for the curves in the [`NAMED`] roles, each at
+    /// the visible end of the first such curve; names that label several curves; names for the
+    /// reference lines; and beside the magnitudes the price of the leads.
     fn pane_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
         let Self {
             scene,
@@ -158,9 +170,7 @@ impl BodeHeadings<'_> {
         }
         labels
     }
-}
 
-impl BodeHeadings<'_> {
     /// Returns the names that label several curves, each at the mean height of their ends; as many
     /// as fit into the pane.
     fn end_name_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
@@ -168,17 +178,17 @@ impl BodeHeadings<'_> {
         let last_omega = self.view.omega_range().1;
         let mut labels = Vec::new();
         for name in self.scene.end_names {
-            let ends = self.scene.curves.iter().filter_map(|curve| {
+            let end_values = self.scene.curves.iter().filter_map(|curve| {
                 if !name.curves.contains(&curve.id) {
                     return None;
                 }
                 curve.value_at(pane, curve.omega.last()?.min(last_omega))
             });
-            let ends: Vec<f64> = ends.collect();
-            if ends.is_empty() {
+            let end_values: Vec<f64> = end_values.collect();
+            if end_values.is_empty() {
                 continue;
             }
-            let mean = ends.iter().sum::<f64>() / ends.len() as f64;
+            let mean = end_values.iter().sum::<f64>() / end_values.len() as f64;
             let at = transform.position_from_point(&PlotPoint::new(last_omega.log10(), mean));
             let color = self.palette.role_style(name.role, false).color.to_opaque();
             labels.push(EndLabel {

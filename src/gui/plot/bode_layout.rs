@@ -42,7 +42,14 @@ pub(super) struct BodeLayout {
 }
 
 impl BodeLayout {
-    /// Divides `area` into headings, panes and strips.
+    /// Divides `area` into headings, panes and strips:
+    ///
+    /// 1. at the right, the margin for names or the unit;
+    /// 2. at the bottom, the coherence strip, if there is coherence and the height suffices;
+    /// 3. in the middle of the rest, the read-out strip, if the scene has or reserves it and the
+    ///    height suffices;
+    /// 4. the remaining height: a heading above each pane, the frequency axis below the phase, and
+    ///    the panes in a fixed proportion.
     pub(super) fn new(area: Rect, scene: &BodeScene<'_>) -> Self {
         let mut inner = area.with_max_x(area.right() - right_margin(scene));
         let mut coherence = None;
@@ -62,10 +69,10 @@ impl BodeLayout {
         } else {
             GAP
         };
-        let plots = inner.height() - 2.0 * HEADING - between - TICKS_HEIGHT;
+        let panes_height = inner.height() - 2.0 * HEADING - between - TICKS_HEIGHT;
         let magnitude = Rect::from_min_size(
             pos2(inner.left(), inner.top() + HEADING),
-            vec2(inner.width(), MAGNITUDE_PART * plots),
+            vec2(inner.width(), MAGNITUDE_PART * panes_height),
         );
         let phase = inner.with_min_y(magnitude.bottom() + between + HEADING);
         let mut readout = None;
@@ -88,7 +95,8 @@ fn line_above(pane: Rect) -> Rect {
     Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top())
 }
 
-/// Returns the right margin \[pt\].
+/// Returns the right margin \[pt\]: for names on reference lines; else for names that label several
+/// curves; else for curve names; else only for the frequency unit.
 fn right_margin(scene: &BodeScene<'_>) -> f32 {
     if !scene.rules.is_empty() {
         LINE_NAME_MARGIN

@@ -28,20 +28,25 @@ use crate::gui::widgets::palette::Palette;
 const TOLERANCE: f64 = 0.1;
 /// Minimum number of labels on a value axis, where they fit.
 const LEAST_LABELS: usize = 5;
-/// Strip height along the lower edge \[pt\].
+/// Height of the strips that mark frequency ranges along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
 /// Opacity of the comparison band's shade, in the dark and in the light theme.
 const SHADE_DARK: f32 = 0.055;
 const SHADE_LIGHT: f32 = 0.075;
 /// Opacity of the veil outside the comparison band.
 const VEIL: f32 = 0.4;
-/// Opacity of uncertainty bands.
+/// Opacity of uncertainty bands and of the other areas between two curves.
 const BAND_FILL: f32 = 0.22;
 /// Opacity of the lines at marked frequencies and at the frequency under the pointer.
 const MARKED: f32 = 0.7;
 const POINTED: f32 = 0.55;
 
-/// Draws a pane, and pans and zooms it with the pointer.
+/// Draws a pane, and pans and zooms it with the pointer and the keys:
+///
+/// 1. draw the panel with its layers ([`PaneScene::add_layers`]);
+/// 2. handle dragging, wheel, keys, and gestures on the axes; they take effect in the next frame;
+/// 3. paint over the frame: reference lines, marked frequency ranges, and above the magnitudes the
+///    strip where the corrected model is not valid.
 pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> Response {
     let scene = pane.scene;
     let name = scene.quantity.name(pane.pane);
@@ -68,11 +73,12 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
         is_transparent: true,
         palette: pane.palette,
     };
-    // The content borrows the cached lines, so they are taken from the view while it is drawn.
+    // The content borrows the cached lines, so they are taken out of the view while the panel is
+    // drawn, and put back at the end.
     let bounds = view.bounds(pane.pane);
     let mut drawn = std::mem::take(&mut view.drawn[pane.pane as usize]);
-    let kept = &mut drawn;
-    let shown = panel.show(ui, move |plot| pane.add_layers(plot, bounds, kept));
+    let cached = &mut drawn;
+    let shown = panel.show(ui, move |plot| pane.add_layers(plot, bounds, cached));
     drawn.transform = Some(shown.transform);
     view.drawn[pane.pane as usize] = drawn;
     handle_drag(ui, pane, &shown.response, view);
@@ -142,7 +148,14 @@ fn paint_strips(ui: &Ui, ranges: &[(f64, f64)], transform: &PlotTransform, palet
 }
 
 impl<'a> PaneScene<'a> {
-    /// Adds the layers to a panel with these `bounds`, from bottom to top.
+    /// Adds the layers to a panel with these `bounds`, from bottom to top:
+    ///
+    /// 1. shade over the comparison band, and hatching where the corrected model is not valid;
+    /// 2. areas: uncertainty bands unless switched off, remaining phase error, range of the
+    ///    conditions' optima;
+    /// 3. curves, if many partly as an image;
+    /// 4. veil outside the comparison band;
+    /// 5. lines at the marked frequencies and at the cursor.
     fn add_layers(self, plot: &mut PlotUi<'a>, bounds: PlotBounds, drawn: &'a mut DrawnPane) {
         let scene = self.scene;
         plot.set_plot_bounds(bounds);
@@ -150,6 +163,7 @@ impl<'a> PaneScene<'a> {
         if scene.invalid.is_some() {
             add_hatching(plot, scene.band.1, self.palette);
         }
+        // The panel's own transform still has the bounds of the last frame.
         let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
         let visible = VisiblePart::new(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
         drawn

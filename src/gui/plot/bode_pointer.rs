@@ -77,7 +77,9 @@ pub(super) fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
 /// Returns the event for a click on the nearest curve; a click on the reference has no effect.
 ///
 /// egui reports both clicks in a double click, so the first has already taken effect. The second
-/// click undoes the first if that was on a curve; on empty ground, it fits the plot.
+/// click of a double click: undoes the first if that was on a curve; else, if it is on empty ground
+/// too, fits the plot. Any other click on a curve: with Alt isolates its model; otherwise is
+/// remembered, so that a second click can undo it.
 pub(super) fn handle_click(
     pane: Pane,
     scene: &BodeScene<'_>,
@@ -88,13 +90,13 @@ pub(super) fn handle_click(
         return None;
     }
     let clicked = clicked_curve(pane, scene, response, view);
-    let before = view.last_clicked.take();
+    let first_clicked = view.last_clicked.take();
     if response.double_clicked() {
-        if before.is_none() && clicked.is_none() {
+        if first_clicked.is_none() && clicked.is_none() {
             view.request_fit();
             response.ctx.request_repaint();
         }
-        return before.map(BodeEvent::ClickUndone);
+        return first_clicked.map(BodeEvent::ClickUndone);
     }
     let id = clicked?;
     if response.ctx.input(|input| input.modifiers.alt) {

@@ -150,7 +150,7 @@ impl BodeView {
     }
 
     /// Requests a fit if the curves' frequency range has changed, unless the engineer chose the
-    /// visible range.
+    /// visible range. The first range is only remembered: a new view requests its fit itself.
     pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
         if ends.is_some() && ends != self.followed {
@@ -164,34 +164,42 @@ impl BodeView {
 
     /// Adapts the value axes that have not been zoomed to new curves, if they no longer fit. The
     /// pointer, selections and chips leave the curves as they are, and therefore the axes.
+    ///
+    /// While results are pending, nothing changes. Otherwise, for each pane:
+    ///
+    /// 1. compute the values fitted to the curves in `whole`, which includes hidden curves; if they
+    ///    are those last followed, the axis stays;
+    /// 2. remember them as followed; not while something is dragged, because the release may then
+    ///    shrink the axis;
+    /// 3. the first time, the axis stays: [`Self::fit_if_requested`] has fitted it;
+    /// 4. afterwards, fit the curves in `visible` with hysteresis ([`changed_range`]).
     pub(super) fn follow_values(
         &mut self,
-        all: &BodeScene<'_>,
+        whole: &BodeScene<'_>,
         visible: &BodeScene<'_>,
         update: AxisUpdate,
     ) {
         if update == AxisUpdate::Pending {
             return;
         }
-        let band = fitted_band(all);
+        let band = fitted_band(whole);
         for pane in PANES {
             let index = pane as usize;
-            let found = fitted_values(all.curves, pane, band);
-            if found.is_none() || found == self.followed_values[index] {
+            let fitted = fitted_values(whole.curves, pane, band);
+            if fitted.is_none() || fitted == self.followed_values[index] {
                 continue;
             }
             let is_first = self.followed_values[index].is_none();
-            // While something is dragged, the last change is still to be followed on release.
             if update == AxisUpdate::Complete {
-                self.followed_values[index] = found;
+                self.followed_values[index] = fitted;
             }
             if let Some(values) = fitted_values(visible.curves, pane, band)
                 && !is_first
             {
-                let wanted = values.with_margin(FIT_MARGIN, all.quantity.least_height(pane));
+                let wanted = values.with_margin(FIT_MARGIN, whole.quantity.least_height(pane));
                 let shown = self.values[index].range();
                 if let Some(changed) = changed_range(shown, wanted, update) {
-                    let scale = all.quantity.unit(pane).scale();
+                    let scale = whole.quantity.unit(pane).scale();
                     self.values[index].fit(labelled_range(changed, scale));
                 }
             }
@@ -305,25 +313,29 @@ impl BodeView {
         let Some(transform) = self.transform(pane) else {
             return;
         };
-        let a = transform.value_from_position(area.min);
-        let b = transform.value_from_position(area.max);
-        self.log_omega.choose(Range::new(a.x, b.x));
-        self.values[pane as usize].choose(Range::new(a.y, b.y));
+        let upper_left = transform.value_from_position(area.min);
+        let lower_right = transform.value_from_position(area.max);
+        self.log_omega
+            .choose(Range::new(upper_left.x, lower_right.x));
+        self.values[pane as usize].choose(Range::new(upper_left.y, lower_right.y));
     }
 
-    /// Fits the requested axes to all curves, including rejected ones. Without data, the request
-    /// stays pending.
+    /// Fits the requested axes to the curves in `scene`, including rejected ones.
+    ///
+    /// The frequency range is the scene's `omega_range`, or else that of its curves; zooming out
+    /// is limited to a decade beyond it. Without either, the request stays pending. Axes whose
+    /// ranges the engineer chose do not move, but the request counts as fulfilled.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
-        let computed = scene
+        let given = scene
             .omega_range
             .map(|(min, max)| Range::new(min.log10(), max.log10()));
-        if let Some(computed) = computed {
-            self.log_omega.reach(computed);
+        if let Some(given) = given {
+            self.log_omega.reach(given);
         }
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let Some(log_omega) = computed.or_else(|| log_omega_of(scene.curves)) else {
+        let Some(log_omega) = given.or_else(|| log_omega_of(scene.curves)) else {
             return;
         };
         self.log_omega.reach(log_omega);
@@ -362,7 +374,7 @@ fn fitted_band(scene: &BodeScene<'_>) -> Range {
     }
 }
 
-/// Returns the range of `log10 omega` from the first to the last frequency.
+/// Returns the range of `log10 omega` over all curves; `None` without frequencies.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
     Range::spanning(
         curves

@@ -50,7 +50,8 @@ impl std::fmt::Debug for CachedRaster {
 
 impl CachedRaster {
     /// Returns the image if `scene` has not changed since the last frame; `shapes` creates its
-    /// content.
+    /// content. `None` if the lines must be drawn instead: the scene has changed, or the image
+    /// would be larger than a texture may be.
     pub(super) fn image_of(
         &mut self,
         ctx: &Context,
@@ -76,7 +77,7 @@ impl CachedRaster {
     }
 
     /// Returns an image that shows `scene`, even if it has just changed: small images are filled
-    /// faster than their lines are drawn.
+    /// faster than their lines are drawn. `None` if it would be larger than a texture may be.
     pub(super) fn image_at_once(
         &mut self,
         ctx: &Context,
@@ -184,6 +185,7 @@ fn fill(context: &mut RenderContext, shape: &Shape) {
             );
             context.fill_path(&disc.to_path(TOLERANCE));
         }
+        // `CurveStyle::add_shapes` makes nothing else.
         _ => debug_assert!(false, "a line is made of strokes and dots"),
     }
 }
@@ -217,7 +219,7 @@ pub(super) struct RasterImage {
 }
 
 impl RasterImage {
-    /// Returns the image with reduced opacity.
+    /// Returns the image with this opacity, from 0 to 1.
     pub(super) fn shape(&self, strength: f32) -> Shape {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         Shape::image(

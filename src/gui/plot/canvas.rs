@@ -12,6 +12,9 @@ pub(super) const SCALE: f32 = 1.8;
 /// Font size \[pt on paper\].
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
 
+/// Maximum number of points in a filled path that is convex.
+const CONVEX_POINTS: usize = 4;
+
 /// Screen area on which shapes are drawn.
 pub(super) struct Canvas<'a> {
     pub(super) painter: &'a Painter,
@@ -48,6 +51,9 @@ impl Canvas<'_> {
         }
     }
 
+    /// Draws a shape. A path is: if it has a fill and more than four points, an area between two
+    /// lines; else, if it has a fill and is closed, a polygon with its outline; else, if it has a
+    /// stroke, a line; else nothing.
     fn paint_shape(&self, shape: &Drawn) {
         match shape {
             Drawn::Path {
@@ -58,9 +64,9 @@ impl Canvas<'_> {
             } => {
                 let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
                 match (fill, stroke) {
-                    // A filled path with more than four points is the area between two lines, which
-                    // need not be convex; shorter paths are bars, marks, or one step of an area.
-                    (Some(color), _) if points.len() > 4 => {
+                    // Such an area need not be convex, as egui's polygons must be; shorter paths
+                    // are bars, marks, or one step of an area.
+                    (Some(color), _) if points.len() > CONVEX_POINTS => {
                         self.fill_between(&points, self.palette.color(*color));
                     }
                     (Some(color), stroke) if *closed => {

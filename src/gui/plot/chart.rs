@@ -79,8 +79,8 @@ pub struct Chart<'a> {
     pub across_label: &'a str,
     pub value_label: &'a str,
     pub layout: ChartLayout,
-    /// Whether the visible values always fill the height; only the horizontal axis can then be
-    /// zoomed and panned.
+    /// Whether the visible values always fill the height, as in charts over time and small charts;
+    /// only the horizontal axis can then be zoomed and panned, and not beyond the data.
     pub fits_values: bool,
     /// Values shown, if not the range that fits the data; requires `fits_values`.
     pub values: Option<Range>,

@@ -1,4 +1,5 @@
-//! Chart layers, from bottom to top: image, highlighted ranges, areas, lines and marks.
+//! Chart layers, from bottom to top: image, shades over values and over horizontal ranges, areas,
+//! dotted verticals, band ends, levels, lines, error bars and marks.
 
 use egui::{Stroke, vec2};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotImage, PlotPoint, PlotPoints, PlotUi, Points};
@@ -14,7 +15,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Maximum deviation between a drawn line and its data \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Maximum screen width \[pixels\].
+/// Screen width before the first drawing, larger than any \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;
 const MARK_RADIUS: f32 = 3.0;
 
@@ -50,9 +51,9 @@ pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Pal
     for level in &chart.levels {
         add_dashed_level(plot, *level, Stroke::new(1.0, palette.dim_text));
     }
-    let ends = visible_ends(plot);
+    let ends_across = visible_ends(plot);
     for line in &chart.lines {
-        let points = visible_points(plot, chart.across, line, ends);
+        let points = visible_points(plot, chart.across, line, ends_across);
         let style = if line.dashed {
             LineStyle::dashed_dense()
         } else {
@@ -80,7 +81,8 @@ fn add_image(plot: &mut PlotUi<'_>, image: &ChartImage) {
     plot.image(PlotImage::new("", image.texture, middle, size).allow_hover(false));
 }
 
-/// Returns the ends of the visible horizontal range: unbounded if the plot is about to be fitted.
+/// Returns the ends of the visible horizontal range, as last drawn: unbounded if the plot is about
+/// to be fitted, because the fit needs all points.
 pub(super) fn visible_ends(plot: &PlotUi<'_>) -> [f64; 2] {
     if plot.auto_bounds().x {
         return [f64::NEG_INFINITY, f64::INFINITY];

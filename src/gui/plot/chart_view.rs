@@ -32,6 +32,11 @@ pub struct ChartResponse {
 }
 
 /// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows everything.
+///
+/// 1. place the frame with its axes below the title line, left of the right margin;
+/// 2. draw the layers, with lines thinned for the range visible in the last frame, and zoom;
+/// 3. repaint if the visible range has changed since;
+/// 4. paint the title and the notes, unless the chart has no title line.
 pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> ChartResponse {
     let layout = chart.layout;
     let panel = PanelPainter {
@@ -59,10 +64,9 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         visible_ends(plot)
     });
     let [across, _] = ranges_of(shown.transform.bounds());
-    let drawn = shown.inner;
-    let is_whole = drawn[0] == f64::NEG_INFINITY;
-    if !is_whole && drawn != [across.min, across.max] {
-        // Repaint: the lines were thinned for the previous frame's visible range.
+    let thinned_for = shown.inner;
+    let is_whole = thinned_for[0] == f64::NEG_INFINITY;
+    if !is_whole && thinned_for != [across.min, across.max] {
         ui.request_repaint();
     }
     if layout.title_height > 0.0 {
@@ -133,7 +137,8 @@ fn paint_title(ui: &Ui, line: Rect, chart: &Chart<'_>, palette: &Palette) {
     }
 }
 
-/// Zooms about the pointer by wheel and pinching.
+/// Zooms about the pointer by wheel and pinching: only the horizontal axis if the values always
+/// fill the height (`fits_values`), with all gestures combined; otherwise each axis.
 fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
     let fits_values = chart.fits_values;
     let Some(gesture) = ZoomGesture::find(plot.ctx(), plot.response()) else {
@@ -163,9 +168,10 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
         .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
 }
 
-/// Returns the limits for zooming out: the data range with a small margin along a time axis, a
-/// decade beyond the data range along a frequency axis, ten times the data range otherwise, and no
-/// limit without data.
+/// Returns the limits for zooming out, relative to the range of lines, marks and image. For the
+/// horizontal axis: over frequencies a decade beyond it; in charts over time and small charts (the
+/// values fill the height, or there is an image) that range with a small margin; otherwise ten
+/// times as wide. For the values: ten times as wide. No limit without data.
 fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
     let mut across = Vec::new();
     let mut values = Vec::new();
@@ -182,11 +188,11 @@ fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
         values.extend(image.omega.map(f64::log10));
     }
     let places = across.into_iter().map(|value| chart.across.place(value));
-    let shows_times = chart.fits_values || chart.image.is_some();
+    let ends_with_data = chart.fits_values || chart.image.is_some();
     let widths = ZoomLimit::TenWidths { least: 0.0 };
     let limit_across = match chart.across {
         ChartAxis::Frequency(_) => ZoomLimit::Decade,
-        ChartAxis::Linear if shows_times => ZoomLimit::DataWithMargin(EDGE),
+        ChartAxis::Linear if ends_with_data => ZoomLimit::DataWithMargin(EDGE),
         ChartAxis::Linear => widths,
     };
     [

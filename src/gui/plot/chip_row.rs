@@ -164,8 +164,9 @@ fn paint_dashed_outline(ui: &Ui, place: Rect, line: Stroke) {
         .extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
 }
 
-/// Returns a rectangle with semicircular ends, as a single path.
+/// Returns a rectangle with semicircular ends of this `radius`, as a closed path.
 fn rounded(place: Rect, radius: f32) -> Vec<Pos2> {
+    /// Segments in each semicircle.
     const STEPS: usize = 8;
     let quarter = std::f32::consts::FRAC_PI_2;
     let right = pos2(place.right() - radius, place.center().y);

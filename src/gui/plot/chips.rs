@@ -115,6 +115,7 @@ pub(super) struct Chips<'a> {
     pub(super) roles: Vec<RoleChip>,
     /// Whether uncertainty bands are drawn; `None` if there are none.
     pub(super) bands: Option<bool>,
+    /// Restrictions that currently apply to the plot.
     pub(super) states: &'a [Chip],
     /// Whether samples and texts are shortened for lack of room.
     pub(super) is_tight: bool,
@@ -149,8 +150,13 @@ impl Chips<'_> {
         switches.chain(states).sum::<f32>() - GAP
     }
 
-    /// Draws the chips in a single line, starting at the upper left corner of `area`. Switches that
-    /// do not fit are in the last chip's menu, "+2"; restrictions are always visible.
+    /// Draws the chips in a single line, starting at the upper left corner of `area`:
+    ///
+    /// 1. the switches that fit, each with a sample of its curves;
+    /// 2. for the others a chip that counts them, "+2", with a menu;
+    /// 3. the restrictions (`states`), which are always visible.
+    ///
+    /// Without roles and restrictions nothing is drawn, and the height is 0.
     pub(super) fn ui(&self, ui: &mut Ui, area: Rect, palette: &Palette) -> ChipsResponse {
         if self.roles.is_empty() && self.states.is_empty() {
             return ChipsResponse {
@@ -161,8 +167,8 @@ impl Chips<'_> {
         let mut row = ChipRow::new(area, self.sample());
         let mut event = None;
         let switches = self.switches();
-        let fitting = self.fitting(ui, &switches, area.width());
-        for switch in &switches[..fitting] {
+        let fitting_count = self.fitting_count(ui, &switches, area.width());
+        for switch in &switches[..fitting_count] {
             let face = ChipFace {
                 text: switch.text,
                 name: &switch.name,
@@ -177,7 +183,7 @@ impl Chips<'_> {
                 event = Some(switch.event(ui));
             }
         }
-        let rest = &switches[fitting..];
+        let rest = &switches[fitting_count..];
         if !rest.is_empty() {
             event = self.rest_ui(ui, &mut row, rest, palette).or(event);
         }
@@ -225,21 +231,23 @@ impl Chips<'_> {
 
     /// Returns how many switches fit beside the restrictions; if not all do, also beside the chip
     /// that counts the others.
-    fn fitting(&self, ui: &Ui, switches: &[Switch<'_>], width: f32) -> usize {
-        let states: f32 = self
+    fn fitting_count(&self, ui: &Ui, switches: &[Switch<'_>], width: f32) -> usize {
+        let restrictions_width: f32 = self
             .states
             .iter()
             .map(|chip| chip_width(ui, &chip.text))
             .sum();
-        let room = width - states + GAP;
-        let before = self.sample() + SAMPLE_GAP;
+        // Each chip's width includes the gap behind it, which the last chip does not need.
+        let room = width - restrictions_width + GAP;
+        let sample_width = self.sample() + SAMPLE_GAP;
         let widths: Vec<f32> = switches
             .iter()
-            .map(|switch| chip_width(ui, switch.text) + before)
+            .map(|switch| chip_width(ui, switch.text) + sample_width)
             .collect();
         if widths.iter().sum::<f32>() <= room {
             return switches.len();
         }
+        // The count is not known yet: room for two digits.
         let mut used = chip_width(ui, "+10");
         for (count, width) in widths.iter().enumerate() {
             used += width;

@@ -1,4 +1,4 @@
-//! Cache for a pane's visible points.
+//! Cache for a pane's visible points, thinned to what the screen can show.
 
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ pub(super) struct DrawnCurves {
     visible: Option<VisiblePart>,
     /// In the same order as the scene's curves.
     curves: Vec<DrawnCurve>,
-    /// Counts the curves thinned so far.
+    /// Number of curves thinned so far, from which serial numbers are made.
     made: u64,
 }
 
@@ -54,14 +54,21 @@ pub(super) struct DrawnCurves {
 struct DrawnCurve {
     omega: Arc<[f64]>,
     values: Arc<[f64]>,
+    /// Margin around the view, as a share of it; wider for dashed and dotted lines.
     margin: f64,
+    /// Pieces of the line, separated by gaps and by parts outside the view.
     runs: Vec<Vec<PlotPoint>>,
     /// Serial number among all curves thinned so far.
     serial: u64,
 }
 
 impl DrawnCurves {
-    /// Recomputes the points for curves that have changed since the last frame.
+    /// Recomputes the points for curves that have changed since the last frame:
+    ///
+    /// 1. the same view and the same curves in the same order: nothing to do;
+    /// 2. the same view: unchanged curves keep their points, also at another place in the order;
+    ///    in another view, no points are kept;
+    /// 3. for the other curves, cut out the visible points and thin them, with a new serial number.
     pub(super) fn update(
         &mut self,
         curves: &[BodeCurve],
@@ -72,20 +79,20 @@ impl DrawnCurves {
         if self.visible == Some(visible) && self.are_drawn_from(curves, pane, palette) {
             return;
         }
-        let mut kept: Vec<Option<DrawnCurve>> = Vec::new();
+        let mut reusable: Vec<Option<DrawnCurve>> = Vec::new();
         if self.visible == Some(visible) {
-            kept.extend(self.curves.drain(..).map(Some));
+            reusable.extend(self.curves.drain(..).map(Some));
         }
         self.visible = Some(visible);
         let mut axis = LogFrequencies::default();
         let mut drawn = Vec::with_capacity(curves.len());
         for (index, curve) in curves.iter().enumerate() {
             let margin = margin(curve, palette);
-            let place = kept_place(&kept, index, |drawn| {
+            let place = reusable_place(&reusable, index, |drawn| {
                 drawn.is_drawn_from(curve, pane, margin)
             });
-            drawn.push(match place.and_then(|place| kept[place].take()) {
-                Some(known) => known,
+            drawn.push(match place.and_then(|place| reusable[place].take()) {
+                Some(unchanged) => unchanged,
                 None => {
                     let points = curve.points_on(&mut axis, pane);
                     let runs = runs_in_view(points, &visible.bounds, margin);
@@ -113,7 +120,7 @@ impl DrawnCurves {
                 .all(|(drawn, curve)| drawn.is_drawn_from(curve, pane, margin(curve, palette)))
     }
 
-    /// Returns the lines for the curve at an index.
+    /// Returns the pieces of the curve at an index.
     pub(super) fn runs(&self, index: usize) -> &[Vec<PlotPoint>] {
         match self.curves.get(index) {
             Some(curve) => &curve.runs,
@@ -127,18 +134,18 @@ impl DrawnCurves {
     }
 }
 
-/// Returns the index of the curve in `kept` for which `matches` returns true. The index `likely` is
-/// tried first, because curves usually keep their order.
-fn kept_place(
-    kept: &[Option<DrawnCurve>],
+/// Returns the index of the curve in `reusable` for which `matches` returns true. The index
+/// `likely` is tried first, because curves usually keep their order.
+fn reusable_place(
+    reusable: &[Option<DrawnCurve>],
     likely: usize,
     matches: impl Fn(&DrawnCurve) -> bool,
 ) -> Option<usize> {
-    let is_match = |kept: &Option<DrawnCurve>| kept.as_ref().is_some_and(&matches);
-    if kept.get(likely).is_some_and(is_match) {
+    let is_match = |drawn: &Option<DrawnCurve>| drawn.as_ref().is_some_and(&matches);
+    if reusable.get(likely).is_some_and(is_match) {
         return Some(likely);
     }
-    kept.iter().position(is_match)
+    reusable.iter().position(is_match)
 }
 
 fn thin(run: &[[f64; 2]], pixel: Pixel) -> Vec<PlotPoint> {

@@ -22,8 +22,9 @@ const RING_WIDTH: f32 = 1.4;
 const EMPHASIZED: f64 = 1.3;
 /// Minimum dot size before it is enlarged, relative to the usual size.
 const LEAST_EMPHASIZED: f64 = 0.8;
-/// Opacity of the shade over the column in focus, and over the column under the pointer.
+/// Opacity of the shade over the column in focus.
 const SELECTED_COLUMN: f32 = 0.6;
+/// Opacity of the shade over the column under the pointer.
 const POINTED_COLUMN: f32 = 0.35;
 
 /// Shapes as last drawn, cached because placing labels takes longer than drawing them.
@@ -86,7 +87,13 @@ pub(super) struct MarkScene<'a> {
 }
 
 impl MarkScene<'_> {
-    /// Draws the marks; those near the frame's edge may extend beyond it.
+    /// Draws the marks, from bottom to top; those near the frame's edge may extend beyond it:
+    ///
+    /// 1. shades of the columns in focus and under the pointer;
+    /// 2. the panel's shapes, as on paper; while error bars fade in, the panel without bars, then
+    ///    the whole panel at the bars' opacity over it;
+    /// 3. the highlighted dots enlarged, a ring around the dots in focus;
+    /// 4. a dim ring around the dot under the pointer.
     pub(super) fn paint(&self, ui: &Ui, drawn: &mut DrawnMarks) {
         let frame = *self.transform.frame();
         let clip = frame.expand(RING).intersect(ui.clip_rect());

@@ -1,4 +1,16 @@
 //! A figure's panel: title, axes, marks, and the mark under the pointer.
+//!
+//! `figure_view` places the panels. Three fields of [`FigureScene`] change what is drawn here:
+//!
+//! ```text
+//! is_compact  little text: tick labels of the values only in the first column (has_values,
+//!             frame_with_axes), closer together (vertical_axis); no axis label below
+//!             (horizontal_axis), only its unit beside the last plot (title_ui)
+//! is_stacked  the panels of a plot share the horizontal axis: drawn below the last panel only
+//!             (horizontal_axis); wider value axes, so that the frames align (vertical_axis)
+//! columns     not empty: the named x positions 0, 1, … are what the pointer finds, instead of
+//!             dots (pointed_mark)
+//! ```
 
 use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -46,7 +58,8 @@ pub(super) fn title_height(title: &str) -> f32 {
 /// A panel's state between frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PanelView {
-    /// Visible ranges, if zoomed or panned.
+    /// Visible ranges in axis coordinates, kept from frame to frame if the figure can be zoomed;
+    /// `None`: the whole ranges, which fit the marks.
     pub(super) ranges: Option<[Range; 2]>,
     /// Transform as last drawn; on the screen, a logarithmic horizontal axis has logarithms as
     /// coordinates.
@@ -55,22 +68,20 @@ pub(super) struct PanelView {
 }
 
 impl PanelView {
-    /// Adopts another panel's horizontal range.
-    pub(super) fn share_places(&mut self, panel: &Panel, other: &Self) {
-        let Some([x, _]) = other.ranges else {
-            self.ranges = None;
-            return;
+    /// Adopts the horizontal range of another panel in the same plot; `panel` is the content of
+    /// this one. If the other panel is not zoomed, neither is this one, not even vertically: a
+    /// double click fits all panels of a plot.
+    pub(super) fn adopt_horizontal_range(&mut self, panel: &Panel, other: &Self) {
+        self.ranges = match (other.ranges, self.ranges) {
+            (None, _) => None,
+            (Some([x, _]), Some([_, y])) => Some([x, y]),
+            (Some([x, _]), None) => Some([x, panel.shown(Along::Y)]),
         };
-        let y = match self.ranges {
-            Some([_, y]) => y,
-            None => panel.shown(Along::Y),
-        };
-        self.ranges = Some([x, y]);
     }
 }
 
 /// A figure's panel at its position on the screen, identified by the index of its plot and by its
-/// index in the plot.
+/// index in the plot. (A plot has a title and one or more panels below one another.)
 pub(super) struct PlacedPanel<'a> {
     pub(super) scene: &'a FigureScene<'a>,
     /// Index of the plot in the figure.
@@ -91,15 +102,23 @@ pub(super) struct PlacedResponse {
 }
 
 impl PlacedPanel<'_> {
-    /// Draws the panel, and zooms and pans it.
+    /// Draws the panel, and zooms and pans it:
+    ///
+    /// 1. place: the frame with its axes in `rect`, and the visible ranges, whole unless zoomed;
+    /// 2. axes: horizontal, then vertical in the remaining height;
+    /// 3. paint the frame with its grid, and above the first panel the title;
+    /// 4. point: find the dot or column under the pointer, as the frame is now;
+    /// 5. paint the marks, which depend on it;
+    /// 6. zoom and pan: the ranges for the next frame; a double click beside all marks shows the
+    ///    whole ranges again.
     pub(super) fn ui(&self, ui: &mut Ui, view: &mut PanelView) -> PlacedResponse {
         let panel = self.panel();
         let has_values = self.has_values(ui);
         let rect = self.frame_with_axes(has_values);
         let bounds = bounds_of(view.ranges.unwrap_or_else(|| whole_ranges(panel)));
         let across = self.horizontal_axis(ui);
-        let room = rect.height() - across.thickness;
-        let values = self.vertical_axis(ui, room, has_values);
+        let frame_height = rect.height() - across.thickness;
+        let values = self.vertical_axis(ui, frame_height, has_values);
         let painter = PanelPainter {
             id: self.id,
             rect,
@@ -146,17 +165,18 @@ impl PlacedPanel<'_> {
         PlacedResponse { response, pointed }
     }
 
-    /// Returns the error bars' opacity, which grows after they have been computed.
+    /// Returns the error bars' opacity: they fade in when they have been computed, from 0 to 1.
     fn bars_opacity(&self, ui: &Ui) -> f32 {
         /// Time in which the bars fade in \[s\].
         const FADE_S: f32 = 0.25;
-        if !has_bars(self.panel()) {
-            ui.ctx()
-                .animate_bool_with_time(self.id.with("bars"), false, 0.0);
-            return 1.0;
+        let animation = self.id.with("bars");
+        if has_bars(self.panel()) {
+            ui.ctx().animate_bool_with_time(animation, true, FADE_S)
+        } else {
+            // Resets the animation, so that the next bars start from 0.
+            ui.ctx().animate_bool_with_time(animation, false, 0.0);
+            1.0
         }
-        ui.ctx()
-            .animate_bool_with_time(self.id.with("bars"), true, FADE_S)
     }
 
     fn panel(&self) -> &Panel {
@@ -177,13 +197,16 @@ impl PlacedPanel<'_> {
     }
 
     /// Returns whether the vertical axis has tick labels: in a compact figure, only in the first
-    /// column.
+    /// column, whose plots begin at the left end of `ui`.
     fn has_values(&self, ui: &Ui) -> bool {
         let is_first_column = self.rect.left() - ui.max_rect().left() < 0.5 * self.rect.width();
         !self.scene.is_compact || is_first_column
     }
 
     /// Returns the area that the frame and its axes fill.
+    ///
+    /// In the first column of a compact figure it extends to the left beyond `rect`, into the room
+    /// that `figure_view` keeps there, so that the frames of all columns have the same width.
     fn frame_with_axes(&self, has_values: bool) -> Rect {
         let above = if self.number == 0 {
             title_height(&self.scene.figure.plots[self.plot].title)
@@ -200,6 +223,9 @@ impl PlacedPanel<'_> {
         rect
     }
 
+    /// Returns the horizontal axis: below the last panel, unless the figure is compact, with tick
+    /// labels and label; below the other panels of a stacked plot not drawn; in every other case
+    /// with tick labels only.
     fn horizontal_axis(&self, ui: &Ui) -> PanelAxis {
         let panel = self.panel();
         let ticks = match panel.x.scale {
@@ -212,16 +238,16 @@ impl PlacedPanel<'_> {
         if is_last && !self.scene.is_compact {
             axis.thickness = LABELLED_HEIGHT;
             axis.label.clone_from(&panel.x.label);
-        }
-        if !is_last && self.scene.is_stacked {
+        } else if !is_last && self.scene.is_stacked {
             axis.is_drawn = false;
             axis.thickness = 0.0;
         }
         axis
     }
 
-    /// Returns the vertical axis, with a label if it fits into `room` \[pt\].
-    fn vertical_axis(&self, ui: &Ui, room: f32, has_values: bool) -> PanelAxis {
+    /// Returns the vertical axis. Its label is reduced to the unit if it is longer than
+    /// `frame_height` \[pt\], and omitted if `figure_view` draws a common label for all plots.
+    fn vertical_axis(&self, ui: &Ui, frame_height: f32, has_values: bool) -> PanelAxis {
         let gap = if self.scene.is_compact {
             COMPACT_TICK_GAP
         } else {
@@ -235,13 +261,15 @@ impl PlacedPanel<'_> {
         let mut axis = PanelAxis::new(Ticks::Decimal(gap), width);
         axis.is_drawn = has_values;
         if !self.scene.figure.shared.y {
-            axis.label = label_within(ui, &self.panel().y.label, room, self.palette);
+            axis.label = label_within(ui, &self.panel().y.label, frame_height, self.palette);
         }
         axis
     }
 
-    /// Returns the mark under the pointer: the nearest dot, or the column.
+    /// Returns the mark under the pointer: without columns the nearest dot, otherwise the column
+    /// around the nearest whole number; `None` beyond the first and the last column.
     fn pointed_mark(&self, response: &Response, transform: &PlotTransform) -> Option<PointedMark> {
+        // A click by touch comes without a hover position.
         let clicked_at = if response.clicked() {
             response.interact_pointer_pos()
         } else {
@@ -302,8 +330,8 @@ impl PlacedPanel<'_> {
             ui.painter().hline(frame.x_range(), frame.top() - 1.0, bar);
         }
         if self.scene.is_compact && self.plot + 1 == self.scene.figure.plots.len() {
-            let label = &self.panel().x.label;
-            let unit = label.split(['[', ']']).nth(1).unwrap_or_default();
+            let unit = unit_in_brackets(&self.panel().x.label).unwrap_or_default();
+            let unit = unit.trim_start_matches('[').trim_end_matches(']');
             let at = pos2(frame.right() + 6.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
             let font = caption_font();
             ui.painter()
@@ -312,7 +340,8 @@ impl PlacedPanel<'_> {
     }
 }
 
-/// Returns how tick labels or names are spaced along a horizontal axis.
+/// Returns how the ticks are spaced along a horizontal axis: names by the widest name, numbers by
+/// the width of a digit.
 fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     let named = panel.x.names.as_deref().unwrap_or_default();
     if named.is_empty() {
@@ -332,12 +361,18 @@ fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     }
 }
 
+/// Returns the unit at the end of a label, with its brackets: "[kt]" in "Airspeed [kt]".
+fn unit_in_brackets(label: &str) -> Option<&str> {
+    let start = label.rfind('[')?;
+    Some(&label[start..])
+}
+
 /// Returns a label, or only its unit if the label is longer than the axis.
-fn label_within(ui: &Ui, label: &str, room: f32, palette: &Palette) -> String {
-    if tick_width(ui, label, palette) > room
-        && let Some(unit) = label.rfind('[')
+fn label_within(ui: &Ui, label: &str, axis_length: f32, palette: &Palette) -> String {
+    if tick_width(ui, label, palette) > axis_length
+        && let Some(unit) = unit_in_brackets(label)
     {
-        return label[unit..].to_owned();
+        return unit.to_owned();
     }
     label.to_owned()
 }

@@ -35,7 +35,7 @@ pub struct FigureView {
     /// Subject of the figure; if this changes, all plots are fitted.
     subject: String,
     plots: Vec<PlotView>,
-    /// Ranges kept for the axes that are fitted to the marks.
+    /// Ranges kept for the linear axes that are fitted to the marks; see [`Self::hold_axes`].
     held: BTreeMap<HeldAxis, Range>,
     question_menu: QuestionMenu,
 }
@@ -66,8 +66,11 @@ impl FigureView {
         }
     }
 
-    /// Replaces a figure's fitted ranges by those shown before, as long as the marks fit into them.
-    /// Logarithmic axes and axes with names keep their own ranges.
+    /// Replaces a figure's fitted ranges by those shown before, as long as the marks fit into them
+    /// (`steady_range`), so that the axes do not move with every update.
+    ///
+    /// Each panel has its own pair of ranges; axes that all plots share have the same. Logarithmic
+    /// axes and axes with names keep the figure's ranges.
     pub fn hold_axes(&mut self, figure: &mut Figure, update: AxisUpdate) {
         let shared = figure.shared;
         let mut held = BTreeMap::new();
@@ -76,7 +79,7 @@ impl FigureView {
                 for along in [Along::X, Along::Y] {
                     let is_vertical = along == Along::Y;
                     let is_shared = if is_vertical { shared.y } else { shared.x };
-                    let wanted = panel.shown(along);
+                    let fitted = panel.shown(along);
                     let axis = if is_vertical {
                         &mut panel.y
                     } else {
@@ -95,8 +98,8 @@ impl FigureView {
                         is_vertical,
                     };
                     let range = match self.held.get(&key) {
-                        Some(shown) => steady_range(*shown, wanted, update),
-                        None => wanted,
+                        Some(shown) => steady_range(*shown, fitted, update),
+                        None => fitted,
                     };
                     axis.range = Some(range);
                     held.insert(key, range);
@@ -122,7 +125,7 @@ impl FigureView {
         self.pointed_at
     }
 
-    /// Returns a plot's visible ranges, if zoomed or panned.
+    /// Returns the visible ranges of a plot's first panel; `None` if they fit the marks.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
         self.plots.get(plot)?.first.ranges
     }
@@ -145,7 +148,9 @@ impl FigureView {
         self.position(plot, [dot.x, dot.y])
     }
 
-    /// Adds the events for the mark under the pointer in a plot to `events`.
+    /// Adds the events for the mark under the pointer in a plot to `events`: first a derivation
+    /// chosen in the open menu, which may be about an earlier mark, then pointing, status text and
+    /// click.
     fn report(
         &mut self,
         scene: &FigureScene<'_>,
@@ -201,7 +206,15 @@ pub fn rows(figure: &Figure, size: Vec2, least: Vec2) -> usize {
     }
 }
 
-/// Draws a figure into `rect`.
+/// Draws a figure into `rect`:
+///
+/// 1. without plots, only the scene's message;
+/// 2. keep room at the left: in a compact figure for the value axes of the first column and at the
+///    right for the unit, otherwise for the vertical label that all plots share, if any;
+/// 3. emphasize the mark that was under the pointer in the last frame, or else the mark that
+///    another view highlights;
+/// 4. draw the plots as tiles, each with its panels, and collect their events;
+/// 5. repaint if another mark is under the pointer now.
 pub fn figure_within_ui(
     ui: &mut Ui,
     rect: Rect,
@@ -279,28 +292,32 @@ struct FigurePainter<'a> {
 }
 
 impl FigurePainter<'_> {
-    /// Divides a plot's room among its panels, in proportion to their weights. If only the lowest
-    /// panel has numbers, their height is not divided.
-    fn heights(&self, plot: usize, room: f32) -> Vec<f32> {
+    /// Divides a plot's height among its panels, in proportion to their weights. In a stacked plot
+    /// the common axis below the last panel is taken out first and added to that panel, so that
+    /// the frames have the proportions; in a low plot it counts at most half the height.
+    fn heights(&self, plot: usize, plot_height: f32) -> Vec<f32> {
         let panels = &self.scene.figure.plots[plot].panels;
         let total: f64 = panels.iter().map(|panel| panel.weight).sum();
-        let axis = if self.scene.is_stacked && panels.len() > 1 {
-            LABELLED_HEIGHT.min(0.5 * room)
+        let axis_height = if self.scene.is_stacked && panels.len() > 1 {
+            LABELLED_HEIGHT.min(0.5 * plot_height)
         } else {
             0.0
         };
         let mut heights: Vec<f32> = panels
             .iter()
-            .map(|panel| (room - axis) * (panel.weight / total) as f32)
+            .map(|panel| (plot_height - axis_height) * (panel.weight / total) as f32)
             .collect();
         if let Some(last) = heights.last_mut() {
-            *last += axis;
+            *last += axis_height;
         }
         heights
     }
 
-    /// Draws a plot's stacked panels into `rect` with the same horizontal range; returns the first
-    /// panel's response.
+    /// Draws a plot's panels below one another into `rect`; returns the first panel's response,
+    /// since only its marks are interactive.
+    ///
+    /// All have the same horizontal range: each lower panel adopts that of the first before it is
+    /// drawn, and the first adopts it back, because the lower panel may have been zoomed.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
         let title = title_height(&self.scene.figure.plots[plot].title);
@@ -323,9 +340,9 @@ impl FigurePainter<'_> {
             placed.number = number;
             placed.id = id.with(number);
             placed.rect = Rect::from_x_y_ranges(rect.x_range(), top..=top + heights[number]);
-            below.share_places(&panels[number], &view.first);
+            below.adopt_horizontal_range(&panels[number], &view.first);
             placed.ui(ui, below);
-            view.first.share_places(&panels[0], below);
+            view.first.adopt_horizontal_range(&panels[0], below);
         }
         shown
     }

@@ -44,8 +44,9 @@ pub(super) fn navigated_ranges(
     Some([x, y])
 }
 
-/// Returns the limits for zooming out: the data range along a time axis, a decade beyond the data
-/// range along a logarithmic axis, ten times the data range otherwise.
+/// Returns the limits for zooming out: the data range along a time axis, which is recognised by its
+/// unit; a decade beyond the data range along a logarithmic axis; ten times the data range
+/// otherwise.
 fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
     let across = match panel.x.scale {

@@ -1,4 +1,5 @@
-//! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns.
+//! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns,
+//! all over the same frequencies.
 
 use egui::{Align2, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 

@@ -127,8 +127,12 @@ impl PlacedCell<'_> {
         rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
     }
 
-    /// Handles the events in the cell: a click brings its response into focus; all others concern
-    /// the curve under the pointer.
+    /// Handles the events in the cell:
+    ///
+    /// 1. pointing: the curve under the pointer, if any, is hovered and named in the status text;
+    /// 2. click: with Alt on a curve, its model alone is shown; otherwise the cell's response comes
+    ///    into focus;
+    /// 3. secondary click: opens the menu on the curve, or closes it on empty ground.
     fn events(&self, response: &Response, view: &mut OverviewView) -> Vec<OverviewEvent> {
         let pointer = response.hover_pos().or(response.interact_pointer_pos());
         let curve = pointer.and_then(|pointer| view.curve_at(self.cell, pointer));
@@ -142,9 +146,9 @@ impl PlacedCell<'_> {
             }));
         }
         if response.clicked() {
-            let is_alone = response.ctx.input(|input| input.modifiers.alt);
+            let has_alt = response.ctx.input(|input| input.modifiers.alt);
             events.push(match &pointed {
-                Some(curve) if is_alone => OverviewEvent::Isolated(curve.clone()),
+                Some(curve) if has_alt => OverviewEvent::Isolated(curve.clone()),
                 _ => OverviewEvent::PairClicked(self.cell.pair),
             });
         }

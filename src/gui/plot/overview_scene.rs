@@ -17,6 +17,7 @@ use super::nearest_curve::{Hit, nearest_curve};
 pub struct OverviewCell<'a> {
     pub pair: Pair,
     pub curves: &'a [BodeCurve],
+    /// Whether the response is held: the correction must match it exactly.
     pub constrained: bool,
     /// Whether the pair is in focus.
     pub selected: bool,

@@ -30,7 +30,7 @@ pub(super) struct PanelAxis {
     /// Whether tick labels and axis label are drawn; otherwise the axis takes no room and only its
     /// grid lines are drawn.
     pub(super) is_drawn: bool,
-    /// In a low plot, labels move together until there are this many.
+    /// In a low plot, labels move closer together until there are this many, as far as they fit.
     pub(super) least_labels: usize,
 }
 
@@ -70,7 +70,8 @@ impl PanelAxis {
         !matches!(self.spacing, TickSpacing::Names { .. })
     }
 
-    /// Returns the function that places ticks and grid lines.
+    /// Returns the function that places ticks and grid lines; egui_plot calls it with the visible
+    /// range and with the length of a point in axis coordinates, `base_step_size`.
     pub(super) fn spacer(&self) -> impl Fn(GridInput) -> Vec<GridMark> + use<> {
         let ticks = self.ticks;
         let spacing = self.spacing.clone();

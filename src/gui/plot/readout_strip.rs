@@ -124,8 +124,8 @@ impl Readout {
     }
 }
 
-/// Draws a read-out between the panes, its cells side by side; if there is not enough room, the
-/// first cells are omitted.
+/// Draws a read-out between the panes, its cells side by side: in a smaller font if there is not
+/// enough room, then also without the first cells (`StripFit`).
 pub(in crate::gui) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
     ui.painter().rect_filled(strip, 6.0, palette.raised);
     let fit = StripFit::new(ui, strip.width(), readout);
@@ -197,7 +197,8 @@ fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     galley.size().x
 }
 
-/// Returns a column's place in a strip with `cells` cells; column 0 shows the frequency.
+/// Returns a column's place in a strip with `cells` cells. Column 0 shows the frequency, the others
+/// the cells in order; the first and the last are wider ([`WIDE_COLUMN`]).
 fn column(strip: Rect, place: usize, cells: usize) -> Rect {
     let left = strip.left() + width_before(place, cells) * strip.width();
     let right = strip.left() + width_before(place + 1, cells) * strip.width();

@@ -1,4 +1,5 @@
 //! Hysteresis for axes: a range changes only if the data no longer fit, and then to round ends.
+//! `figure_view` uses it for the axes of figures, `bode_view` for the values in a Bode plot.
 
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::{Scale, step_above};
@@ -15,6 +16,9 @@ const LEAST_STEPS: f64 = 20.0;
 const LEAST_LABELS: f64 = 5.0;
 /// Maximum factor by which an axis is extended to reach that number.
 const MOST_EXTENSION: f64 = 1.25;
+/// Divisor that leads from a decimal step to the next smaller: more than 2.5, the largest ratio
+/// between neighbours in 1, 2, 5, 10.
+const TO_NEXT_STEP: f64 = 2.6;
 
 /// Stage of an update to the displayed results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,7 +42,13 @@ pub(super) fn steady_range(shown: Range, wanted: Range, update: AxisUpdate) -> R
 }
 
 /// Returns the range to which an axis changes, before its ends are rounded; `None` while `shown` fits
-/// the data, whose fitted range is `wanted`.
+/// the data, whose fitted range is `wanted`. With the union of both ranges as `grown`:
+///
+/// 1. results pending: no change;
+/// 2. dragging: `grown` if the data exceed the axis by more than [`OVERSHOOT`], otherwise no
+///    change;
+/// 3. results complete: `wanted` if it uses less than [`LEAST_USE`] of `grown` (the axis shrinks,
+///    or the data have moved away); else `grown` if the data exceed the axis; else no change.
 pub(super) fn changed_range(shown: Range, wanted: Range, update: AxisUpdate) -> Option<Range> {
     if update == AxisUpdate::Pending {
         return None;
@@ -59,7 +69,11 @@ pub(super) fn changed_range(shown: Range, wanted: Range, update: AxisUpdate) -> 
 }
 
 /// Returns a range with round ends that contains at least [`LEAST_LABELS`] multiples of a usual
-/// step between labels, for an axis that must be readable in a low plot.
+/// step between labels, for an axis that must be readable in a low plot:
+///
+/// 1. move the ends of `range` outwards to round values; on a logarithmic axis, that is all;
+/// 2. from the largest step downwards, extend the range until it contains enough multiples;
+/// 3. stop at the first step for which it becomes at most [`MOST_EXTENSION`] times as wide.
 pub(super) fn labelled_range(range: Range, scale: Scale) -> Range {
     let rounded = rounded_out(range);
     if scale == Scale::Logarithmic {
@@ -73,7 +87,7 @@ pub(super) fn labelled_range(range: Range, scale: Scale) -> Range {
         }
         step = match scale {
             Scale::Degrees => degree_step_below(step),
-            _ => step_above(step / 2.6),
+            _ => decimal_step_below(step),
         };
     }
 }
@@ -99,13 +113,18 @@ fn with_labels(range: Range, step: f64) -> Range {
     labelled
 }
 
-/// Returns the next smaller step between labelled angles \[deg\].
+/// Returns the next smaller step between labelled angles \[deg\]; decimal below 10.
 fn degree_step_below(step: f64) -> f64 {
     const STEPS: [f64; 9] = [720.0, 360.0, 180.0, 90.0, 60.0, 45.0, 30.0, 15.0, 10.0];
     match STEPS.into_iter().find(|smaller| *smaller < step) {
         Some(smaller) => smaller,
-        None => step_above(step / 2.6),
+        None => decimal_step_below(step),
     }
+}
+
+/// Returns the next smaller step among 1, 2 and 5 times the powers of ten.
+fn decimal_step_below(step: f64) -> f64 {
+    step_above(step / TO_NEXT_STEP)
 }
 
 /// Returns the range with its ends moved outwards to multiples of a round step.

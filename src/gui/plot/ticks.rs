@@ -38,12 +38,18 @@ pub(super) const LABEL_SPACING: Rangef = Rangef {
 const DECADE_LABEL_GAP: f64 = 34.0;
 /// Minimum distance between two grid lines within a decade \[pt\].
 const DECADE_LINE_GAP: f64 = 5.0;
-/// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
+/// Number of labels without which an axis does not show its scale.
+const USUAL_LEAST_LABELS: usize = 2;
+/// Minimum distance between labels that move together until there are two \[pt\]; letters are 11 pt
+/// high.
 const LEAST_LABEL_GAP: f64 = 13.0;
 /// Minimum distance between labels that move together until there are more than two \[pt\].
 const LOW_LABEL_GAP: f64 = 15.0;
 /// Factor by which labels in a low plot move together until it has enough.
 const CLOSER: f64 = 0.8;
+/// Minimum distance between labels at equal steps on a logarithmic axis, relative to other labels:
+/// 2.2 and 2.4 are wider than 2 and 5.
+const EQUAL_STEPS_APART: f64 = 1.5;
 /// Space between two labels along a horizontal axis \[digit widths\].
 const LABEL_SPACE: f64 = 0.6;
 /// Minimum gap between two names along an axis \[pt\].
@@ -84,11 +90,16 @@ impl Ticks {
     /// Returns the ticks and grid lines between two axis coordinates; a mark's step size determines
     /// whether egui_plot labels it.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
-        self.marks_with_labels(bounds, units_per_point, 2)
+        self.marks_with_labels(bounds, units_per_point, USUAL_LEAST_LABELS)
     }
 
-    /// Like [`Self::marks`], but moves the labels in a low plot together until there are at least
-    /// `least` or no more fit.
+    /// Like [`Self::marks`], with at least `least` labels if they fit:
+    ///
+    /// 1. choose the ticks with the usual gap between labels;
+    /// 2. in a low plot, with fewer labels, reduce the gap step by step down to the minimum;
+    /// 3. make each tick a mark, whose step size says whether it has a label.
+    ///
+    /// Empty if the bounds are empty or not finite.
     pub(super) fn marks_with_labels(
         self,
         bounds: (f64, f64),
@@ -102,19 +113,18 @@ impl Ticks {
             return Vec::new();
         }
         let mut gap = self.label_gap();
-        let mut found = self.ticks_between(bounds, units_per_point, gap);
-        // A single label does not show the scale, so labels in a low plot may be closer together.
-        let floor = if least > 2 {
+        let mut ticks = self.ticks_between(bounds, units_per_point, gap);
+        let least_gap = if least > USUAL_LEAST_LABELS {
             LOW_LABEL_GAP
         } else {
             LEAST_LABEL_GAP
         };
-        while count_labels(&found) < least && gap > floor {
-            gap = (CLOSER * gap).max(floor);
-            found = self.ticks_between(bounds, units_per_point, gap);
+        while count_labels(&ticks) < least && gap > least_gap {
+            gap = (CLOSER * gap).max(least_gap);
+            ticks = self.ticks_between(bounds, units_per_point, gap);
         }
-        let mut marks = Vec::with_capacity(found.len());
-        for tick in found {
+        let mut marks = Vec::with_capacity(ticks.len());
+        for tick in ticks {
             let step_pt = if tick.label.is_some() {
                 LABELLED
             } else {
@@ -148,36 +158,37 @@ impl Ticks {
         let length = (bounds.1 - bounds.0) / units_per_point;
         let gaps = TickGaps {
             labels: gap,
-            equal_steps: 1.5 * gap,
+            equal_steps: EQUAL_STEPS_APART * gap,
             lines: DECADE_LINE_GAP,
         };
         ticks_of(scale, range, length, gaps)
     }
 
     /// Returns [`Self::marks`] for a horizontal axis, far enough apart for the widest label if a
-    /// digit is `digit` points wide. Only decimal values can be set further apart; the other kinds
-    /// have a fixed gap.
+    /// digit is `digit_pt` points wide. Only decimal values can be set further apart; the other
+    /// kinds have a fixed gap.
     pub(super) fn horizontal_marks(
         self,
         bounds: (f64, f64),
         units_per_point: f64,
-        digit: f64,
+        digit_pt: f64,
     ) -> Vec<GridMark> {
-        let found = self.marks(bounds, units_per_point);
-        let letters = found
+        let marks = self.marks(bounds, units_per_point);
+        let longest = marks
             .iter()
             .map(|mark| self.text(*mark).chars().count())
             .max()
             .unwrap_or(0);
-        let needed = (letters as f64 + LABEL_SPACE) * digit;
+        let needed_gap = (longest as f64 + LABEL_SPACE) * digit_pt;
         match self {
-            Self::Decimal(gap) if gap < needed => {
-                Self::Decimal(needed).marks(bounds, units_per_point)
+            Self::Decimal(gap) if gap < needed_gap => {
+                Self::Decimal(needed_gap).marks(bounds, units_per_point)
             }
-            _ => found,
+            _ => marks,
         }
     }
 
+    /// Returns the label at a mark.
     pub(super) fn text(self, mark: GridMark) -> String {
         compact(self.number(mark.value))
     }

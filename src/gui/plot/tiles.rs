@@ -1,4 +1,5 @@
-//! Small multiples: equally large plots, in as many rows and columns as make them largest.
+//! Small multiples: the plots of a figure as equally large tiles, in the number of rows and columns
+//! with which they are largest.
 
 use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
@@ -16,9 +17,14 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// Arranges `count` plots in `available` so that they are largest, none smaller than `least`.
+    /// Arranges `count` plots in `available` so that they are largest, none smaller than `least`:
     ///
-    /// If they do not fit, they form a single row wider than `available`, which scrolls.
+    /// 1. every number of columns from 1 to `count`, with the rows that it needs, is a candidate if
+    ///    no tile is smaller than `least`;
+    /// 2. the candidate with the highest [`Self::usefulness`] is chosen, among equals the one
+    ///    with the most columns;
+    /// 3. without a candidate, the plots form a single row of at least the minimum size, which is
+    ///    larger than `available` and scrolls.
     pub(super) fn arrange(count: usize, available: Vec2, least: Vec2) -> Self {
         let count = count.max(1);
         let mut best: Option<Self> = None;
@@ -48,8 +54,8 @@ impl Tiles {
     /// Rates an arrangement by the height of the largest plot with preferred proportions in a tile,
     /// less a penalty for empty tiles \[pt\].
     fn usefulness(self, count: usize) -> f32 {
-        let gaps = self.columns * self.rows - count;
-        (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * gaps as f32
+        let empty_tiles = self.columns * self.rows - count;
+        (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * empty_tiles as f32
     }
 
     fn total_size(self) -> Vec2 {
@@ -104,7 +110,7 @@ pub(super) fn tiles_ui(
     let wanted = tiles.total_size();
     let fits = wanted.x <= rect.width() + 0.5 && wanted.y <= rect.height() + 0.5;
     if !fits {
-        // If the tiles are wider than the area, the scroll bar takes some of their height.
+        // The tiles are then a single row (see `arrange`), whose scroll bar takes some height.
         tiles.size.y = (tiles.size.y - ui.spacing().scroll.allocated_width()).max(least.y);
     }
     ui.scope_builder(UiBuilder::new().id_salt(name).max_rect(rect), |ui| {

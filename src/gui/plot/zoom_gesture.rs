@@ -1,4 +1,4 @@
-//! Gestures used by several plots: zooming by wheel and pinching, selection boxes, digits.
+//! Zoom gestures, by wheel and pinching, used by several plots.
 
 use egui::{Context, Pos2, Response, Vec2};
 
@@ -44,7 +44,8 @@ impl ZoomGesture {
         f64::from(self.both.y)
     }
 
-    /// Returns a single zoom factor that combines all gestures.
+    /// Returns a single zoom factor that combines all gestures: the geometric mean of both axes,
+    /// times the sideways factor.
     pub(super) fn along_one_axis(self) -> f64 {
         let pinched = (self.both.x * self.both.y).sqrt();
         f64::from(pinched * self.sideways)

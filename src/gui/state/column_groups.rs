@@ -14,6 +14,7 @@ use super::records::RecordsState;
 pub struct ColumnGroup {
     /// Column names in the files.
     pub columns: Vec<String>,
+    /// Assignment to the channels, without the remedies that belong to single records.
     layout: RecordLayout,
     /// Number of whole records.
     pub records: usize,
@@ -21,6 +22,7 @@ pub struct ColumnGroup {
     pub conditions: BTreeSet<ConditionId>,
     /// The first record to show: the first with a problem or an assumed unit, otherwise the first.
     pub first: Option<RecordPlace>,
+    /// Whether `first` has a problem or an assumed unit.
     is_first_doubtful: bool,
     /// Problems in the first record that cannot be used; empty if all can.
     pub problems: Vec<LayoutProblem>,
@@ -73,6 +75,8 @@ impl ColumnGroup {
             && self.layout == record.layout.without_remedies()
     }
 
+    /// Counts a record to the group; `place` is `None` for a record without a condition, which
+    /// cannot be shown.
     fn add(&mut self, row: &LaidOutRecord, place: Option<RecordPlace>) {
         self.records += 1;
         if self.problems.is_empty() {
@@ -97,7 +101,8 @@ impl ColumnGroup {
 }
 
 impl RecordsState {
-    /// Returns the groups of records with the same columns, the largest first.
+    /// Returns the groups of records with the same columns, the largest first. Parts are not
+    /// counted: they have their record's columns.
     pub fn column_groups(&self) -> Vec<ColumnGroup> {
         let mut groups: Vec<ColumnGroup> = Vec::new();
         for (condition, records) in &self.conditions {

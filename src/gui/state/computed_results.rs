@@ -1,9 +1,9 @@
 //! Computed results with their jobs, and how far the requests for them have come.
 //!
-//! Whenever the study or the displayed condition changes, this is a request with a new, greater
+//! Each change to the study or to the displayed condition makes a request with a new, greater
 //! number. Its analysis arrives later: until `received` equals `requested`, the displayed results
-//! are older than the settings. If the request was stopped meanwhile, `stopped` is set, and no
-//! analysis is on its way. That other jobs were stopped is recorded in `Background::stopped`.
+//! are older than the settings. If the request has been stopped, `stopped` is set, and no analysis
+//! will arrive. `Background::stopped` says whether other jobs were stopped.
 //!
 //! Most results may be older than the displayed study: read them through the methods of `State` in
 //! `shown_results.rs`, which return a result only where it is still valid.
@@ -126,7 +126,8 @@ impl Results {
         }
     }
 
-    /// Returns the message that explains missing error bars.
+    /// Returns the message that explains missing error bars: their progress, once the analysis is
+    /// there; else that they were stopped; else that the analysis is missing.
     pub fn absence_of_error_bars(&self) -> String {
         match self.background.error_bars {
             Some(steps) if !self.is_behind() => error_bar_progress(steps),

@@ -9,7 +9,7 @@ use gdcm_sysid::identification::Identification;
 use super::condition_records::ConditionRecords;
 use super::window_state::State;
 
-/// χ²/dof above which a fit is bad (M14, section 6).
+/// χ²/dof above which a fit is bad (docs/identification.md, M14.4).
 pub const BAD_FIT: f64 = 1.5;
 
 /// Numbers of used records in a condition, fitted and held out.
@@ -138,6 +138,8 @@ impl State {
         fit
     }
 
+    /// Returns the status of a condition's identification: first that of a waiting or running job,
+    /// then that of the latest identification, where changed settings come before its outcome.
     fn fit_status(&self, condition: ConditionId, records: &ConditionRecords) -> FitStatus {
         if let Some(job) = self.records.job_of(condition) {
             if job.news().step.is_empty() {
@@ -196,6 +198,12 @@ impl State {
     }
 
     /// Returns how far the requested identifications have come; `None` if none is running.
+    ///
+    /// ```text
+    /// p      completed share of the running identification, 0 to 1
+    /// share = (finished + p) / requested
+    /// time left = mean duration of the identifications so far · (unfinished − p)
+    /// ```
     pub fn batch_progress(&self) -> Option<BatchProgress> {
         let unfinished = self.records.running.len();
         if unfinished == 0 {
@@ -204,7 +212,7 @@ impl State {
         let requested = self.records.requested_count.max(unfinished);
         let finished = requested - unfinished;
         let steps = self.results.background.identification.unwrap_or_default();
-        let part = steps.done as f32 / steps.total.max(1) as f32;
+        let running_share = steps.done as f32 / steps.total.max(1) as f32;
         let mut durations_s = Vec::new();
         for records in self.records.conditions.values() {
             if let Some((job, _)) = &records.found {
@@ -215,12 +223,12 @@ impl State {
             None
         } else {
             let mean_s = durations_s.iter().sum::<f64>() / durations_s.len() as f64;
-            Some(mean_s * (unfinished as f64 - f64::from(part)))
+            Some(mean_s * (unfinished as f64 - f64::from(running_share)))
         };
         Some(BatchProgress {
             finished,
             requested,
-            share: (finished as f32 + part) / requested as f32,
+            share: (finished as f32 + running_share) / requested as f32,
             left_s,
         })
     }

@@ -26,7 +26,8 @@ impl ConditionRecords {
     }
 
     /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
-    /// the channels in the records.
+    /// the channels in the records. Recorded references (M14.15) become further inputs, after those
+    /// of the dataset.
     ///
     /// # Errors
     /// A message, if no record is used, if all are held out, or if a record lacks a reference.

@@ -32,7 +32,8 @@ pub enum AddedRecord {
     KnownAlready,
 }
 
-/// Input and record count for which the displayed record was found.
+/// Input and record count for which the displayed record was found (`excited_input.rs`); another
+/// input or a further record makes the search necessary again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opening {
     pub input: usize,
@@ -189,9 +190,12 @@ impl ConditionRecords {
             .any(|row| row.table.part_s.is_some() && row.table.source == *source)
     }
 
-    /// Adds a record unless it is already loaded. A record from a changed file replaces the earlier
-    /// one; `read_from` gives the file paths by SHA-256. A different record with the same name gets
-    /// a number after its name.
+    /// Adds a record; `read_from` gives the file paths by SHA-256:
+    ///
+    /// 1. already loaded: nothing changes;
+    /// 2. read again from a changed file: replaces the earlier record, and takes over its use and
+    ///    manoeuvre;
+    /// 3. otherwise: added at the end, with a number after its name if another record has the name.
     pub fn add_row(
         &mut self,
         mut row: LaidOutRecord,
@@ -255,7 +259,7 @@ impl ConditionRecords {
         true
     }
 
-    /// Returns the used rows with their indices.
+    /// Returns the rows that are used and can be, with their indices.
     pub fn used_rows(&self) -> impl Iterator<Item = (usize, &LaidOutRecord)> {
         self.rows
             .iter()

@@ -135,6 +135,8 @@ impl ConditionRecords {
         }
     }
 
+    /// Returns the fitted record that shows an input best, among those that excite it: a sweep if
+    /// there is one, and then the record with the largest share. `None` if no record excites it.
     fn row_of_input(&self, input: usize) -> Option<usize> {
         let rows: Vec<(usize, &LaidOutRecord)> = self.used_rows().collect();
         let flights: Vec<Arc<FlightRecord>> = rows
@@ -142,8 +144,8 @@ impl ConditionRecords {
             .filter_map(|(_, row)| row.flight.clone())
             .collect();
         let excitations = Excitation::compare_records(&flights);
-        // A sweep on another input may excite this one too, by the pilot's compensation: this
-        // input's own sweep is the record that excites it most.
+        // The largest share decides among sweeps, because a sweep on another input may excite this
+        // one too, by the pilot's compensation.
         let mut best: Option<Candidate> = None;
         for ((index, row), excitation) in rows.into_iter().zip(excitations) {
             if row.guess.held_out || !excitation.excites(input) {

@@ -1,5 +1,5 @@
-//! The export dialog: its choices and typed texts, and its dry-run job. `export_plan.rs` says when
-//! a dry run is requested.
+//! The export dialog: its choices and typed texts, and its dry run, which computes every file
+//! without writing any. `export_plan.rs` says when a dry run is requested.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -213,7 +213,8 @@ impl ExportForm {
         self.breakpoints = airspeeds_words(&airspeeds_kt);
     }
 
-    /// Applies a remedy that changes the export; returns whether it does, and not the study.
+    /// Applies a remedy that changes the export; returns false for a remedy that changes the study
+    /// instead, which the caller applies.
     pub fn apply_remedy(&mut self, remedy: ExportRemedy) -> bool {
         match remedy {
             ExportRemedy::AddBreakpoint { airspeed_kt } => self.add_breakpoint(airspeed_kt),
@@ -237,7 +238,9 @@ impl ExportForm {
     /// Returns the files that the choices request.
     ///
     /// # Errors
-    /// What is missing or wrong in the form.
+    /// The first that is missing or wrong: a format or the report; the folder; the prefix, which
+    /// may not contain a folder; a condition, if a format needs one; the Padé order; the
+    /// breakpoints.
     pub fn set(&self) -> Result<ExportSet, Message> {
         let names = self.choices.formats.iter().map(String::as_str);
         let (formats, has_checksums) = ExportSet::formats_named(names);
@@ -251,6 +254,7 @@ impl ExportForm {
             let text = "file prefix: a folder belongs in the field Folder";
             return Err(Message::new("prefix-with-folder", text));
         }
+        // The formats with this option write files for each condition.
         let needs_conditions = formats
             .iter()
             .any(|format| format.options.contains(&"--condition"));

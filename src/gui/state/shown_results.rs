@@ -22,6 +22,8 @@
 //! | `physics`                      | displayed dataset and assessed parameters   | may be older |
 //! | `uncertainty`                  | newest analysis                             | its own     |
 //! | `value_uncertainty`            | newest analysis, not older than `shown`     | its own     |
+//! | `painted_uncertainty`          | displayed dataset                           | may be older |
+//! | `trade_off`                    | displayed condition                         | may be older |
 //!
 //! The displayed condition's result arrives before the others (`Results::first`). It is then newer
 //! than the analysis; [`State::others_are_older`] says so, and views show a notice.

@@ -141,9 +141,13 @@ impl Arrangement {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement, which an older version may have written: views that have
-    /// become dock pages are shown in the dock. `None` unless every group shows one of its own
-    /// views, which may have changed between versions.
+    /// Returns this stored arrangement, which an older version of the program may have written:
+    ///
+    /// 1. a view beside that is now a dock page is shown in the dock;
+    /// 2. a group that shows what is now a dock page shows its first view; if it was in front, the
+    ///    dock shows the page, and the first group comes to the front;
+    /// 3. a group that shows a view that is now in another group: `None`;
+    /// 4. a dock that shows no dock page shows the net gain.
     pub fn if_valid(mut self) -> Option<Self> {
         if let Some(page) = self.beside
             && page.is_dock_page()

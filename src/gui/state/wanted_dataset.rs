@@ -13,8 +13,9 @@ use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordColumn, RecordTab
 use crate::gui::widgets::number_entry::typed_number;
 use crate::message::Message;
 
-/// Column meanings that are pilot controls. The reference "TARG" is neither an input nor an output.
+/// Column meanings that are pilot controls.
 const CONTROLS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
+/// Column meaning of a recorded reference, which is neither an input nor an output.
 const TARGET: &str = "TARG";
 
 /// Form for a dataset made from records, as typed.
@@ -87,8 +88,8 @@ impl WantedDataset {
     }
 }
 
-/// Returns whether a column is an input or an output, as stated in the file or implied by its
-/// meaning; `None` if unknown.
+/// Returns whether a column is an input or an output: as stated in the file; else by its meaning, a
+/// control, a reference (`None`) or else an output; `None` without either.
 fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     if column.side.is_some() {
         return column.side;
@@ -111,8 +112,8 @@ fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
     }
 }
 
-/// Formats "topic.column \[unit\]". Topics that are not joined to a channel yet are separate
-/// records, named after their variables.
+/// Formats "topic.column \[unit\]". A topic that is not joined to others yet is a record of its
+/// own; its name is the record's variable.
 fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
     let mut description = String::new();
     if let Some(variable) = &table.source.variable {

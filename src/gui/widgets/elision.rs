@@ -39,6 +39,7 @@ pub fn elided_among(
     elided_at(ui, text, room, size, HEADS[0])
 }
 
+/// Elides text that is wider than `room`, with the share `head` of the kept letters before the gap.
 fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     let font = FontId::proportional(size);
     if text_width(ui, text, font.clone()) <= room {

@@ -137,8 +137,13 @@ impl<'a> NumberField<'a> {
     }
 
     /// Accepts or refuses the number `after`, which replaces `before`; `unparsed` is a typed text
-    /// that is not a number. A dragged number stays within the range, and need not be whole before
-    /// the pointer is released.
+    /// that is not a number.
+    ///
+    /// 1. A dragged number stays within the range, and need not be whole before the pointer is
+    ///    released.
+    /// 2. A number that differs from `before` and is allowed is the new value.
+    /// 3. Refused are first a text that is not a number, else a different number that is out of
+    ///    range or should be whole.
     fn outcome(
         &self,
         before: f64,

@@ -185,7 +185,9 @@ impl TableLayout {
     }
 }
 
-/// Measures a column: as wide as its heading and its widest cell.
+/// Measures a column: as wide as its heading and its widest cell. In a number column, the widest
+/// part before the decimal point and the widest rest count, because the points are aligned; the
+/// block of numbers ends at the right edge.
 fn measured_column(ui: &Ui, table: &Table, index: usize, heading: &str, left: f32) -> TableColumn {
     let font = small();
     let heading_width = text_width(ui, heading, &font);

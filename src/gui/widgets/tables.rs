@@ -72,7 +72,11 @@ pub fn table_ui<C: From<TableRequest>>(
     .inner
 }
 
-/// Like [`table_ui`], at full size without scrolling.
+/// Like [`table_ui`], at full size without scrolling of its own:
+///
+/// 1. sort the rows, and measure columns and rows;
+/// 2. draw the headings, at the upper edge of the visible part while the table is scrolled;
+/// 3. draw the rows, clipped at the headings; returns the clicked cell.
 pub fn table_grid_ui<C: From<TableRequest>>(
     ui: &mut Ui,
     table: &Table,
@@ -145,8 +149,8 @@ struct DrawnTable<'a> {
     palette: &'a Palette,
 }
 
-/// Row and column of a cell, counted on the screen. The cell at which the keyboard enters the table
-/// is stored as such a position.
+/// Row and column of a cell, counted on the screen. The entry, the cell at which the keyboard
+/// enters the table, is stored as such a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct CellPlace {
     row: usize,
@@ -274,7 +278,8 @@ impl DrawnTable<'_> {
         }
     }
 
-    /// Draws the rows below the headings; returns the clicked cell.
+    /// Draws the rows below the headings; returns the clicked cell. A click or an arrow key makes
+    /// another cell the entry.
     fn rows_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,
@@ -328,7 +333,8 @@ impl DrawnTable<'_> {
         ui.painter().rect_filled(rect, 0.0, fill);
     }
 
-    /// Draws a cell. The Tab key stops at only one cell in a table.
+    /// Draws a cell. The Tab key stops at only one cell in a table, the entry: only a focusable
+    /// sense (`Sense::click()`, not `Sense::CLICK`) lets it stop.
     fn cell_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,

@@ -59,19 +59,27 @@ fn key() -> Id {
     Id::unique("regions")
 }
 
-/// Draws a region, or another piece of a region, and records its focusable controls. Scrolls to a
-/// control focused by the keyboard.
+/// Draws a region, or another piece of a region, and records its focusable controls:
+///
+/// 1. count the widgets drawn before, draw the region with `add`, and take the later ones;
+/// 2. record them, the visible rectangle, and the focused control if it is among them;
+/// 3. scroll to a control that has just received the focus.
 pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layer = ui.layer_id();
     let ctx = ui.ctx().clone();
-    let before = ctx.viewport(|viewport| viewport.this_pass.widgets.get_layer(layer).count());
+    let earlier_count =
+        ctx.viewport(|viewport| viewport.this_pass.widgets.get_layer(layer).count());
     let top = ui.cursor().top();
     let inner = add(ui);
     let drawn = ui.min_rect();
     let place = Rect::from_min_max(pos2(drawn.left(), top), drawn.max).intersect(ui.clip_rect());
     let controls: Vec<Id> = ctx.viewport(|viewport| {
-        let drawn = viewport.this_pass.widgets.get_layer(layer).skip(before);
-        drawn
+        let later = viewport
+            .this_pass
+            .widgets
+            .get_layer(layer)
+            .skip(earlier_count);
+        later
             .filter(|widget| widget.enabled && widget.sense.is_focusable())
             .map(|widget| widget.id)
             .collect()

@@ -78,7 +78,7 @@ pub enum Command {
     )]
     Identify(Box<IdentifyArguments>),
     /// Plan the next flight: identify models from flight records, and print the 95 % intervals that further frequency sweeps of each
-    /// input would bring, and what brings a wanted interval.
+    /// input would bring, and the ways to reach a wanted interval.
     #[command(
         after_help = "Examples:\n  gdcm plan sweeps --inputs LON,LAT --outputs P,Q --band 0.5 12\n  gdcm plan records --into dataset.json.gz --condition 3 --target Q/LON@1=0.5 --length 90"
     )]

@@ -113,7 +113,8 @@ fn check_declared<T>(
         && !models.iter().any(|model| scope.holds(model, None))
     {
         let reason = format!(
-            "{channel}: no model matches \"{pattern}\"; use the names in the last column (file)"
+            "{channel}: no model matches \"{pattern}\"; gdcm assemble without this option lists the \
+            names (column \"file\")"
         );
         return Err(Failure::coded_option(option, "unknown-model", reason));
     }

@@ -188,8 +188,8 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
         "channel",
         "k",
         "delay/lead [ms]",
-        "servo of [rad/s]",
-        "replaced by",
+        "servo [rad/s]",
+        "replaced by [rad/s]",
     ];
     let price = LeadPrice::new(leads);
     let mut table = Table::new("", with_price_heading(&columns, price.as_ref()));

@@ -29,7 +29,7 @@ pub(super) fn evidence_section(analysis: &Analysis) -> String {
 fn difference_lines(study: &Study, uncertainty: &Uncertainty) -> String {
     let level = uncertainty.level;
     let words = format!(
-        "{} (error bars of {:.0} %, Holm)",
+        "{} ({:.0} % error bars, Holm's correction for multiple tests)",
         differences_summary(uncertainty).trim_end_matches('.'),
         100.0 * level
     );
@@ -59,8 +59,8 @@ fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
         && needed.iter().all(|test| test.variable != variable)
     {
         let words = format!(
-            "the schedule depends on airspeed and {variable}, although no response needs \
-            {variable}"
+            "the schedule depends on airspeed and {variable}, but no response depends \
+            significantly on {variable}"
         );
         text += &line("Caution", &words);
     }

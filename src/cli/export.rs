@@ -156,7 +156,8 @@ fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRe
 /// Rejects options that apply to no requested format, and a request for checksums alone.
 fn check_options(arguments: &ExportArguments, formats: &[ExportFormat]) -> Result<(), Failure> {
     if formats.is_empty() {
-        let reason = format!("{CHECKSUMS} needs another format");
+        let reason =
+            format!("{CHECKSUMS} lists the checksums of the other files: add another format");
         return Err(Failure::coded_option("--as", "no-format", reason));
     }
     let options = [

@@ -64,13 +64,13 @@ pub(super) enum Failure {
     #[error("{paths}: not read, or read only in part; the results do not include the missing data")]
     Unread { paths: String },
     /// Identification was completed, but the records identify no input.
-    #[error("no input is identified by these records; the models do not describe {inputs}")]
+    #[error("the records identify no input: the models do not describe the responses to {inputs}")]
     NotIdentified { inputs: String },
     #[error("no thread can be started: {reason}")]
     NoThreads { reason: String },
     #[error("no model was identified: {reason}")]
     NoModels { reason: String },
-    #[error("the analysis has no result: {reason}")]
+    #[error("no result: {reason}")]
     NoResult { reason: String },
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -107,7 +107,10 @@ pub(super) fn drawn_figure(
         Some(condition) => figure_of_condition(&request, analysis, condition, engine, receiver)?,
     };
     figure.ok_or_else(|| Failure::NoResult {
-        reason: "there is nothing to draw".to_owned(),
+        reason: format!(
+            "figure {}: this study has no data for it; choose another figure or condition",
+            view.name()
+        ),
     })
 }
 
@@ -121,7 +124,7 @@ fn assessed_couplings(
         CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
         requested => requested,
     };
-    let progress = receiver.begin("couplings");
+    let progress = receiver.begin("computing couplings");
     let assessed = engine.assess_couplings(study, couplings, &*progress)?;
     match assessed {
         Some(Ok(assessment)) => Ok(assessment),
@@ -144,7 +147,7 @@ fn assessed_physics(
         PhysicsCorrection::Off => PhysicsCorrection::Named,
         requested => requested,
     };
-    let progress = receiver.begin("physics parameters");
+    let progress = receiver.begin("fitting physics parameters");
     match engine.assess_physics(study, physics, &*progress)? {
         Some(Ok(assessment)) => Ok(assessment),
         Some(Err(why)) => Err(Failure::NoResult {

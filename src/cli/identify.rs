@@ -118,7 +118,8 @@ fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     let conditions = named_conditions(&records);
     if conditions.contains(',') {
         let text = format!(
-            "the names of the records give conditions {conditions}: all are fitted together"
+            "the records belong to conditions {conditions} by their names, but are fitted together; \
+            to fit each condition separately, use --into DATASET --every-condition"
         );
         caution("records-of-several-conditions", &text);
     }

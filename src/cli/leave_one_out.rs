@@ -15,9 +15,12 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let unseen = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
     let mut text = line(
         "Left out",
-        "change of J in each condition with a schedule fitted to the others, on-axis mean:",
+        "on-axis mean of the change of J, under the schedule fitted to all conditions or to all others:",
     );
-    let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
+    let mut table = Table::new(
+        "",
+        ["condition", "kt", "fitted to all", "fitted to the others"],
+    );
     for condition in &unseen.conditions {
         let id = condition.condition;
         let mean_change = |table: &AssessmentTable| {
@@ -43,8 +46,8 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
         .applied_physics()
         .is_some_and(|applied| !applied.values.is_empty());
     if are_parameters_moved {
-        let words = "these physics parameters are found in all conditions; for J with values found \
-            without each condition, see Physics";
+        let words = "these physics parameters are fitted to all conditions; for J with parameters \
+            fitted without each condition, see Physics";
         text += &detail("", words);
     }
     if analysis.fitted_couplings().is_some() {

@@ -43,7 +43,9 @@ pub(super) fn physics_section(analysis: &Analysis) -> String {
     };
     text += &detail("applied", &sanitized(&words));
     for name in &applied.unknown {
-        let words = format!("the dataset has no run of {name}; its value has no effect");
+        let words = format!(
+            "the dataset has no physics model linearised with {name} changed; its value has no effect"
+        );
         keep_caution("unknown-parameter", &[], &words);
         text += &detail("caution", &sanitized(&words));
     }
@@ -101,7 +103,7 @@ fn unused_runs_line(analysis: &Analysis) -> String {
         return String::new();
     }
     let words = format!(
-        "runs of {} are not used; --physics named says which would have to move",
+        "the dataset has physics models with {} changed, which are not used; --physics named shows which need a change",
         counted(count, "parameter")
     );
     format!("\n{}", line("Physics", &words))

@@ -128,7 +128,9 @@ impl<'a> WantedFlights<'a> {
         if let Some(&[first, last]) = arguments.sweep_band.as_deref()
             && !(first.is_finite() && last.is_finite() && 0.0 < first && first < last)
         {
-            let reason = "expected two increasing positive frequencies";
+            let reason = format!(
+                "expected two increasing positive frequencies in rad/s, found {first} and {last}"
+            );
             return Err(Failure::option("--sweep-band", reason));
         }
         let mut targets = Vec::with_capacity(arguments.target.len());
@@ -227,7 +229,7 @@ impl<'a> WantedFlights<'a> {
 fn no_information(task: &IdentificationTask) -> Failure {
     Failure::NoModels {
         reason: format!(
-            "{}the information of the records cannot be computed",
+            "{}the Fisher information of the records cannot be computed",
             prefix(task.condition)
         ),
     }

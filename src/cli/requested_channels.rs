@@ -21,7 +21,10 @@ pub(super) fn requested_band(
             Band::new(min, max).map_err(|error| Failure::option("--band", error))
         }
         (_, Some(dataset)) => Ok(dataset.band()),
-        _ => Err(Failure::option("--band", "expected two frequencies")),
+        _ => Err(Failure::option(
+            "--band",
+            "expected two frequencies in rad/s",
+        )),
     }
 }
 

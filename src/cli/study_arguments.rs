@@ -122,8 +122,8 @@ pub struct StudyArguments {
     /// CHANNEL=-1:all; CHANNEL=1 restores them. May be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
     pub sign: Vec<ChannelSign>,
-    /// Change of a physics parameter set by hand, in its unit: NAME=CHANGE[UNIT] (Ixx=+4%). Without --physics, the physics
-    /// models are moved by these values alone. May be repeated.
+    /// Change of a physics parameter set by hand, in its unit: NAME=CHANGE[UNIT] (Ixx=+4%). Without --physics, only
+    /// these changes are applied to the physics models. May be repeated.
     #[arg(long, value_name = "NAME=CHANGE", value_parser = parameter_value, allow_hyphen_values = true)]
     pub parameter: Vec<ParameterValue>,
     /// Outputs whose attitude the stick commands, separated by commas: only the phase determines their bandwidth (ADS-33E-PRF).

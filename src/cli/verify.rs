@@ -73,7 +73,7 @@ fn result_section(result: &CheckResult) -> String {
     let check = result.check;
     let verdict = if result.passed() { "pass" } else { "FAIL" };
     let mut text = line(verdict, &format!("{} ({})", check.code, check.sections));
-    text += &detail("what", check.what);
+    text += &detail("compared", check.what);
     text += &detail("expected", &format!("by {}", check.source));
     match &result.outcome {
         Ok(found) => {

@@ -1394,7 +1394,7 @@ fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
     ]);
     ran.assert_done();
     assert!(
-        ran.out.contains("(3, 8)") && ran.out.contains("of the others"),
+        ran.out.contains("(3, 8)") && ran.out.contains("fitted to the others"),
         "{}",
         ran.out
     );

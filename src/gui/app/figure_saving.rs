@@ -37,7 +37,7 @@ impl GdcmApp {
             Some(AbsentBars::StillComputed) => "numbers-copied-before-error-bars",
         };
         let text = format!(
-            "copied the numbers of {}{}",
+            "copied the values of {}{}",
             view.name(),
             absent_bars_suffix(absent)
         );

@@ -96,8 +96,8 @@ impl GdcmApp {
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             let text = format!(
-                "{path}: neither a dataset nor a study; to make a dataset from model files, use \
-                Import models in the menu File"
+                "{path}: neither a dataset nor a study; to make a dataset from model files, \
+                choose Import models in the File menu"
             );
             let message = Message::new("model-file", text);
             let remedy = Some(NoticeAction::OpenAnother);

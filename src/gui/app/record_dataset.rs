@@ -82,7 +82,7 @@ impl GdcmApp {
         let number = reading.number;
         self.state.records.reading = Some("records".to_owned());
         let make = move || request.make(&SilentProgress(reading.stop));
-        self.in_thread("the making of a dataset", make, move |app, made| {
+        self.in_thread("the creation of a dataset", make, move |app, made| {
             if !app.readers.record_reader.is_newest(number) {
                 return;
             }

@@ -96,7 +96,7 @@ impl GdcmApp {
                 "conditions"
             };
             let names = names.join(", ");
-            let text = format!("adopted {models} in {conditions} {names}");
+            let text = format!("now in use: {models} in {conditions} {names}");
             let message = Message::new("models-adopted", text);
             self.notify_done_with(Activity::Other, message, Some(NoticeAction::Undo));
         }

@@ -137,7 +137,7 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
 
 /// Returns the message on standard error after a fault has ended the window.
 pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
-    let fault = format!("the window was ended by a fault: {fault}");
+    let fault = format!("a fault in the program closed the window: {fault}");
     match remains {
         Remains::Kept(kept) => format!("{fault}; {}", kept_words(kept)),
         Remains::Saved => format!("{fault}; every decision was saved"),

@@ -63,7 +63,7 @@ fn table_entries(kind: TableKind) -> [Entry; 2] {
 fn figure_entries(view: View) -> [Entry; 2] {
     [
         Entry::new(
-            format!("Copy values of {}", view.name()),
+            format!("Copy the values of {}", view.name()),
             "As CSV, to the clipboard",
             OutputCommand::CopyFigure(view),
         ),
@@ -84,7 +84,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
         None => false,
     };
     let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
-    let here = "Into the displayed condition";
+    let here = "In the displayed condition";
     [
         Entry::new(
             "Identify models",
@@ -200,7 +200,7 @@ pub fn every_command(state: &State) -> Vec<Entry> {
     entries.retain(|entry| entry.command != palette);
     entries.extend(PairSet::ALL.map(|set| {
         Entry::new(
-            format!("Net gains of the responses {}", set.name()),
+            format!("Net gains of responses: {}", set.name()),
             set.purpose(),
             DisplayCommand::ShowNetGains(set),
         )

@@ -129,7 +129,7 @@ fn view_group_entries() -> Vec<Entry> {
 }
 
 fn page_entries() -> [Entry; 2] {
-    let meaning = "Of the view in front, if it has pages";
+    let meaning = "In the view in front, if it has pages";
     [
         Entry::new(
             "Next page",
@@ -188,7 +188,7 @@ fn fold_entries(state: &State) -> [Entry; 6] {
             } else {
                 "Unfold the settings"
             },
-            "Shown in place of the constraint matrix and the response card",
+            "Shown instead of the constraint matrix and the response card",
             LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),
@@ -207,7 +207,7 @@ fn fold_entries(state: &State) -> [Entry; 6] {
             } else {
                 "Enlarge the dock"
             },
-            "Twice the usual height; as a double click on its bar",
+            "Twice the usual height (or double-click its bar)",
             LayoutCommand::EnlargeDock(!is_dock_enlarged),
         ),
         Entry::new(

@@ -31,7 +31,7 @@ const REASONS: &str = "Find the cause";
 /// Returns the text on the step that chooses this phase correction.
 pub(super) fn phase_step_label(phase: PhaseCorrection) -> &'static str {
     match phase {
-        PhaseCorrection::None => "Leave the phase",
+        PhaseCorrection::None => "Leave phase uncorrected",
         PhaseCorrection::Delay => "Use delays",
         PhaseCorrection::Lead => "Use leads",
     }

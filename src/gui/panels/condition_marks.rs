@@ -152,7 +152,7 @@ impl Marks {
         if self.held_out {
             ui.label(
                 "Held out: analysed, but used only to validate the schedule; right-click to \
-                end",
+                stop holding out",
             );
         } else if self.left_out {
             ui.label("Left out of the schedule; right-click to include");
@@ -177,7 +177,7 @@ impl Marks {
         if self.unmatched_delays > 0 {
             let delays = counted(self.unmatched_delays, "held delay");
             tasks.push(format!(
-                "{delays} not matched (without those that need lead)"
+                "{delays} not matched (not counting those that need lead)"
             ));
         }
         tasks

@@ -347,11 +347,11 @@ fn cost_words(
     if column.is_mean {
         let responses = counted(column.pairs.len(), "response");
         return format!(
-            "{responses} not held, condition {condition}: mean J of magnitude \
-            {magnitude}, of phase {phase}; largest: {name}"
+            "{responses} not held, condition {condition}: mean magnitude J \
+            {magnitude}, phase J {phase}; largest: {name}"
         );
     }
-    format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
+    format!("{name} in condition {condition}: magnitude J {magnitude}, phase J {phase}")
 }
 
 /// Returns a row's accessible name: "Condition 10: 60 kt, low altitude, high weight".

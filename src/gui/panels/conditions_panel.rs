@@ -17,7 +17,7 @@ use crate::gui::widgets::window_regions::{Region, region_ui};
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Conditions, |ui| {
         let older = if state.others_are_older() {
-            " · of older settings"
+            " · from older settings"
         } else {
             ""
         };

@@ -222,7 +222,7 @@ impl<'a> Cell<'a> {
         let delay_s = shown.wanted_delay_s(self.pair);
         let (Some(gain), Some(delay_s)) = (gain, delay_s) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
-            let words = if nothing { "nothing" } else { "no G" };
+            let words = if nothing { "zero" } else { "no G" };
             ui.painter().text(
                 rect.center(),
                 Align2::CENTER_CENTER,

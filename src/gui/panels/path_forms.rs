@@ -91,8 +91,9 @@ const PATHS: [PathWords; 10] = [
         title: "Levels of bandwidth and phase delay",
         field: "Path of the levels",
         hint: "path of a .json file",
-        explanation: "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]. None are \
-                      built in: boundaries depend on task and category (docs/requirements.md).",
+        explanation: "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]. Boundaries \
+                      depend on task and category; those of ADS-33E-PRF for yaw are in the limits menu \
+                      (docs/requirements.md).",
         submit: "Read levels",
     },
     PathWords {

@@ -86,7 +86,7 @@ const CAUSES: [Cause; 4] = [
     },
     Cause {
         title: "Integration and sampling",
-        symptom: "Outputs that are passed on one step late lag by that step in every response.",
+        symptom: "Outputs delayed by one simulation step lag by that step in every response.",
         compares: None,
         view: View::Error,
     },
@@ -246,7 +246,7 @@ fn remarks_ui(
             let name = state.dataset().pair_name(pair);
             let button = ui.small_button("Ignore response");
             named(button, Role::Button, format!("Ignore {name}"))
-                .on_hover_text("No weight in the objective, in every condition")
+                .on_hover_text("Removes the response from the objective, in every condition")
                 .asks(Edit::Fit(pair, false), commands);
         }
         if let Some(sign) = remark.suggested_sign() {

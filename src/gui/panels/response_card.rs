@@ -119,7 +119,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         .level()
         .map(|level| format!("± {:.0} %", 100.0 * level))
         .unwrap_or_default();
-    for (end, head) in ends.into_iter().zip(["wants", "left", level.as_str()]) {
+    for (end, head) in ends.into_iter().zip(["before", "after", level.as_str()]) {
         painted_text(ui, title_line, end, head, small(), palette.dim_text);
     }
     let Some(shown) = state.shown() else { return };
@@ -157,7 +157,7 @@ pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
         .num_columns(4)
         .spacing([16.0, 2.0])
         .show(ui, |ui| {
-            for head in ["", "wants", "left", "±"] {
+            for head in ["", "before", "after", "±"] {
                 ui.label(palette.small(head));
             }
             ui.end_row();

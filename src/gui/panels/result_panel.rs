@@ -116,10 +116,9 @@ fn proof_ui(
     let is_dragged = state.is_setting_dragged();
     let (words, color) = match outcome {
         Outcome::Proven { .. } => ("global optimum ✓", palette.dim_text),
-        Outcome::NotProven { .. } if is_dragged => (
-            "proof after the change",
-            palette.dim_text.gamma_multiply(OLDER),
-        ),
+        Outcome::NotProven { .. } if is_dragged => {
+            ("proof pending", palette.dim_text.gamma_multiply(OLDER))
+        }
         Outcome::NotProven { .. } if is_proving => ("proof running", palette.dim_text),
         Outcome::NotProven { .. } => ("not proven", palette.warning),
     };

@@ -189,7 +189,7 @@ fn settings_parts(state: &State) -> Vec<LinePart> {
         format!("α {gains}, {delays}")
     };
     let phase = match settings.phase {
-        PhaseCorrection::None => "gains alone",
+        PhaseCorrection::None => "gains only",
         PhaseCorrection::Delay => "delays",
         PhaseCorrection::Lead => "leads",
     };

@@ -256,8 +256,8 @@ fn foot_ui(
     }
     let words = match state.changed_settings().len() {
         0 => "nothing changed".to_owned(),
-        1 => "one undo step".to_owned(),
-        count => format!("{}, one undo step", counted(count, "change")),
+        1 => "1 change".to_owned(),
+        count => format!("{}, in one undo step", counted(count, "change")),
     };
     painted_text(ui, area, AT_RIGHT_END, &words, small(), palette.dim_text);
 }

@@ -180,29 +180,29 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         return format!("proving the gains of {conditions} …");
     }
     match background.curves {
-        Some(Steps { total: 0, .. }) => return "curves …".to_owned(),
-        Some(steps) => return format!("curves, {} % …", steps.percent()),
+        Some(Steps { total: 0, .. }) => return "computing curves …".to_owned(),
+        Some(steps) => return format!("computing curves, {} % …", steps.percent()),
         None => {}
     }
     if let Some(steps) = background.error_bars {
         return error_bar_progress(steps);
     }
     if let Some(steps) = background.time_histories {
-        return format!("responses to flight records, {} % …", steps.percent());
+        return format!("simulating flight records, {} % …", steps.percent());
     }
     if let Some(steps) = background.couplings {
         return format!(
-            "couplings with each condition left out, {} % …",
+            "refitting couplings without each condition, {} % …",
             steps.percent()
         );
     }
     if let Some(steps) = background.physics {
-        return format!("physics parameters, {} % …", steps.percent());
+        return format!("fitting physics parameters, {} % …", steps.percent());
     }
     if background.views > 0 {
         "preparing the views …".to_owned()
     } else {
-        "costs of holding and releasing …".to_owned()
+        "computing the costs of holding and releasing …".to_owned()
     }
 }
 

@@ -37,12 +37,12 @@ pub(super) fn suggested_runs_ui(
         return;
     }
     ui.add_space(6.0);
-    ui.label(RichText::new("What to run first").font(medium(BODY_SIZE)));
+    ui.label(RichText::new("Suggested reruns of the physics model").font(medium(BODY_SIZE)));
     for suggestion in &suggestions {
         let text = suggestion_text(suggestion, state.dataset());
         ui.add(Label::new(palette.small(text)).wrap());
     }
-    let button = Button::new("Copy a template of these runs").small();
+    let button = Button::new("Copy a template for the reruns").small();
     let hint = "Entries for the physics models of a condition: fill in the matrices of each rerun \
         (docs/physics.md)";
     let copy = OutputCommand::CopyText(run_template(&suggestions));

@@ -84,7 +84,7 @@ pub(super) fn trade_off_ui(
         named(
             response,
             egui::Role::Label,
-            "Trade-off of α: not yet computed",
+            format!("Trade-off of α: {words}"),
         );
         return;
     };

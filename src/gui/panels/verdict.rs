@@ -30,7 +30,7 @@ pub struct Verdict {
     pub steps: Vec<Step>,
     /// Note beside the steps.
     pub note: String,
-    /// Caution to read before the result is used: "Price: +21 dB above 12 rad/s".
+    /// Caution to read before the result is used: "Leads: +21 dB above 12 rad/s".
     pub caution: Option<Message>,
     /// Number of poles within the band that the couplings in use make unstable, over all kept
     /// physics models in all conditions.

@@ -50,7 +50,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
-            message: Message::new("no-couplings", "No couplings"),
+            message: Message::new("no-couplings", "Couplings not applied"),
         });
     }
     let cautions = coupling_cautions(used_couplings(state)?).len();
@@ -96,7 +96,7 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
         return None;
     }
     let top = number(price.limit_rad_s);
-    let text = format!("Price: {} dB above {top} rad/s", signed(most_db, 0));
+    let text = format!("Leads: {} dB above {top} rad/s", signed(most_db, 0));
     Some(Message::new("lead-price", text))
 }
 
@@ -109,7 +109,7 @@ fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<Message>
             && cost.condition == shown.condition.id()
         {
             let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
-            let text = format!("Scheduled: J {scheduled}, own {own}");
+            let text = format!("Schedule: J {scheduled} instead of {own}");
             return Some(Message::new(caution.code(), text));
         }
     }

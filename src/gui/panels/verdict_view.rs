@@ -347,7 +347,7 @@ fn short_caution(caution: &str) -> String {
     format!("⚠ {short}")
 }
 
-/// Draws the first text that fits: "⚠ Price: +21 dB above 12 rad/s"; "⚠ +21 dB above 12 rad/s";
+/// Draws the first text that fits: "⚠ Leads: +21 dB above 12 rad/s"; "⚠ +21 dB above 12 rad/s";
 /// "⚠ +21 dB"; else the last with its middle elided.
 fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
     let subject = ui.max_rect();
@@ -423,9 +423,12 @@ mod tests {
     #[test]
     fn a_short_caution_keeps_its_number() {
         assert_eq!(
-            short_caution("Price: +21 dB above 12 rad/s"),
+            short_caution("Leads: +21 dB above 12 rad/s"),
             "⚠ +21 dB above 12 rad/s"
         );
-        assert_eq!(short_caution("No couplings"), "⚠ No couplings");
+        assert_eq!(
+            short_caution("Couplings not applied"),
+            "⚠ Couplings not applied"
+        );
     }
 }

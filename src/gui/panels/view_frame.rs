@@ -151,7 +151,7 @@ pub(super) fn tools_ui(
     }
     (view_content(view).tools)(ui, state, palette, commands);
     if view.facts().is_of_all_conditions && state.others_are_older() {
-        let text = palette.small_warning("of older settings");
+        let text = palette.small_warning("from older settings");
         ui.label(text)
             .on_hover_text("The displayed condition is up to date; the others are being computed");
     }

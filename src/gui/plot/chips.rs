@@ -221,7 +221,7 @@ impl Chips<'_> {
             switches.push(Switch {
                 subject: SwitchSubject::Bands,
                 text: self.bands_text(),
-                name: format!("Show the band of 95 %{}", self.plot),
+                name: format!("Show the 95 % band{}", self.plot),
                 is_shown,
                 is_lit: false,
             });
@@ -291,11 +291,7 @@ impl Chips<'_> {
     }
 
     fn bands_text(&self) -> &'static str {
-        if self.is_tight {
-            "95 %"
-        } else {
-            "band of 95 %"
-        }
+        if self.is_tight { "95 %" } else { "95 % band" }
     }
 
     /// Returns the sample length \[pt\].

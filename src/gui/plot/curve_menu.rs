@@ -191,7 +191,7 @@ fn ground_menu_ui(
     view: &mut BodeView,
 ) -> Option<BodeEvent> {
     let mut chosen = None;
-    if entry_ui(ui, "Fit plot", "Double click on empty ground") {
+    if entry_ui(ui, "Fit plot", "Or double-click an empty area") {
         view.request_fit();
     }
     let hint = "Two marks show the change between them";

@@ -67,8 +67,11 @@ impl Background {
 /// Describes how far the error bars have come.
 pub fn error_bar_progress(steps: Steps) -> String {
     if steps.total == 0 {
-        "error bars …".to_owned()
+        "computing error bars …".to_owned()
     } else {
-        format!("error bars, {} of {} steps …", steps.done, steps.total)
+        format!(
+            "computing error bars, {} of {} steps …",
+            steps.done, steps.total
+        )
     }
 }

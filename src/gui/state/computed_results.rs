@@ -132,7 +132,7 @@ impl Results {
         match self.background.error_bars {
             Some(steps) if !self.is_behind() => error_bar_progress(steps),
             None if self.background.stopped => {
-                "Error bars: stopped. Choose Compute, below, to continue".to_owned()
+                "Error bars stopped; choose Compute below to continue".to_owned()
             }
             _ => self.absence().to_owned(),
         }

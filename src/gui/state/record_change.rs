@@ -75,7 +75,7 @@ impl RecordChange {
             Self::InCondition { condition, change } => {
                 format!("{} (condition {condition})", change.name())
             }
-            Self::Columns { record } => format!("columns of {record}"),
+            Self::Columns { record } => format!("change the columns of {record}"),
             Self::DatasetUnits => "confirm the assumed units".to_owned(),
             Self::Add { records } => format!("add {}", counted(*records, "record")),
             Self::Assign { records, condition } => {
@@ -92,7 +92,7 @@ impl RecordChange {
 impl ConditionRecordChange {
     fn name(&self) -> String {
         match self {
-            Self::Kind { record, kind } => format!("{record} is a {}", kind.word()),
+            Self::Kind { record, kind } => format!("set the kind of {record} to {}", kind.word()),
             Self::Use { record, used: true } => format!("use {record}"),
             Self::Use { record, .. } => format!("leave {record} out"),
             Self::HoldOut {
@@ -100,16 +100,16 @@ impl ConditionRecordChange {
                 held_out: true,
             } => format!("hold {record} out"),
             Self::HoldOut { record, .. } => format!("fit {record}"),
-            Self::TimeSkew { channel } => format!("time skew of {channel}"),
+            Self::TimeSkew { channel } => format!("set the time skew of {channel}"),
             Self::Remedies { record } => format!("correct {record}"),
-            Self::SampleHold { channel } => format!("hold of {channel}"),
-            Self::Band => "identification band".to_owned(),
-            Self::Search => "identification search settings".to_owned(),
-            Self::References => "references".to_owned(),
-            Self::AddPart { record } => format!("part of {record}"),
-            Self::MovePart { record } => format!("ends of {record}"),
+            Self::SampleHold { channel } => format!("set the sample hold of {channel}"),
+            Self::Band => "set the identification band".to_owned(),
+            Self::Search => "change the identification search".to_owned(),
+            Self::References => "choose the references".to_owned(),
+            Self::AddPart { record } => format!("add a part of {record}"),
+            Self::MovePart { record } => format!("move the ends of {record}"),
             Self::RemovePart { record } => format!("remove {record}"),
-            Self::Records => "records".to_owned(),
+            Self::Records => "change the records".to_owned(),
         }
     }
 }

@@ -226,8 +226,7 @@ const POLES: ViewFacts = ViewFacts {
 
 const PHYSICS: ViewFacts = ViewFacts {
     name: "Physics",
-    purpose: "Named physics parameters: which would have to move so that the physics models meet \
-                    flight, and by how much",
+    purpose: "Changes of named physics parameters that make the physics models agree with flight",
     group: Some(ViewGroup::Models),
     takes_dock: true,
     is_of_all_conditions: true,

@@ -127,7 +127,7 @@ fn correction_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay, palette: &P
         ),
         (
             AssessedCorrection::ScheduleOfOthers,
-            "of the others",
+            "leave-one-out",
             "Schedule fitted without this condition",
         ),
         (

@@ -89,7 +89,7 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
                 commands.push(Edit::RemoveVariant { name: name.clone() }.into());
             }
             let hint = "Replaces the current decisions; can be undone";
-            if variant_button_ui(ui, "Take", &name, hint) {
+            if variant_button_ui(ui, "Use", &name, hint) {
                 commands.push(Edit::TakeVariant { name: name.clone() }.into());
             }
             let label = format!("Overlay variant {name}");

@@ -28,7 +28,7 @@ pub fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
     }
     let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
         if ui
-            .button("Copy the numbers")
+            .button("Copy the values")
             .on_hover_text("As CSV, to the clipboard")
             .clicked()
         {
@@ -48,5 +48,5 @@ pub fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
         Role::Button,
         format!("Save or copy {}", view.name()),
     );
-    button.on_hover_text("Plot as SVG, PNG or PDF, or its numbers as CSV");
+    button.on_hover_text("Plot as SVG, PNG or PDF, or its values as CSV");
 }

@@ -134,7 +134,7 @@ fn with_interaction(
 ) -> Vec<BodeCurve> {
     for curve in &mut curves {
         if curve.id == CurveId::Scheduled && state.others_are_older() {
-            curve.label.push_str(" of older settings");
+            curve.label.push_str(" from older settings");
         }
         let CurveId::Model(id) = &curve.id else {
             continue;

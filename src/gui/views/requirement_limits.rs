@@ -84,7 +84,7 @@ impl LimitEditor<'_> {
             }
             Requirement::Level(_) => {
                 self.note_ui(ui, "met at the level of the identified model");
-                self.note_ui(ui, "levels: menu Limits");
+                self.note_ui(ui, "set the levels in the limits menu");
             }
             Requirement::MeanJOnAxis => {
                 let field = LimitField::new("Limit of J");
@@ -176,7 +176,7 @@ impl LimitEditor<'_> {
         let table = &self.state.study.requirements.mode_tolerances;
         let mut rows = table.rows().to_vec();
         let Some(index) = rows.iter().position(|row| row.modes.contains(&name)) else {
-            self.note_ui(ui, "no tolerance in the table of modes");
+            self.note_ui(ui, "the tolerance table has no entry for this mode");
             return;
         };
         self.mode_row_ui(ui, &mut rows[index], index + 1, commands);
@@ -236,7 +236,7 @@ pub(super) fn limits_menu_ui(
         && settings.mode_tolerances == ModeToleranceTable::default()
         && settings.overview == OverviewLimits::default();
     let text = if is_default {
-        "limits: Part 60, own \u{23f7}"
+        "limits: default \u{23f7}"
     } else {
         "limits: edited \u{23f7}"
     };

@@ -198,14 +198,14 @@ fn a_panic_over_the_first_results_leaves_a_window_that_can_open_another_file() {
 fn results_of_two_generations_of_settings_are_told_apart() {
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
-    assert!(window.query_by_label("of older settings").is_none());
+    assert!(window.query_by_label("from older settings").is_none());
     let closed = trap.close();
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the condition shown is ahead", |window| {
         state(window).results.first_is_ahead()
     });
-    window.get_by_label("of older settings");
-    window.get_by_label_contains("11 · of older settings");
+    window.get_by_label("from older settings");
+    window.get_by_label_contains("11 · from older settings");
     let scheduled = drawn(&window, CurveRole::Scheduled);
     assert!(
         scheduled.label.ends_with("older settings"),
@@ -214,7 +214,7 @@ fn results_of_two_generations_of_settings_are_told_apart() {
     );
     drop(closed);
     settle(&mut window);
-    assert!(window.query_by_label("of older settings").is_none());
+    assert!(window.query_by_label("from older settings").is_none());
     assert!(
         drawn(&window, CurveRole::Scheduled)
             .label

@@ -167,7 +167,7 @@ fn the_numbers_of_a_view_are_copied_as_csv() {
     let mut window = window();
     wait_for_bars(&mut window);
     click(&mut window, "Save or copy Net gain");
-    window.get_by_label("Copy the numbers").click();
+    window.get_by_label("Copy the values").click();
     let mut text = None;
     for _ in 0..4 {
         window.run_steps(1);

@@ -112,7 +112,7 @@ fn a_low_window_has_one_output_over_time() {
 fn a_click_on_a_cell_of_the_map_of_costs_goes_to_its_condition_and_response() {
     let mut window = window();
     click(&mut window, CONDITION_10);
-    let cell = "PED → R of condition 3: J of magnitude";
+    let cell = "PED → R in condition 3: magnitude J";
     window.get_by_label_contains(cell).click();
     settle(&mut window);
     assert_eq!(state(&window).condition().id(), ConditionId(3));

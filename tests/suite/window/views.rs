@@ -436,7 +436,7 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
     });
     let (_, analysis) = &state(&window).results.variants[0];
     assert_eq!(analysis.study.settings, before.settings);
-    click(&mut window, "Take variant as it was");
+    click(&mut window, "Use variant as it was");
     assert_eq!(state(&window).study.settings, before.settings);
     give(&mut window, StudyCommand::Undo);
     assert_ne!(state(&window).study.settings, before.settings);

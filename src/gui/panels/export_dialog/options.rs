@@ -143,7 +143,7 @@ pub(super) fn options_ui(
             info.label = Some("Padé order".to_owned());
             info
         });
-        response.on_hover_text("Of the approximants of delays in corrected models");
+        response.on_hover_text("For the delays in corrected models");
     });
     ui.add_space(6.0);
     ui.separator();
@@ -221,7 +221,7 @@ fn correction_ui(ui: &mut Ui, form: &mut ExportForm, palette: &Palette) {
             let button = Button::new(text).selected(is_chosen).corner_radius(6.0);
             let name = format!("Correction {text}");
             let response = named_switch(ui.add(button), Role::RadioButton, is_chosen, name)
-                .on_hover_text("Of corrected models; functions and tables are the schedule");
+                .on_hover_text("For corrected models; functions and tables contain the schedule");
             if response.clicked() {
                 form.choices.per_condition = is_own;
             }
@@ -330,12 +330,12 @@ fn existing_words(state: &State) -> String {
     let count = plan.files.len() + usize::from(plan.report.is_some());
     let existing = plan.existing.len();
     if existing == 0 {
-        "none exists".to_owned()
+        "no file exists yet".to_owned()
     } else if state.forms.export.choices.replaces {
         format!("{existing} of {count} will be replaced")
     } else {
         format!(
-            "{existing} of {count} exist; all are saved with {}",
+            "{existing} of {count} exist; all names end in {}",
             plan.number
         )
     }

@@ -39,9 +39,8 @@ pub(super) fn change_ui(
         ui.label(RichText::new("Before and after").font(medium(BODY_SIZE)));
         let context = format!("condition {condition}, each response with its own G and D");
         ui.label(palette.small(&context)).on_hover_text(
-            "Gain and delay belong to the correction of the channels. Each response is shown after \
-            its own G and D (eq. (5), (9)); J is what remains. The most improved responses stand \
-            first.",
+            "The channels correct gain and delay, so each response is shown after its own G and D \
+            (eq. (5), (9)); J is the remaining cost. The most improved responses come first.",
         );
     });
     figure_legend_ui(ui, &figure, palette);
@@ -54,7 +53,7 @@ pub(super) fn change_ui(
             "before and after",
             &figure,
             LEAST_PLOT,
-            "No parameter is moved in this condition",
+            "No parameter is changed in this condition",
             &figure,
         )
     };

@@ -145,7 +145,9 @@ impl CorrelationMatrix<'_> {
             None => match self.findings.diagnosis.parameters[parameter].channels_can_take {
                 Some(share) => {
                     let percent = 100.0 * share;
-                    format!("Gains and delays of the channels can take {percent:.0} % of {name}")
+                    format!(
+                        "Gains and delays of the channels can take over {percent:.0} % of the effect of {name}"
+                    )
                 }
                 None => return,
             },

@@ -173,7 +173,7 @@ impl Evidence<'_> {
                 ui.add(Label::new(text).wrap());
             }
         }
-        self.heading_ui(ui, "Conditions that pull most");
+        self.heading_ui(ui, "Most influential conditions");
         for line in pull_lines(self.findings) {
             self.sentence_ui(ui, &line);
         }
@@ -237,7 +237,7 @@ fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings
     if let (Some(step), Some(gain)) = (diagnosis.step, diagnosis.gain) {
         let percent = decimals(100.0 * gain, 1);
         table.row([
-            "explained by its step".to_owned(),
+            "explained when added".to_owned(),
             format!("{percent} %, step {step}"),
         ]);
     }

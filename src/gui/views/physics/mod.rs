@@ -70,11 +70,11 @@ pub fn physics_pages(state: &State) -> Vec<PageEntry> {
         let (name, purpose) = match page {
             PhysicsPage::Ranking => (
                 "Ranking",
-                "Every parameter: change, interval, what it explains",
+                "Every parameter: change, interval, explained share of the error",
             ),
             PhysicsPage::Correlation => (
                 "Correlation",
-                "Parameters that cannot be told apart, and what the channels can take",
+                "Parameters that cannot be told apart, and the share of each that the channels can take over",
             ),
             PhysicsPage::Conditions => (
                 "Conditions",
@@ -201,10 +201,9 @@ fn failure_ui(ui: &mut Ui, failure: &PhysicsFailure, palette: &Palette) {
     ui.add_space(8.0);
     ui.add(Label::new(RichText::new(failure.to_string()).size(BODY_SIZE)).wrap());
     if matches!(failure, PhysicsFailure::NoRuns) {
-        let text = "Rerun the linearisation with one named parameter moved, once or twice for each \
+        let text = "Rerun the linearisation with one named parameter changed, once or twice for each \
             parameter and condition, and import the models: names such as \"Ixx+5%\" are recognised. \
-            \"What to run first\" in Find the cause lists reruns for the pattern seen here \
-            (docs/physics.md).";
+            \"Find the cause\" suggests reruns for the errors of this condition (docs/physics.md).";
         ui.add(Label::new(palette.dim(text)).wrap());
     }
 }

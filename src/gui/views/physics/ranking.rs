@@ -138,7 +138,7 @@ impl Ranking<'_> {
         painted_text(ui, right, AT_RIGHT_END, "change", small(), color);
         painted_text(ui, row, columns.half_width, "±", small(), color);
         let [middle, _] = columns.axis;
-        let title = "plausible sd ±3";
+        let title = "±3 plausible sd";
         let at = pos2(row.left() + middle, row.center().y);
         ui.painter()
             .text(at, Align2::CENTER_CENTER, title, small(), color);

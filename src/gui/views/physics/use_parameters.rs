@@ -49,8 +49,8 @@ pub fn physics_header_ui(
         let text = format!("Use {}", counted(named, "parameter"));
         let button =
             Button::new(RichText::new(text).color(palette.on_accent())).fill(palette.accent);
-        let hint = "Moves the physics models of all conditions by the named parameters, before every \
-            other correction; one step to undo";
+        let hint = "Changes the named parameters in the physics models of all conditions, before every \
+            other correction; can be undone in one step";
         let command = setting_table::PHYSICS.to(PhysicsCorrection::Named);
         button_ui(ui, button, hint, command, commands);
     }
@@ -64,7 +64,7 @@ pub fn physics_header_ui(
         (
             PhysicsCorrection::Named,
             "named",
-            "The named parameters, fitted again with the others off",
+            "Only the parameters that the diagnosis names, fitted again without the others",
         ),
         (PhysicsCorrection::All, "all", "All parameters that are on"),
         (

@@ -93,14 +93,17 @@ fn scope_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec
         None => (1, 1),
     };
     let mut words = format!(
-        "{}: applies to {}",
+        "{}: these settings apply to {}",
         row.table.name,
         counted(count, "record")
     );
     if conditions > 1 {
         words.push_str(&format!(" of {conditions} conditions"));
     }
-    words.push_str(" with these columns; the last two columns apply to this record only");
+    words.push_str(
+        " with the same file columns; \"skew, this record\" and \"factor, this record\" apply to \
+        this record only",
+    );
     ui.label(palette.small(words));
     if let Some(group) = &group
         && !group.assumed.is_empty()
@@ -110,7 +113,7 @@ fn scope_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec
             let text = format!("⚠ The files do not give the units of {channels}: choose them, or");
             ui.label(palette.small_warning(text));
             ui.button("Confirm the dataset's units")
-                .on_hover_text("For the records of all conditions; one step to undo")
+                .on_hover_text("For the records of all conditions; can be undone in one step")
                 .asks(RecordsCommand::ConfirmUnits, commands);
         });
     }

@@ -44,7 +44,7 @@ pub(super) fn columns_summary(state: &State) -> FoldSummary {
         text: match groups.len() {
             0 => "no records".to_owned(),
             1 => format!("same for all {records} ✓"),
-            count => format!("{count} kinds ✓"),
+            count => format!("{count} groups ✓"),
         },
         is_doubtful: false,
     }

@@ -200,7 +200,8 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             ui.spacing_mut().item_spacing.x = 8.0;
             if records.identification().is_some() {
                 let text = format!("Use for {condition}");
-                let hint = "Replaces the identified models of this condition; one step to undo";
+                let hint =
+                    "Replaces the identified models of this condition; can be undone in one step";
                 if let Some(offered) = offered_models_ui(ui, &text, hint) {
                     commands.push(RecordsCommand::Take(offered).into());
                 }
@@ -213,7 +214,7 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             ui.label(palette.small(words));
             if is_taken {
                 ui.small_button("Restore")
-                    .on_hover_text("Restores the models of the file; one step to undo")
+                    .on_hover_text("Restores the models of the file; can be undone in one step")
                     .asks(RecordsCommand::Return, commands);
             }
         });

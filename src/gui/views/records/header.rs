@@ -57,7 +57,7 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
     let text = format!("Use {}", counted(fits.len(), "fit"));
     let names: Vec<String> = fits.iter().map(ToString::to_string).collect();
     let hint = format!(
-        "Replaces the identified models of condition {} by the refined models; one step to undo",
+        "Replaces the identified models of condition {} by the refined models; can be undone in one step",
         names.join(", ")
     );
     let text = RichText::new(text).color(palette.on_accent());

@@ -33,7 +33,7 @@ pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
         table_ui(ui, &table);
     }
     ui.label(palette.small(
-        "The noise is that of the flown records, and the other inputs do not move; gdcm plan \
+        "Assumes the noise of the flown records, with the other inputs at rest; gdcm plan \
         computes other sweeps",
     ));
 }

@@ -32,7 +32,7 @@ pub(super) fn unassigned_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comm
         if unassigned.len() > 1 {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let all = (0..unassigned.len()).collect();
-                ui.small_button(format!("All to {shown}"))
+                ui.small_button(format!("Assign all to {shown}"))
                     .on_hover_text("Assigns these records to the displayed condition")
                     .asks(RecordsCommand::Assign(all, shown), commands);
             });

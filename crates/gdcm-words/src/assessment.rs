@@ -47,18 +47,18 @@ pub fn missing_cost_text(why: MissingCost) -> String {
     }
 }
 
-/// Returns the summary in words: "better in 41 of 50, worst PED → NY in condition 5: +12.3";
-/// "nothing to assess" without responses.
+/// Returns the summary in words: "better in 41 of 50 responses; worst ΔJ +12.3 (PED → NY in
+/// condition 5)"; "nothing to assess" without responses.
 pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     let Some((condition, pair, change)) = summary.worst else {
         return "nothing to assess".to_owned();
     };
     format!(
-        "better in {} of {}, worst {} in condition {condition}: {}",
+        "better in {} of {} responses; worst ΔJ {} ({} in condition {condition})",
         summary.better,
         summary.compared,
-        dataset.pair_name(pair),
-        signed(change, 1)
+        signed(change, 1),
+        dataset.pair_name(pair)
     )
 }
 
@@ -133,7 +133,7 @@ mod tests {
         };
         assert_eq!(
             summary_text(&summary, &dataset),
-            "better in 48 of 50, worst LON → Q in condition 3: +0.3"
+            "better in 48 of 50 responses; worst ΔJ +0.3 (LON → Q in condition 3)"
         );
         summary.worst = None;
         assert_eq!(summary_text(&summary, &dataset), "nothing to assess");

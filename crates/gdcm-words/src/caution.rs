@@ -10,8 +10,8 @@ use gdcm_study::results::caution::{Caution, GainOutOfRange, NotFinite, USUAL_GAI
 const GAIN_RANGE: &str = "the computable range is 1e-50 to 1e50";
 
 /// Meaning of "numerically zero" (M6a).
-const NOTHING: &str =
-    "over the band, less than 1e-6 of the largest response of its output and of its input";
+const NOTHING: &str = "over the band, below 1e-6 of the largest response of the same output and \
+                       of the same input";
 
 /// Maximum number of models or responses that are listed by name.
 const LISTED: usize = 3;
@@ -41,7 +41,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             responses,
             why,
         } => format!(
-            "{model} has no {} over the whole band: {}",
+            "{model} has no finite value of {} at some or all frequencies of the band: {}",
             names(responses, &pair_name),
             not_finite_text(why)
         ),
@@ -56,8 +56,8 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             responses,
         } => gains_out_of_range_text(physics, identified, responses, &pair_name),
         Caution::NumericallyNothing { model, responses } => format!(
-            "of {model}, {} are numerically zero ({NOTHING}) and are treated as zero: they have \
-            no G and no D",
+            "{model}: numerically zero responses are treated as zero and have no G and no D: {} \
+            ({NOTHING})",
             names(responses, &pair_name)
         ),
         Caution::NotCoherent {
@@ -66,14 +66,14 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             left_out,
             points,
         } => format!(
-            "coherence weights J, G and D of {weighed} responses; of {points} frequencies, {} are \
-            left out: their coherence is below {}, or they lie outside the valid band",
+            "J, G and D of {weighed} responses are weighted by coherence; frequencies left out, of \
+            {points}: {} (coherence below {}, or outside the valid band)",
             left_out_words(left_out, &pair_name),
             number(*threshold)
         ),
         Caution::CoherenceNotUsed => {
             "the identified representative is measured with coherence, but weighting by coherence \
-            is switched off: every frequency counts alike"
+            is switched off: all frequencies count equally"
                 .to_owned()
         }
         Caution::ChannelsByPosition { bundle, models } => format!(
@@ -82,7 +82,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             first_names(models)
         ),
         Caution::ParametersNotApplied(omission) => format!(
-            "the physics models are not moved by the physics parameters: {}",
+            "the physics parameters are not applied to the physics models: {}",
             omission
         ),
         Caution::ModelsNotMoved(models) => {
@@ -92,7 +92,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
                 None => String::new(),
             };
             format!(
-                "{} not moved by the physics parameters ({}): {why}",
+                "physics parameters not applied to {} ({}): {why}",
                 counted(models.len(), "physics model"),
                 names.join(", ")
             )
@@ -100,7 +100,8 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
         Caution::ParametersBend(bends) => {
             let names: Vec<&str> = bends.iter().map(|bend| bend.name.as_str()).collect();
             format!(
-                "the effect of {} bends at the value applied; give a second run at that value",
+                "the effect of {} is not linear up to the applied value; add a physics model \
+                linearised at that value",
                 names.join(", ")
             )
         }
@@ -138,7 +139,7 @@ fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> Str
         None => "zero somewhere in the band".to_owned(),
         Some(why) if zero.is_empty() => not_finite_text(why),
         Some(why) => format!(
-            "{} zero at every frequency with a value; of the others, {}",
+            "{} zero at every frequency that has a value; for the others, {}",
             names(zero, pair_name),
             not_finite_text(why)
         ),
@@ -163,7 +164,7 @@ fn gains_out_of_range_text(
 ) -> String {
     let gains: Vec<String> = responses
         .iter()
-        .map(|gain| format!("1e{} in {}", gain.power_of_ten, pair_name(gain.pair)))
+        .map(|gain| format!("1e{} for {}", gain.power_of_ten, pair_name(gain.pair)))
         .collect();
     format!(
         "the gain between physics model \"{physics}\" and identified model \"{identified}\" is \
@@ -245,16 +246,17 @@ fn first_names(names: &[String]) -> String {
     }
 }
 
-/// Counts omitted frequencies by response: "31 of PED → P, 12 of COL → Q, and some of 5 more".
+/// Counts omitted frequencies by response: "31 in PED → P, 12 in COL → Q, and some in 5 more
+/// responses".
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     let mut parts: Vec<String> = left_out
         .iter()
         .take(LISTED)
-        .map(|(pair, count)| format!("{count} of {}", pair_name(*pair)))
+        .map(|(pair, count)| format!("{count} in {}", pair_name(*pair)))
         .collect();
     let rest = left_out.len().saturating_sub(LISTED);
     if rest > 0 {
-        parts.push(format!("and some of {rest} more"));
+        parts.push(format!("and some in {}", counted(rest, "more response")));
     }
     parts.join(", ")
 }

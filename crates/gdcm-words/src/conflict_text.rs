@@ -75,7 +75,7 @@ fn gain_miss_text(miss: &Unmatched, pair: &str) -> String {
     let (target, delta) = told_apart(miss.target, miss.delta, 3);
     let sign = if miss.excess > 0.0 { "+" } else { "" };
     let excess = telling(miss.excess, 1);
-    format!("{pair} is held at {target} instead of {delta} ({sign}{excess} dB).")
+    format!("{pair} is held at a gain of {target} instead of {delta} ({sign}{excess} dB).")
 }
 
 fn lead_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
@@ -426,7 +426,7 @@ mod tests {
                 &inputs(),
                 &outputs()
             ),
-            "PED → R is held at 0.671 instead of 0.600 (+1.0 dB)."
+            "PED → R is held at a gain of 0.671 instead of 0.600 (+1.0 dB)."
         );
         let words = miss_text(&miss(1.000_06, 1.0), 12.0, &inputs(), &outputs());
         let figures: Vec<&str> = words

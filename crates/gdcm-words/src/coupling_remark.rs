@@ -66,8 +66,8 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
             pole_words(*after)
         ),
         CouplingRemark::BarsKeepCouplings => {
-            "Error bars of gains, delays and leads are computed with these couplings: the \
-            couplings are not fitted again when models are exchanged."
+            "Error bars of gains, delays and leads hold the couplings fixed: the uncertainty of \
+            the couplings is not included."
                 .to_owned()
         }
         CouplingRemark::NewlyUnstable {
@@ -256,14 +256,15 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> String {
     let names: Vec<String> = unknowns
         .iter()
         .map(|unknown| match *unknown {
-            Unknown::Mixing { to, from, .. } => format!("{} of {}", inputs[to], inputs[from]),
+            Unknown::Mixing { to, from, .. } => format!("{} from {}", inputs[to], inputs[from]),
             Unknown::Feedback { input, output } => {
-                format!("{} of {}", inputs[input], outputs[output])
+                format!("{} from {}", inputs[input], outputs[output])
             }
         })
         .collect();
     format!(
-        "No response determines these entries, which are left as without couplings: {}.",
+        "No response determines these entries of the mixing and the feedback, which keep their \
+        values without couplings: {}.",
         names.join(", ")
     )
 }

@@ -11,11 +11,11 @@ use gdcm_study::results::couplings_assessment::{CouplingEntry, CouplingsAssessme
 
 use crate::table::Table;
 
-/// Returns the heading: "mixing and feedback fitted to 11 conditions; the normal equations of the
-/// last solution are satisfied to 3e-16".
+/// Returns the heading: "mixing and feedback fitted to 11 conditions; relative residual of the
+/// normal equations 3e-16".
 pub fn couplings_heading(assessment: &CouplingsAssessment) -> String {
     format!(
-        "{} fitted to {}; the normal equations of the last solution are satisfied to {:.0e}",
+        "{} fitted to {}; relative residual of the normal equations {:.0e}",
         assessment.couplings.name(),
         counted(assessment.fitted.problem.conditions.len(), "condition"),
         assessment.fitted.fit.residual

@@ -29,7 +29,7 @@ pub fn dataset_difference_text(difference: &Difference) -> String {
         } => {
             let mut name = carried_decision_text(decision);
             if let Some(variant) = variant {
-                name.push_str(&format!(", of variant \"{variant}\""));
+                name.push_str(&format!(" (variant \"{variant}\")"));
             }
             format!(
                 "a decision no longer applies: {name}: {}",

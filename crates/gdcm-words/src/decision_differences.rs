@@ -141,7 +141,7 @@ fn parameter_differences(before: &Study, after: &Study) -> Vec<DecisionDifferenc
     if was.gain_sd != is.gain_sd || was.delay_sd_s != is.delay_sd_s || was.points != is.points {
         let [before, after] = [was, is].map(|settings| {
             format!(
-                "gains ± {}, delays ± {} ms, {} frequencies",
+                "prior of gains ± {}, prior of delays ± {} ms, {} frequencies",
                 number(settings.gain_sd),
                 number(1e3 * settings.delay_sd_s),
                 settings.points
@@ -173,7 +173,7 @@ fn parameter_words(settings: &PhysicsSettings, name: &str) -> String {
 
 fn sign_words(study: &Study, channel: Channel) -> String {
     match study.signs.get(&channel) {
-        Some(role) => format!("{} turned", role.models()),
+        Some(role) => format!("reversed in {}", role.models()),
         None => "as in the file".to_owned(),
     }
 }

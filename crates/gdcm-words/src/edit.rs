@@ -12,9 +12,9 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
     match edit {
         Edit::Reject(id) => format!("reject {}", model_name(id)),
         Edit::RejectBecause { model, .. } => format!("reject {}", model_name(model)),
-        Edit::SetReason(id, _) => format!("reason for rejecting {}", model_name(id)),
+        Edit::SetReason(id, _) => format!("set the reason for rejecting {}", model_name(id)),
         Edit::Restore(id) => format!("restore {}", model_name(id)),
-        Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
+        Edit::RestoreAll { condition } => format!("restore all models (condition {condition})"),
         Edit::RejectEach(models) => format!("reject {} models", models.len()),
         Edit::RestoreEach(models) => format!("restore {} models", models.len()),
         Edit::Pin(id) => format!("use {} as representative", model_name(id)),
@@ -61,17 +61,17 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
             format!("restore the identified models of the file (condition {condition})")
         }
         Edit::SetRequirements(part, _) => {
-            format!("requirements: {}", requirement_part_text(*part))
+            format!("set the {}", requirement_part_text(*part))
         }
         Edit::DecideParameter { name, decision } => match decision {
             ParameterDecision::Value(Some(_)) => format!("set {name} by hand"),
             ParameterDecision::Value(None) => format!("fit {name}"),
             ParameterDecision::On(true) => format!("switch {name} on"),
             ParameterDecision::On(false) => format!("switch {name} off"),
-            ParameterDecision::PlausibleSd(_) => format!("plausible change of {name}"),
+            ParameterDecision::PlausibleSd(_) => format!("set the plausible change of {name}"),
         },
         Edit::KeepVariant { name } => format!("keep variant {name}"),
-        Edit::TakeVariant { name } => format!("take variant {name}"),
+        Edit::TakeVariant { name } => format!("use variant {name}"),
         Edit::RemoveVariant { name } => format!("remove variant {name}"),
         Edit::RenameVariant { from, to } => format!("rename variant {from} to {to}"),
     }
@@ -84,14 +84,14 @@ fn model_name(id: &ModelId) -> String {
 fn requirement_part_text(part: RequirementPart) -> &'static str {
     match part {
         RequirementPart::AttitudeCommand => "attitude command",
-        RequirementPart::Levels => "levels",
-        RequirementPart::Tolerances => "tolerances",
+        RequirementPart::Levels => "level boundaries",
+        RequirementPart::Tolerances => "tolerances in time",
         RequirementPart::ModeTolerances => "tolerances of modes",
         RequirementPart::OverviewLimits => "limits of bandwidth and summary",
         RequirementPart::TestShape => "shape of the test input",
         RequirementPart::TestSize => "size of the test input",
         RequirementPart::TestDuration => "duration of the test input",
-        RequirementPart::Options => "options",
+        RequirementPart::Options => "options of the requirements",
     }
 }
 

@@ -94,10 +94,10 @@ pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
             format!("Lead filters: table of {points} airspeeds")
         }
         ExportNote::PadeError { error_deg, .. } => {
-            format!("Padé error {}° of phase", telling(*error_deg, 2))
+            format!("Padé phase error {}°", telling(*error_deg, 2))
         }
         ExportNote::TustinError { error_deg, .. } => {
-            format!("Sampled leads: {}° of phase", telling(*error_deg, 2))
+            format!("Sampled leads: phase error {}°", telling(*error_deg, 2))
         }
         ExportNote::NotValidAbove { price } => {
             let words = limit_text(price);
@@ -139,15 +139,18 @@ pub fn export_note_detail(
     match note {
         ExportNote::DelaysNotScheduled { channels } => {
             let setting = match scheduling {
-                DelayScheduling::Never => "delays over airspeed are off",
-                _ => "no held response needs one",
+                DelayScheduling::Never => "the schedule of delays is off",
+                _ => "no held response needs a delay",
             };
             format!("{}; {setting}", delayed_channels_text(channels, dataset))
         }
         ExportNote::ConstantDelays { .. } => "their degree over airspeed is 0".to_owned(),
-        ExportNote::SignedDelaysNotScheduled { channels, .. } => match channels.first() {
+        ExportNote::SignedDelaysNotScheduled {
+            condition,
+            channels,
+        } => match channels.first() {
             Some(apart) => format!(
-                "{} {} ms there, {} ms elsewhere",
+                "{} {} ms in condition {condition}, {} ms in the others",
                 apart.channel.name_in(dataset),
                 signed(s_to_ms(apart.tau_s), 0),
                 signed(s_to_ms(apart.elsewhere_s), 0)
@@ -156,9 +159,9 @@ pub fn export_note_detail(
         },
         ExportNote::CouplingsLeftOut { why } => coupling_error_text(why, dataset),
         ExportNote::GainTableError { .. } | ExportNote::TimeTableError { .. } => {
-            "functions are exact".to_owned()
+            "exported functions are exact".to_owned()
         }
-        ExportNote::LeadsTabulated { .. } => "linear between them".to_owned(),
+        ExportNote::LeadsTabulated { .. } => "linear between the airspeeds".to_owned(),
         ExportNote::PadeError {
             order,
             band_top_rad_s,

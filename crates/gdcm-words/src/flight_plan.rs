@@ -63,7 +63,7 @@ impl PlannedChannels {
             ..
         } = sweep.sweep;
         let assumed = if sweep.is_assumed {
-            ", assumed to be that of the other inputs"
+            ", assumed from the other inputs"
         } else {
             ""
         };
@@ -151,7 +151,7 @@ pub fn advice_text(advice: &SweepAdvice, channels: &PlannedChannels) -> String {
     let sweep = &advice.sweep.sweep;
     let amplitude = channels.amplitude(sweep.input, sweep.amplitude);
     let assumed = if advice.sweep.is_assumed {
-        ", as of the other inputs,"
+        ", assumed from the other inputs,"
     } else {
         ""
     };
@@ -172,8 +172,8 @@ pub fn advice_text(advice: &SweepAdvice, channels: &PlannedChannels) -> String {
         )
     } else {
         format!(
-            "even {sweeps} with an amplitude of {amplitude}{assumed} leave {response} at {then} \
-            ({now} now) at {omega} rad/s"
+            "even {sweeps} with an amplitude of {amplitude}{assumed} would leave {response} at \
+            {then} (now {now}) at {omega} rad/s"
         )
     }
 }
@@ -206,20 +206,20 @@ pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String
     );
     let Some(ways) = &plan.ways else {
         return vec![format!(
-            "{wanted}: reached now (± {} dB)",
+            "{wanted}: already reached (± {} dB)",
             telling(plan.now.half_db, 2)
         )];
     };
     let sweep = &plan.sweep.sweep;
     let input = sweep.input;
     let now = interval_text_fine(plan.now.half_db);
-    let mut lines = vec![format!("{wanted}, {now} now; each line alone:")];
+    let mut lines = vec![format!("{wanted}; now {now}. Alternatives:")];
     lines.push(need_line(&ways.repeats, |repeats| {
         more_sweeps(sweep, repeats, channels)
     }));
     lines.push(need_line(&ways.length_s, |length_s| {
         format!(
-            "one more sweep of {} of {length_s:.0} s",
+            "one more {length_s:.0} s sweep of {}",
             channels.input(input)
         )
     }));
@@ -240,7 +240,8 @@ pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String
     }));
     if plan.limit.half_db > target.half_db {
         lines.push(format!(
-            "not by any number of such flights: gusts and noise fed back into the inputs leave {}",
+            "no number of such flights is enough: gusts and noise fed back into the inputs leave \
+            {}",
             interval_text_fine(plan.limit.half_db)
         ));
     }
@@ -263,7 +264,7 @@ fn need_line<T: Copy>(need: &Need<T>, describe: impl Fn(T) -> String) -> String 
             format!("{}: {}", describe(amount), interval_text_fine(half_db))
         }
         Need::NotWithin { most, half_db } => format!(
-            "not within {}: {}",
+            "not enough: {}: {}",
             describe(most),
             interval_text_fine(half_db)
         ),
@@ -417,7 +418,7 @@ mod tests {
         };
         let lines = target_lines(&plan, &channels());
         assert_eq!(lines.len(), 6, "{lines:?}");
-        assert!(lines[1].starts_with("not within 16 more 60 s sweeps of PED"));
+        assert!(lines[1].starts_with("not enough: 16 more 60 s sweeps of PED"));
         assert!(lines[4].contains("0.500 to 2.00 rad/s only"), "{lines:?}");
         plan.limit = interval(0.0);
         assert_eq!(target_lines(&plan, &channels()).len(), 5);

@@ -38,8 +38,8 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             better_s,
             ..
         } => ShortCaution::new(
-            format!("Records short for {} rad/s", decimals(*lowest, 2)),
-            format!("{longest_s:.0} s; {better_s:.0} s needed"),
+            format!("Records too short for {} rad/s", decimals(*lowest, 2)),
+            format!("longest {longest_s:.0} s; {better_s:.0} s recommended"),
         ),
         IdentificationCaution::NotSwept {
             signal,
@@ -53,7 +53,7 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             format!("condition number {condition:.0}"),
         ),
         IdentificationCaution::BandNotShown { shown, .. } => ShortCaution::new(
-            format!("No response outside {}", band_text(*shown)),
+            format!("No coherent response outside {}", band_text(*shown)),
             format!("partial coherence below {TRUSTED_COHERENCE}"),
         ),
         IdentificationCaution::Vibration {
@@ -94,24 +94,27 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
         ),
         IdentificationCaution::OrderLimit { order, narrower } => ShortCaution::new(
             format!("An order above {order} would fit better"),
-            format!("or a band to {:.1} rad/s", narrower[1]),
+            format!("or narrow the band to {:.1} rad/s", narrower[1]),
         ),
         IdentificationCaution::HeldOut {
             raw, normalised, ..
         } => ShortCaution::new(
             "Held-out records not predicted",
-            format!("residual {raw:.1} times the noise, {normalised:.1} within the uncertainty"),
+            format!(
+                "residual {raw:.1} times the noise; {normalised:.1} times with the model's \
+                uncertainty"
+            ),
         ),
         IdentificationCaution::Reweighed(ratio) => ShortCaution::new(
             "Records weighted by their noise",
             format!("the noise differs by a factor of {ratio:.1}"),
         ),
         IdentificationCaution::NotValidated(why) => {
-            ShortCaution::new("Not compared in time", why.to_string())
+            ShortCaution::new("Held-out records not compared", why.to_string())
         }
         IdentificationCaution::Unstable { pole, highest } => ShortCaution::new(
             format!("Unstable pole of {:.0} rad/s", pole.norm()),
-            format!("above the highest line, {highest:.0} rad/s"),
+            format!("above the highest frequency used, {highest:.0} rad/s"),
         ),
         IdentificationCaution::PairsNotIdentified(pairs) => ShortCaution::new(
             format!("{} not identified", responses_text(pairs)),
@@ -132,7 +135,7 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
             length_s,
         } => ShortCaution::new(
             "Part between two gaps left out",
-            format!("{record}, {length_s:.1} s after {start_s:.2} s"),
+            format!("{record}, {length_s:.1} s from {start_s:.2} s on"),
         ),
         RecordCaution::RecordUnused(record) => {
             ShortCaution::new(format!("{record} not used"), "no part could be used")
@@ -212,7 +215,7 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
 }
 
 fn contradiction(records: &[ContradictingRecord], contrast: f64) -> ShortCaution {
-    let agreement = format!("F = {contrast:.0}; 1 is agreement");
+    let agreement = format!("F = {contrast:.0} (1 means agreement)");
     match records {
         [record] => {
             let detail = match &record.fault {

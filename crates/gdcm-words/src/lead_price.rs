@@ -14,7 +14,7 @@ pub fn limit_text(price: &LeadPrice) -> String {
 
 /// Describes the frequency limit, and the gain that each filter adds to its channel: "not valid
 /// above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
-/// increases by the sum for its input and output".
+/// increases by the sum of those at its input and output".
 pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> String {
     let mut gains = Vec::new();
     for (channel, &gain_db) in price.gains_db.iter() {
@@ -27,8 +27,8 @@ pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> S
         return limit_text(price);
     }
     format!(
-        "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum for its \
-        input and output",
+        "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum of those at \
+        its input and output",
         limit_text(price),
         number(price.above_rad_s()),
         gains.join(", ")
@@ -65,7 +65,7 @@ mod tests {
         assert_eq!(
             price_text(&price, &inputs, &["Q".to_owned()]),
             "not valid above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; \
-            the gain of a response increases by the sum for its input and output"
+            the gain of a response increases by the sum of those at its input and output"
         );
     }
 }

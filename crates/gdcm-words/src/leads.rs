@@ -14,10 +14,10 @@ use gdcm_study::{ConditionAnalysis, Study};
 use crate::lead_price::pair_price_text;
 use crate::remark::remark_text;
 
-/// Describes the lead that responses and channels need: "P from LAT needs 65 ms of lead over the
-/// band: 24 on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s;
-/// +12.4 dB above the band". With `uncertainty`, a response's lead has its error bar: "65 ± 4 ms"
-/// (M13).
+/// Describes the lead that responses and channels need: "LAT → P needs 65 ms of lead over the
+/// band: 24 ms at P, 41 ms at LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36
+/// rad/s; +12.4 dB above the band". With `uncertainty`, a response's lead has its error bar: "65 ±
+/// 4 ms" (M13).
 pub fn lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -68,17 +68,22 @@ fn wanted_lead_words(
     let part = |channel: Channel| {
         let tau_s = compensated.leads.taus_s[channel];
         let is_opposite = tau_s != 0.0 && (tau_s > 0.0) != (wanted_s > 0.0);
-        let sign = if is_opposite { "−" } else { "" };
+        let opposite = if !is_opposite {
+            ""
+        } else if tau_s > 0.0 {
+            " of delay"
+        } else {
+            " of lead"
+        };
         format!(
-            "{sign}{} on {}",
+            "{} ms{opposite} at {}",
             whole_ms(tau_s),
             channel.name_in(&study.dataset)
         )
     };
     let mut text = format!(
-        "{} from {} needs {}{} ms of {} over the band: {}, {}",
-        output.name_in(&study.dataset),
-        input.name_in(&study.dataset),
+        "{} needs {}{} ms of {} over the band: {}, {}",
+        study.dataset.pair_name(pair),
         whole_ms(wanted_s),
         half_width_words(result, uncertainty, pair).unwrap_or_default(),
         if wanted_s < 0.0 { "lead" } else { "delay" },

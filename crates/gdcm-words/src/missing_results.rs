@@ -114,11 +114,9 @@ pub fn no_bandwidth_text(why: &NoBandwidth) -> String {
         }
         NoBandwidth::NoAttitudeResponse(error) => error.to_string(),
         NoBandwidth::NoMetric(error) => error.to_string(),
-        NoBandwidth::NoOtherModel => {
-            "the bundles contain no other model from which to compute a spread".to_owned()
-        }
+        NoBandwidth::NoOtherModel => "no spread: the bundles contain no other models".to_owned(),
         NoBandwidth::ScheduleNotRefitted => {
-            "the schedule is not refitted for each swap of models".to_owned()
+            "no error bar: the schedule is not refitted for each exchange of models".to_owned()
         }
         NoBandwidth::DeviationsTooNarrow => {
             "the standard deviations of the identified model do not extend to this frequency"

@@ -1,7 +1,7 @@
 //! Sentences and tables about named physics parameters (M18.4 to M18.6).
 //!
-//! A parameter "would have to move by" an amount, or "acts like" another: the diagnosis never
-//! states a cause, because a parameter with like effect that was not offered cannot be excluded.
+//! A parameter needs a "change to agree with flight", or "acts like" another: the diagnosis never
+//! states a cause, because a parameter of similar effect that was not offered cannot be excluded.
 
 use gdcm_method::physics::identifiability::WeakDirection;
 use gdcm_method::physics::{OfferedParameter, RunRefusal, Verdict, WhyNotNamed};
@@ -18,11 +18,12 @@ use crate::couplings::cost_table;
 use crate::table::Table;
 
 /// Displayed beside every verdict.
-pub const LIKE_EFFECT: &str = "A parameter of like effect that was not offered cannot be excluded.";
+pub const LIKE_EFFECT: &str =
+    "A parameter of similar effect that was not offered cannot be excluded.";
 
 /// Displayed beside error bars where parameters are moved.
 pub const BARS_KEEP_VALUES: &str =
-    "error bars hold these values fixed: parameters are not fitted again for each swap of models";
+    "error bars hold these values fixed: the uncertainty of the values is not included";
 
 /// Maximum number of pulls that are listed.
 const LISTED_PULLS: usize = 3;
@@ -101,7 +102,8 @@ fn verdict_sentence(findings: &PhysicsFindings) -> String {
     let count = findings.parameters.len();
     let (Some(verdict), Some(explained)) = (diagnosis.verdict, diagnosis.explained()) else {
         return format!(
-            "{} in the fit: the values are without intervals, and no parameter is named.",
+            "{} in the fit, four are needed: the values have no intervals, and no parameter is \
+            named.",
             counted(diagnosis.conditions.len(), "condition")
         );
     };
@@ -109,28 +111,30 @@ fn verdict_sentence(findings: &PhysicsFindings) -> String {
     let named = findings.named();
     match verdict {
         Verdict::None if count == 1 => format!(
-            "The parameter does not explain what gains and delays of the channels leave ({explained})."
+            "The parameter explains only {explained} of the misfit that remains after the \
+            channels' gains and delays."
         ),
         Verdict::None => format!(
-            "None of the {count} parameters explains what gains and delays of the channels leave \
-            ({explained})."
+            "The {count} parameters explain only {explained} of the misfit that remains after the \
+            channels' gains and delays."
         ),
         Verdict::Accounts if named.is_empty() => format!(
-            "The parameters account for {explained} of what gains and delays of the channels leave, \
-            but none of them alone is named."
+            "The parameters together explain {explained} of the misfit that remains after the \
+            channels' gains and delays, but no single one is named."
         ),
         Verdict::Accounts => format!(
-            "{}. That accounts for {explained} of what gains and delays of the channels leave; the \
-            rest is near the spread of the identified models.",
+            "{}. The parameters explain {explained} of the misfit that remains after the channels' \
+            gains and delays; the rest is close to the spread of the identified models.",
             moves_text(&named)
         ),
         Verdict::InPart if named.is_empty() => format!(
-            "The parameters explain {explained} of what gains and delays of the channels leave, but \
-            none of them is named. Something that is not among them is also at work."
+            "The parameters explain {explained} of the misfit that remains after the channels' \
+            gains and delays, but no single one is named. Differences outside these parameters \
+            remain."
         ),
         Verdict::InPart => format!(
-            "{}. The parameters explain {explained} of what gains and delays of the channels leave. \
-            Something that is not among them is also at work.",
+            "{}. The parameters explain {explained} of the misfit that remains after the channels' \
+            gains and delays. Differences outside these parameters remain.",
             moves_text(&named)
         ),
     }
@@ -141,19 +145,15 @@ fn percent(share: f64) -> String {
     format!("{} %", decimals((100.0 * share).max(0.0), 0))
 }
 
-/// States how far named parameters would have to move: "tail_lift would have to move by +10 ± 2 %".
+/// Lists the changes that named parameters need: "Changes needed to agree with flight: tail_lift
+/// +10 ± 2 %".
 fn moves_text(named: &[DiagnosedParameter<'_>]) -> String {
     let mut moves = Vec::new();
-    for (index, found) in named.iter().enumerate() {
+    for found in named {
         let change = change_text(found.parameter, found.change(), found.half_width());
-        let verb = if index == 0 {
-            " would have to move"
-        } else {
-            ""
-        };
-        moves.push(format!("{}{verb} by {change}", found.parameter.name));
+        moves.push(format!("{} {change}", found.parameter.name));
     }
-    joined(&moves)
+    format!("Changes needed to agree with flight: {}", joined(&moves))
 }
 
 /// Joins parts by commas and "and".
@@ -170,22 +170,22 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
     let parameter = found.parameter;
     let change = change_text(parameter, found.change(), found.half_width());
     match found.diagnosis.why_not_named {
-        None => format!("would have to move by {change}"),
+        None => format!("change needed to agree with flight: {change}"),
         Some(WhyNotNamed::Held) => format!("held by hand at {change}"),
         Some(WhyNotNamed::FewConditions { found: count }) => format!(
-            "not named: {} in the fit, four are needed",
+            "not named: {} in the fit, but four are needed",
             counted(count, "condition")
         ),
         Some(WhyNotNamed::NothingExplained { .. }) => {
-            "not named: the parameters together explain less than a tenth".to_owned()
+            "not named: all parameters together explain less than a tenth of the misfit".to_owned()
         }
         Some(WhyNotNamed::AtBound { z }) => format!(
-            "would have to {} by {}, beyond what is plausible: look for a parameter with a like \
+            "would need to {} by {}, more than is plausible: look for a parameter of similar \
             effect",
-            if z < 0.0 { "fall" } else { "rise" },
+            if z < 0.0 { "decrease" } else { "increase" },
             change_text(parameter, found.change().abs(), None).trim_start_matches('+')
         ),
-        Some(WhyNotNamed::DataSilent { .. }) => "the data say nothing about it".to_owned(),
+        Some(WhyNotNamed::DataSilent { .. }) => "not determined by the data".to_owned(),
         Some(WhyNotNamed::IntervalContainsZero) => match found.interval() {
             Some([least, most]) => format!(
                 "between {} and {}: no change needed",
@@ -195,7 +195,7 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
             None => "no change needed".to_owned(),
         },
         Some(WhyNotNamed::LittleGain { .. }) => format!(
-            "{change}, but conditions left out are hardly predicted better with it: not named"
+            "not named: a change of {change} hardly improves the prediction of conditions left out"
         ),
     }
 }
@@ -204,14 +204,14 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
 /// `None` for a named one.
 pub fn naming_words(why_not: Option<WhyNotNamed>) -> &'static str {
     match why_not {
-        None => "would have to move",
+        None => "change needed",
         Some(WhyNotNamed::Held) => "held by hand",
         Some(WhyNotNamed::FewConditions { .. }) => "too few conditions",
-        Some(WhyNotNamed::NothingExplained { .. }) => "explains nothing",
-        Some(WhyNotNamed::AtBound { .. }) => "beyond plausible",
+        Some(WhyNotNamed::NothingExplained { .. }) => "explains little",
+        Some(WhyNotNamed::AtBound { .. }) => "implausibly large",
         Some(WhyNotNamed::DataSilent { .. }) => "not determined",
-        Some(WhyNotNamed::IntervalContainsZero) => "as modelled",
-        Some(WhyNotNamed::LittleGain { .. }) => "little gain",
+        Some(WhyNotNamed::IntervalContainsZero) => "no change needed",
+        Some(WhyNotNamed::LittleGain { .. }) => "little benefit",
     }
 }
 
@@ -285,7 +285,8 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     let mut cautions = Vec::new();
     if let Some(moving) = diagnosis.fit.still_moving {
         cautions.push(format!(
-            "the fit has not settled after {} passes: {} still moves; it is usually one of a pair",
+            "the fit has not converged after {} passes: {} still changes; usually it cannot be told \
+            apart from another parameter",
             diagnosis.fit.passes.len(),
             name(moving)
         ));
@@ -293,8 +294,8 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     for found in findings.diagnosed() {
         if found.diagnosis.acts_like_channels() {
             cautions.push(format!(
-                "{} acts like a gain or a delay of the channels; its value rests on the prior of the \
-                delays",
+                "{} acts like a gain or a delay of the channels; its value depends on the prior of \
+                the channel delays",
                 found.parameter.name
             ));
         }
@@ -302,8 +303,8 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     for pair in &diagnosis.pairs {
         let [first, second] = pair.parameters;
         cautions.push(format!(
-            "{} and {} cannot be told apart (correlation {}): give a plausible value for one, or \
-            move both",
+            "{} and {} cannot be told apart (correlation {}): set a plausible value for one, or \
+            change both",
             name(first),
             name(second),
             decimals(pair.correlation, 2)
@@ -316,8 +317,8 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     if !poor.is_empty() {
         let ids: Vec<String> = poor.iter().map(|id| id.to_string()).collect();
         cautions.push(format!(
-            "condition {} is fitted 1.5 times worse than the median condition: check its nominal \
-            model and its runs",
+            "condition {}: fitted at least 1.5 times worse than the median condition; check the \
+            nominal model and the runs there",
             ids.join(", ")
         ));
     }
@@ -338,8 +339,8 @@ fn weak_direction_text(weak: &WeakDirection, findings: &PhysicsFindings) -> Stri
         }
     }
     format!(
-        "the data say less than the plausible values about the combination {} (in plausible \
-        standard deviations)",
+        "the data determine the combination {} (in plausible standard deviations) less than the \
+        plausible changes do",
         parts.join(" ")
     )
 }
@@ -364,7 +365,7 @@ pub fn left_out_lines(left_out: &LeftOutData) -> Vec<String> {
     let mut lines = Vec::new();
     for omitted in &left_out.conditions {
         lines.push(format!(
-            "condition {} takes no part in the fit: {}",
+            "condition {} is left out of the fit: {}",
             omitted.condition,
             not_fitted_text(&omitted.why)
         ));
@@ -427,22 +428,25 @@ pub fn refusal_text(refusal: &RunRefusal) -> String {
             format!("its sample time or delays differ from those of \"{base}\"")
         }
         RunRefusal::Unit { expected, found } => {
-            format!("its step is in {found}, the parameter is in {expected}")
+            format!("unit of the step: expected {expected}, found {found}")
         }
         RunRefusal::Step { delta } => format!(
             "expected a finite step other than 0, found {}",
             number(*delta)
         ),
         RunRefusal::NoChange { base } => {
-            format!("it has the matrices of its base \"{base}\": the parameter was not moved")
+            format!("it has the matrices of its base \"{base}\": the parameter was not changed")
         }
         RunRefusal::StepRepeated { other, delta } => {
-            format!("\"{other}\" has the same step {}", number(*delta))
+            format!(
+                "\"{other}\" has the same step {}; use different steps",
+                number(*delta)
+            )
         }
         RunRefusal::MatricesRepeated { other } => {
-            format!("\"{other}\" has the same matrices at another step")
+            format!("\"{other}\" has the same matrices at another step; correct one of them")
         }
-        RunRefusal::TooMany => "two runs of the parameter are used already".to_owned(),
+        RunRefusal::TooMany => "two other runs of the parameter are already used".to_owned(),
     }
 }
 
@@ -489,7 +493,7 @@ pub fn rerun_text(check: &RerunCheck) -> String {
         None => NO_VALUE.to_owned(),
     };
     let figures = format!(
-        "J of the prediction against it {} on-axis, {} others (it differs from its base by {} and {})",
+        "J between prediction and rerun: {} on-axis, {} others (between base and rerun: {} and {})",
         mean(cost.prediction.on_axis),
         mean(cost.prediction.others),
         mean(cost.base.on_axis),
@@ -499,8 +503,8 @@ pub fn rerun_text(check: &RerunCheck) -> String {
         RerunVerdict::Good => "the prediction is good",
         RerunVerdict::Fair => "the prediction is fair",
         RerunVerdict::NotLinear => {
-            "not linear enough: give a second run at the value found, or take the rerun as the new \
-            nominal model with runs of its own"
+            "not linear enough: add a second run at the value found, or use the rerun as the new \
+            nominal model with its own runs"
         }
     };
     format!("{place}: {figures}; {verdict}")
@@ -508,15 +512,19 @@ pub fn rerun_text(check: &RerunCheck) -> String {
 
 fn rerun_refusal_text(refusal: &RerunRefusal) -> String {
     match refusal {
-        RerunRefusal::NoBase => "no physics model of the condition has its perturbation".to_owned(),
+        RerunRefusal::NoBase => {
+            "no physics model of the condition has its perturbation; add one".to_owned()
+        }
         RerunRefusal::UnknownParameter { name } => {
-            format!("the dataset has no run of {name}")
+            format!("the dataset has no physics model linearised with {name} changed; add one")
         }
         RerunRefusal::Unit {
             name,
             expected,
             found,
-        } => format!("the change of {name} is in {found}, its runs are in {expected}"),
+        } => format!(
+            "unit of the change of {name}: expected {expected} as in its runs, found {found}"
+        ),
         RerunRefusal::Runs(omission) => omission.to_string(),
         RerunRefusal::Increments(error) => error.to_string(),
         RerunRefusal::NothingToCompare => "no response can be compared".to_owned(),

@@ -172,7 +172,7 @@ fn not_a_delay_text(responses: &[DelaysApart], by_leads: bool, dataset: &Dataset
         .iter()
         .map(|response| {
             format!(
-                "{} {} ms by eq. (9), {} ms over the band",
+                "{}: median delay {} ms (eq. (9)), least-squares delay over the band {} ms",
                 dataset.pair_name(response.pair),
                 signed(s_to_ms(response.median_s), 0),
                 signed(s_to_ms(response.band_s), 0)

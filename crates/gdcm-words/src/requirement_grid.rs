@@ -80,7 +80,7 @@ fn capitalized(words: &str) -> String {
 pub fn group_name(group: RequirementGroup) -> &'static str {
     match group {
         RequirementGroup::Bandwidth => "Bandwidth",
-        RequirementGroup::InTime => "In time",
+        RequirementGroup::InTime => "Time histories",
         RequirementGroup::Modes => "Modes",
         RequirementGroup::Summary => "Summary",
     }
@@ -90,7 +90,7 @@ pub fn group_name(group: RequirementGroup) -> &'static str {
 pub fn group_description(group: RequirementGroup) -> &'static str {
     match group {
         RequirementGroup::Bandwidth => "difference from the identified model",
-        RequirementGroup::InTime => "peak error against the held-out record, % of tolerance",
+        RequirementGroup::InTime => "peak error against the held-out record, in % of the tolerance",
         RequirementGroup::Modes => "difference from the identified mode",
         RequirementGroup::Summary => "error against the identified model",
     }
@@ -284,7 +284,11 @@ pub fn not_determined_text(why: &NotDetermined) -> String {
             format!("{} model: {}", role.name(), no_bandwidth_text(why))
         }
         NotDetermined::AboveBoundaries(role) => {
-            format!("{} model: above the end of a level boundary", role.name())
+            format!(
+                "{} model: phase delay above the last point of a level boundary; extend the \
+                boundary",
+                role.name()
+            )
         }
         NotDetermined::NoHeldOutRecord => {
             "no flight record of this condition is held out".to_owned()
@@ -294,7 +298,9 @@ pub fn not_determined_text(why: &NotDetermined) -> String {
         }
         NotDetermined::NoMode => "the identified model does not show this mode".to_owned(),
         NotDetermined::NoModes => "a measured response has no modes".to_owned(),
-        NotDetermined::ModeNotPaired => "unpaired: the model has no mode close to it".to_owned(),
+        NotDetermined::ModeNotPaired => {
+            "unpaired: the model has no mode close to the identified one".to_owned()
+        }
         NotDetermined::ModeUncertain => "flight does not determine this mode".to_owned(),
         NotDetermined::Summary(why) => no_summary_text(*why).to_owned(),
     }

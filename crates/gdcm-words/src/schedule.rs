@@ -49,7 +49,9 @@ pub fn schedule_caution_text(
             signed(s_to_ms(*elsewhere_s), 0)
         ),
         ScheduleCaution::NotPositive => {
-            "a scheduled gain is not positive at an airspeed between the conditions".to_owned()
+            "a scheduled gain is not positive at an airspeed between the conditions; schedule ln k, \
+            or lower the degree"
+                .to_owned()
         }
         ScheduleCaution::CostsMore(cost) => {
             // Rounded to enough digits that both values differ.

@@ -69,8 +69,8 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "delay_from",
         caption: "Delay estimate",
         label: "Delay estimate",
-        help: "Definition of the D to which delays are fitted: median of phase over frequency, or straight \
-    line over the band",
+        help: "Definition of the D to which delays are fitted: median of phase divided by frequency, or \
+    straight line over the band",
         meanings: &[
             "Median of Δφ/ω over the band, eq. (9) (the paper)",
             "Least-squares line through Δφ over the band (M15.2)",
@@ -123,12 +123,12 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "physics",
         caption: "Physics",
         label: "Physics parameters",
-        help: "Named parameters of the physics model, moved before every other correction: none, those that \
-    the diagnosis names, all, or values set by hand (M18)",
+        help: "Parameters of the physics model that are changed before every other correction: none, those \
+    that the diagnosis names, all, or values set by hand (M18)",
         meanings: &[
             "The physics models are those of the file",
-            "The parameters that the diagnosis names, fitted again with the others off (M18)",
-            "All parameters that are on, at the fitted values (M18)",
+            "The parameters that the diagnosis names, refitted with the others switched off (M18)",
+            "All parameters that are switched on, at the fitted values (M18)",
             "The values set by hand; nothing is fitted (M18)",
         ],
         ..NO_WORDS
@@ -152,7 +152,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "quantile",
         caption: "bound quantile",
         label: "Bound quantile",
-        help: "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
+        help: "The bounds are this quantile and its complement (1 − q) of |H_ref|/|H_sim| and of Δφ/ω",
         ..NO_WORDS
     },
     SettingWords {
@@ -230,9 +230,9 @@ static SETTING_WORDS: [SettingWords; 30] = [
     SettingWords {
         key: "coherence_threshold",
         caption: "Coherence",
-        label: "Least coherence",
-        help: "Minimum coherence γ² of the frequencies of measured responses that count: off, on (0.6), or \
-    a value; off: every frequency counts alike",
+        label: "Minimum coherence",
+        help: "Frequencies of a measured response whose coherence γ² is lower are left out: off, on (0.6), \
+    or a value; off: all frequencies count equally",
         ..NO_WORDS
     },
     SettingWords {
@@ -313,7 +313,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
     },
     SettingWords {
         key: "schedule.airspeed_tolerance_kt",
-        caption: "One airspeed",
+        caption: "Airspeed tolerance",
         label: "Airspeed tolerance",
         help: "Maximum difference between consecutive airspeeds that count as one, for the lookup \
     table and for the permitted degree",

@@ -51,8 +51,7 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
 pub fn proof_text(outcome: Outcome) -> String {
     match outcome {
         Outcome::Proven { .. } => {
-            "Proven: no gains within the bounds that satisfy the held responses are better."
-                .to_owned()
+            "Proven: no better gains satisfy the bounds and the held responses.".to_owned()
         }
         Outcome::NotProven { gap, limit } => {
             let ended = match limit {

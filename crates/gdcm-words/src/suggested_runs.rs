@@ -13,7 +13,7 @@ pub fn suggestion_text(suggestion: &SuggestedRuns, dataset: &Dataset) -> String 
         .map(|parameter| format!("{} ({})", parameter.name, parameter.meaning))
         .collect();
     format!(
-        "{}: try a run with {} moved",
+        "{}: try a physics model linearised with {} changed",
         pattern_text(&suggestion.pattern, dataset),
         names.join(", or ")
     )
@@ -27,8 +27,8 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
             inputs: [first, second],
             shares: [forth, back],
         } => format!(
-            "{} receives {} % of {}, and {} receives {} % of {}: opposite signs, which a swashplate \
-            phase acts like",
+            "{} receives {} % of {}, and {} receives {} % of {}: opposite signs, as a swashplate \
+            phase would cause",
             inputs[*first],
             signed(100.0 * forth, 1),
             inputs[*second],
@@ -69,13 +69,13 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
         } => {
             let damping = match damping_share {
                 Some(share) => format!(
-                    ", and its damping a feedback (up to {} % of the stick)",
+                    ", and a feedback for its damping (up to {} % of the stick)",
                     decimals(100.0 * share, 0)
                 ),
                 None => String::new(),
             };
             format!(
-                "{} needs a gain that differs from 1 or between conditions (mean {}){damping}",
+                "{} needs a gain that differs from 1, or from condition to condition (mean {}){damping}",
                 dataset.pair_name(*pair),
                 decimals(*gain, 2)
             )

@@ -45,10 +45,7 @@ pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
     let differ =
         format!("conditions {first} and {second} ({airspeed_kt:.0} kt) differ by {percent:.0} %");
     let Some(ratio) = difference.difference.ratio() else {
-        return format!(
-            "{differ}; their bundles have no spread with which to compare the \
-            difference"
-        );
+        return format!("{differ}; their bundles have no spread to compare the difference with");
     };
     format!(
         "{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}",
@@ -65,7 +62,7 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
         .filter(|difference| difference.is_significant(uncertainty.level))
         .count();
     match (all, significant, uncertainty.too_many_differences) {
-        (0, _, None) => "No two conditions fly at equal airspeed.".to_owned(),
+        (0, _, None) => "No two conditions have equal airspeeds.".to_owned(),
         (0, _, Some(count)) => {
             format!("{count} differences at equal airspeed are too many to compare.")
         }
@@ -80,9 +77,9 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
     }
 }
 
-/// Describes the test for a second variable: "from the lowest to the highest altitude −7 %: not
-/// needed; an effect smaller than ± 6 % could not have been detected"; or the reason why it could
-/// not be tested.
+/// Describes the test for a second variable: "net gain −7 % from the lowest to the highest
+/// altitude, which is not needed in the schedule; an effect below ± 6 % could not have been
+/// detected"; or the reason why it could not be tested.
 pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let variable = test.variable.name();
     let effect = match &test.effect {
@@ -93,8 +90,8 @@ pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let visible = 100.0 * effect.visible;
     let sign = if percent < 0.0 { "−" } else { "+" };
     format!(
-        "from the lowest to the highest {variable} {sign}{:.1} %: {}; an effect smaller than ± \
-        {visible:.1} % could not have been detected",
+        "net gain {sign}{:.1} % from the lowest to the highest {variable}, which is {} in the \
+        schedule; an effect below ± {visible:.1} % could not have been detected",
         percent.abs(),
         need(test)
     )
@@ -168,7 +165,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
         "effect [%]",
         "detectable from ± [%]",
         "Holm p",
-        "unseen [%]",
+        "unseen without it [%]",
         "unseen with it [%]",
         "verdict",
     ];
@@ -201,7 +198,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
 pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",
-        "about",
+        "scatter about",
         "scatter [%]",
         "trim [%]",
         "identification [%]",
@@ -244,7 +241,7 @@ fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
 
 /// Tabulates every condition's on-axis net gains with their error bars.
 pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
-    let level = format!("± [%] of {:.0} %", 100.0 * uncertainty.level);
+    let level = format!("± [%] at {:.0} %", 100.0 * uncertainty.level);
     let columns = [
         "condition",
         "response",

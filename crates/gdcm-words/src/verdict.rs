@@ -20,9 +20,9 @@ pub fn gain_verdict_text(verdict: GainVerdict, dataset: &Dataset) -> String {
             format!("{} stops at a bound", unbroken(&dataset.pair_name(pair)))
         }
         GainVerdict::SharedChannel { unmatched, channel } => {
-            format!("{unmatched} share {}", channel.name_in(dataset))
+            format!("{unmatched} responses share {}", channel.name_in(dataset))
         }
-        GainVerdict::Disagree { entries } => format!("{entries} disagree"),
+        GainVerdict::Disagree { entries } => format!("{entries} responses disagree"),
     }
 }
 
@@ -135,7 +135,7 @@ pub fn verdict_table(analysis: &Analysis) -> Table {
         .any(|id| open_suggestions(analysis, id) > 0);
     let mut columns = vec!["condition", "gain", "", "phase", "", "J before", "J after"];
     if suggests {
-        columns.push("outliers?");
+        columns.push("suggested outliers");
     }
     let mut table = Table::new("", columns);
     for condition in study.dataset.conditions() {

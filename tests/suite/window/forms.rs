@@ -82,7 +82,7 @@ fn coherence_is_switched_where_something_is_measured_with_it() {
     assert_eq!(state(&example).study.settings.coherence_threshold, None);
     click(&mut example, "Coherence counts");
     example
-        .get_by_label("Least coherence")
+        .get_by_label("Minimum coherence")
         .set_value_accesskit(0.75);
     settle(&mut example);
     assert_eq!(

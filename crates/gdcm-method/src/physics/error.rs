@@ -50,7 +50,7 @@ pub enum PhysicsError {
     #[error("{setting}: expected a finite number not below zero, found {value}")]
     Option { setting: &'static str, value: f64 },
     /// The normal matrix has no Cholesky factors.
-    #[error("the responses do not determine the {parameters} parameters")]
+    #[error("the responses do not determine the {parameters} parameters; switch some off")]
     SingularNormalMatrix { parameters: usize },
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

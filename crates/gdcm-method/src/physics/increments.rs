@@ -141,19 +141,22 @@ pub struct ConditionIncrements {
 pub enum IncrementError {
     /// A parameter has no run, two runs with the same step, a step that is zero or not finite, or a
     /// run that differs in shape from its base or from the other parameters' runs.
-    #[error("parameter {parameter}: expected one run, or two with different steps other than 0")]
+    #[error(
+        "parameter number {parameter}: expected one run (a model linearised with the parameter \
+        changed), or two with different steps other than 0"
+    )]
     Runs {
         /// Parameter number, counted from 1.
         parameter: usize,
     },
     /// A model has other states than the base.
-    #[error("expected the states of the runs' base, found other states")]
+    #[error("expected the same states as in the model from which the runs differ, found others")]
     States,
     /// A model is a measured response.
     #[error("expected matrices, found a measured response")]
     Measured,
     /// There are more or fewer values than parameters.
-    #[error("expected {expected} values, found {found}")]
+    #[error("expected {expected} parameter values, found {found}")]
     Count { expected: usize, found: usize },
     /// The matrices with the changes are not finite.
     #[error(transparent)]

@@ -41,10 +41,10 @@ pub struct MatchedRuns<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionOmission {
     /// The condition has no usable run.
-    #[error("no run can be used")]
+    #[error("no physics model linearised with a parameter changed can be used")]
     NoRuns,
     /// A parameter that is switched on has no usable run.
-    #[error("no run of the parameter \"{parameter}\" can be used")]
+    #[error("no physics model linearised with \"{parameter}\" changed can be used")]
     MissingRun { parameter: String },
     /// The runs do not give increments.
     #[error(transparent)]

@@ -52,7 +52,7 @@ pub enum AttitudeResponseError {
     )]
     NotAnAttitude { output: String, unit: String },
     /// No two neighbouring frequencies have a finite nonzero response.
-    #[error("there is no response between {} and {} rad/s", number(*from), number(*to))]
+    #[error("the response has no values between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
         /// Lowest requested frequency \[rad/s\].
         from: f64,

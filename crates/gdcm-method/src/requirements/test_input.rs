@@ -28,7 +28,7 @@ pub struct TestInput {
 /// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    #[error("there is no input {}: the number of inputs of the model is {inputs}", input + 1)]
+    #[error("expected an input number from 1 to {inputs}, found {}", input + 1)]
     NoInput { input: usize, inputs: usize },
     /// The size is not finite, or the duration is not above zero and at most 600 s.
     #[error("test input: expected a finite size and a duration greater than 0 s and at most \

@@ -175,7 +175,7 @@ impl ResponsePlot<'_> {
         Band {
             range: self.options.in_unit(self.band.max(), up_to),
             color: INVALID,
-            key: "not valid with leads".to_owned(),
+            key: "corrected model not valid (leads)".to_owned(),
         }
     }
 }

@@ -183,7 +183,7 @@ impl<'a> ConditionSource<'a> {
             } else {
                 ""
             };
-            parts.push(format!("ratio {ratio:.2}{verdict}"));
+            parts.push(format!("discontinuity ratio {ratio:.2}{verdict}"));
         }
         let model = &self.curves.condition.bundle(id.bundle)[index];
         if let Some(source) = &model.source {
@@ -340,7 +340,7 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     };
     let physics = match settings.physics {
         PhysicsCorrection::Off => String::new(),
-        applied => format!(" Physics models moved by {}.", applied.name()),
+        applied => format!(" Physics models with {} applied.", applied.name()),
     };
     format!(
         "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{physics}{couplings}",

@@ -44,7 +44,7 @@ impl FrequencyPanels<'_> {
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
             color: NOTICED,
-            key: "remaining error would be noticed".to_owned(),
+            key: "noticeable error (outside MUAD)".to_owned(),
         });
         let bands = self
             .bands

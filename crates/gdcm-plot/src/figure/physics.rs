@@ -50,9 +50,9 @@ pub fn physics_figure(
     let name = &shown_parameter.parameter.name;
     let mut figure = Figure::new(format!("Physics parameter {name}"))
         .caption(
-            "Values in single conditions hold the other parameters and the delays at the common \
-            solution and leave the gains of the condition free; the misfit is that of each condition \
-            predicted from the others (M18).",
+            "Single conditions: fitted with the condition's gains free, and the other parameters and \
+            the delays fixed at the common solution. Misfit: each condition predicted from the \
+            others (M18).",
         )
         .columns(2)
         .aspect(0.72)

@@ -42,8 +42,8 @@ pub fn physics_change_figure(
     }
     let mut figure = Figure::new(format!("Physics parameters in condition {condition}"))
         .caption(
-            "Each response with its own G and D (eq. (5), (9)), which belong to the correction; J is \
-            what remains.",
+            "Each response is drawn with its own G and D applied (eq. (5), (9)), as these belong to \
+            the correction of the channels; J is the error that remains.",
         )
         .columns(most + 1)
         .aspect(1.3);
@@ -98,7 +98,7 @@ impl ResponsePlots<'_> {
         for (name, stroke, values) in [
             ("identified", IDENTIFIED, traces.identified),
             ("physics", BEFORE, traces.before),
-            ("physics, parameters moved", AFTER, traces.after),
+            ("physics, parameters changed", AFTER, traces.after),
         ] {
             let curve = Curve::new(name, stroke, Arc::clone(&self.frequencies), values.to_vec());
             panel = panel.with(curve.key(name));
@@ -133,7 +133,7 @@ fn pole_plot(effect: &ConditionPhysics, near: f64) -> Plot {
     }
     let names = PoleShiftNames {
         before: "pole, physics",
-        after: "pole, parameters moved",
+        after: "pole, parameters changed",
         color: Color::new(Hue::Perturbed),
     };
     let x = Axis::linear("Re λ [rad/s]").including(0.0);

@@ -80,9 +80,9 @@ pub fn requirements_figure(
     }
     let level = 100.0 * requirements.interval_level;
     let caption = format!(
-        "Bars: {level:.0} % intervals. Pale dots: depend on the model beyond the band. Arrows lead \
-        from the physics model to the corrected model of a condition. These values are not a \
-        qualification."
+        "Bars: {level:.0} % intervals. Pale dots: the value depends on the model outside the band. \
+        Arrows: from the physics model to the corrected model of a condition. These values are not \
+        a qualification."
     );
     Figure::new("Bandwidth and phase delay")
         .caption(caption)

@@ -120,7 +120,7 @@ fn cost_panel(analysis: &Analysis, costs: &[ResponseCosts]) -> Panel {
     );
     if !changes.is_empty() {
         panel = panel.with(Intervals {
-            name: "before to schedule".to_owned(),
+            name: "change from before to schedule".to_owned(),
             stroke: CHANGE,
             ends: changes,
         });

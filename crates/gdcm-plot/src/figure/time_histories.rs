@@ -130,7 +130,7 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .collect();
     let caption = format!(
         "Windows of at most 10 s, each starting from an estimated state; attitudes are integrals \
-        of rates from the start of each window. Below: simulated minus flight. Thick lines: \
+        of rates from the start of each window. Error: simulated minus flight. Thick lines: \
         outside the corridor. This is not a qualification: the tests in the table of tolerances \
         are steps and doublets at specified conditions.{missing}"
     );
@@ -183,9 +183,9 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
-    let less = format!("minus flight [{}]", history.unit);
+    let error = format!("error [{}]", history.unit);
     let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
-    let difference = empty_panel(&less).with_all(history_marks(history, Shown::LessFlight));
+    let difference = empty_panel(&error).with_all(history_marks(history, Shown::LessFlight));
     let title = format!("{}, {}", tolerance.quantity, tolerance_text(tolerance));
     Plot::new(title)
         .panel(record)

@@ -728,7 +728,7 @@ def analyze(
     pooling : float
         Degrees of freedom that a condition borrows from the others.
     coherence : float, "on" or "off"
-        Least coherence of measured responses that is used.
+        Minimum coherence of measured responses that is used.
     averages, averaging_window
         Number of averages and window length [s] of measured responses whose files do not say it.
     half_overlap : bool

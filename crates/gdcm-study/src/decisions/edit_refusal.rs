@@ -54,15 +54,18 @@ pub enum EditRefusal {
         found: f64,
     },
     #[error(
-        "physics parameter \"{name}\": the dataset has no run of it; runs are physics models with \
-        \"parameter\""
+        "physics parameter \"{name}\": the dataset has no physics model linearised with it \
+        changed; add one with the field \"parameter\""
     )]
     NoParameter { name: String },
     /// The band limits are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
-    #[error("{setting}: this value is not permitted")]
-    NotAValue { setting: &'static str },
+    #[error("{setting}: expected {expected}, found a value of another kind")]
+    NotAValue {
+        setting: &'static str,
+        expected: String,
+    },
     #[error("the dataset has no condition {condition}")]
     NoCondition { condition: ConditionId },
     #[error("condition {} has no {} model \"{}\"", model.condition, model.bundle, model.name)]

@@ -302,7 +302,14 @@ impl Setting {
             }
             (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
             (Kind::Range { nothing, .. }, Value::Nothing) if nothing.is_some() => Ok(()),
-            _ => Err(EditRefusal::NotAValue { setting: self.name }),
+            (Kind::Flag { .. }, _) => Err(EditRefusal::NotAValue {
+                setting: self.name,
+                expected: "yes or no".to_owned(),
+            }),
+            _ => Err(EditRefusal::NotAValue {
+                setting: self.name,
+                expected: self.syntax(),
+            }),
         }
     }
 

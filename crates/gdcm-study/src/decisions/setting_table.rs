@@ -547,7 +547,7 @@ pub static HALF_OVERLAP: Setting = Setting {
     key: "error_bars.half_overlap",
     option: "--half-overlap",
     kind: Kind::Flag {
-        words: ["not", "by half"],
+        words: ["no", "by half"],
         get: |settings| settings.uncertainty.half_overlap,
         set: |settings, overlap| settings.uncertainty.half_overlap = overlap,
     },
@@ -673,8 +673,8 @@ pub static SECOND_VARIABLE: Setting = Setting {
     kind: Kind::Choice {
         words: &[
             ["none", "airspeed only"],
-            ["altitude", "and altitude"],
-            ["mass", "and mass"],
+            ["altitude", "airspeed and altitude"],
+            ["mass", "airspeed and mass"],
         ],
         get: |settings| settings.schedule.second.index(),
         set: |settings, index| settings.schedule.second = <Option<SecondVariable>>::ALL[index],

@@ -67,16 +67,17 @@ impl NotFitted {
 pub enum PhysicsFailure {
     /// The dataset has no run with a moved parameter.
     #[error(
-        "no physics parameters: the dataset has no run of any parameter; add physics models \
-        linearised with one parameter moved"
+        "no physics parameters: the dataset has no physics models linearised with one parameter \
+        changed; add them"
     )]
     NoRuns,
     /// Every parameter is switched off.
-    #[error("no physics parameters: every parameter is switched off")]
+    #[error("no physics parameters: every parameter is switched off; switch one on")]
     AllOff,
     /// No condition takes part in the fit.
     #[error(
-        "no physics parameters: no condition has comparable models and runs of every parameter that is on"
+        "no physics parameters: no condition has comparable models and, for every parameter that \
+        is switched on, a physics model linearised with it changed"
     )]
     NoConditions(Box<LeftOutData>),
     #[error(transparent)]

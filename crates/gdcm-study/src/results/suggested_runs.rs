@@ -153,13 +153,13 @@ static SWASHPLATE: [RunParameter; 1] = [RunParameter {
 static RATE_COUPLING: [RunParameter; 3] = [
     RunParameter {
         name: "wake_curvature",
-        meaning: "wake curvature (inflow that depends on rates)",
+        meaning: "wake curvature: inflow that depends on rates",
         step: 0.25,
         unit: "1",
     },
     percent(
         "inflow_mass",
-        "apparent mass of the inflow (its time constant)",
+        "apparent mass of the inflow, which sets its time constant",
         10.0,
     ),
     percent("hinge_offset", "offset of the flapping hinge", 5.0),

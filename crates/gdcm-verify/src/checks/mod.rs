@@ -18,7 +18,7 @@ const NUMPY: &str = "independent NumPy code of the method on a dataset of eleven
 
 /// Reason for a tolerance of 1e-6 where medians and quantiles are compared.
 const OF_MEDIANS: &str = "both programs take medians and quantiles of the same 200 values, which the \
-                          reference has to about 1e-9";
+                          reference contains to about 1e-9";
 
 /// All comparisons, ordered by method section.
 pub const CHECKS: &[Check] = &[
@@ -27,11 +27,11 @@ pub const CHECKS: &[Check] = &[
         sections: "M2",
         what: "frequency responses of published helicopters, of a nearly defective model, and of \
                models of the example",
-        source: "arithmetic of 50 digits",
+        source: "arithmetic with 50 digits",
         measure: "relative to the largest magnitude of the model",
         tolerance: 1e-9,
-        reason: "conditioning of 39 states; double precision leaves about 1e-13 of well-conditioned \
-                 models",
+        reason: "conditioning with 39 states; well-conditioned models agree to about 1e-13 in double \
+                 precision",
         run: responses::golden_responses,
     },
     Check {
@@ -57,7 +57,7 @@ pub const CHECKS: &[Check] = &[
     Check {
         code: "coherence-weights",
         sections: "M4a",
-        what: "weights of coherence",
+        what: "coherence weights",
         source: "independent NumPy code of M. B. Tischler's weight",
         measure: "absolute",
         tolerance: 1e-15,
@@ -79,7 +79,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M5",
         what: "representatives, suggested outliers, scores and discontinuity ratios of the example",
         source: NUMPY,
-        measure: "relative to the value, at least 1",
+        measure: "relative to the value or 1, whichever is larger",
         tolerance: 1e-6,
         reason: OF_MEDIANS,
         run: example::representatives,
@@ -89,7 +89,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M3, M6, M7",
         what: "delta gains G, delta delays D and bounds of the example",
         source: NUMPY,
-        measure: "relative to the value, at least 1 or 1 ms",
+        measure: "relative to the value or 1 (delays: 1 ms), whichever is larger",
         tolerance: 1e-6,
         reason: OF_MEDIANS,
         run: example::deltas,
@@ -99,7 +99,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M8, M9",
         what: "channel gains and delays of the example",
         source: NUMPY,
-        measure: "relative to the value, at least 1 or 1 ms",
+        measure: "relative to the value or 1 (delays: 1 ms), whichever is larger",
         tolerance: 1e-6,
         reason: OF_MEDIANS,
         run: example::corrections,
@@ -109,7 +109,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M4, M10",
         what: "J of every response of the example before and after its correction",
         source: NUMPY,
-        measure: "relative to J, at least 1",
+        measure: "relative to J or 1, whichever is larger",
         tolerance: 1e-6,
         reason: OF_MEDIANS,
         run: example::costs,
@@ -119,7 +119,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M11, M12",
         what: "scheduled gains of the example at every airspeed, and the change of J",
         source: NUMPY,
-        measure: "relative to the value, at least 1",
+        measure: "relative to the value or 1, whichever is larger",
         tolerance: 1e-6,
         reason: OF_MEDIANS,
         run: example::assessment,
@@ -161,7 +161,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M13",
         what: "value, parts and half-width of the error bars of the example's net gains and delays",
         source: "independent NumPy code",
-        measure: "absolute: natural logarithm, s",
+        measure: "absolute (natural logarithm; s)",
         tolerance: 1e-5,
         reason: "the optimum of the gains is flat",
         run: error_bars::bars_of_the_example,
@@ -183,7 +183,7 @@ pub const CHECKS: &[Check] = &[
         source: "the system from which the records are generated",
         measure: "relative to the largest magnitude at each frequency",
         tolerance: 2e-3,
-        reason: "a sum over samples approximates an integral to (omega T)^2 / 12, 1.2e-3 at 6 rad/s",
+        reason: "a sum over samples replaces an integral: error (omega T)^2 / 12, 1.2e-3 at 6 rad/s",
         run: identification::known_model,
     },
     Check {
@@ -191,7 +191,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M15.3",
         what: "lead filters: response, gain at infinity, and the lead of a signed delay",
         source: "independent NumPy code",
-        measure: "relative, at least 1 ms for times",
+        measure: "relative (times: to the value or 1 ms, whichever is larger)",
         tolerance: 1e-6,
         reason: "the references are written with twelve digits; their times come from a search that \
                  ends at 1e-9 s",
@@ -200,7 +200,7 @@ pub const CHECKS: &[Check] = &[
     Check {
         code: "signed-delays",
         sections: "M15.4",
-        what: "minimum of the programs of signed delays, and their proofs",
+        what: "minima of the optimisations of signed delays, and their proofs",
         source: "independent NumPy code",
         measure: "relative deviation of the objective",
         tolerance: 1e-6,
@@ -212,7 +212,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M16",
         what: "state space with feed-through after mixing and feedback",
         source: "independent NumPy code",
-        measure: "absolute, of entries of the order 1",
+        measure: "absolute (entries of order 1)",
         tolerance: 1e-12,
         reason: "rounding of a matrix inverse of condition number below 10",
         run: couplings::coupled_state_space,
@@ -222,7 +222,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M16",
         what: "mixing and feedback of a synthetic aircraft after each of five solves",
         source: "independent NumPy code",
-        measure: "absolute, of coefficients of the order 1",
+        measure: "absolute (coefficients of order 1)",
         tolerance: 1e-9,
         reason: "condition number of the normal equations",
         run: couplings::disturbed_aircraft,
@@ -242,7 +242,7 @@ pub const CHECKS: &[Check] = &[
         sections: "M18",
         what: "two named parameters of a synthetic aircraft after each pass, and its delays",
         source: "independent NumPy code",
-        measure: "absolute, of scaled parameters",
+        measure: "absolute (scaled parameters)",
         tolerance: 1e-8,
         reason: "condition number of the information matrix",
         run: physics::synthetic_aircraft,

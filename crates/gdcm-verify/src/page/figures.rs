@@ -59,7 +59,7 @@ pub enum FigureFault {
     Missing { code: String },
     #[error("{code}: recorded by a test, not on the page")]
     New { code: String },
-    #[error("{code}: {fresh} instead of {known}")]
+    #[error("{code}: expected {known} as on the page, found {fresh}")]
     Differs {
         code: String,
         known: String,

@@ -187,9 +187,9 @@ const OTHERS: &[EvidenceRow] = &[
     EvidenceRow {
         code: "recovered-gains-and-delays",
         sections: "M6, M8, M10",
-        what: "channel gains and a delay put into two published helicopters (AH-64, 2 × 2; Yamaha \
-               R-50, 13 × 4), found again by the whole method from measured responses",
-        source: "the gains and the delay that were put in",
+        what: "channel gains and a delay applied to two published helicopter models (AH-64, 2 × 2; \
+               Yamaha R-50, 13 × 4), recovered by the whole method from measured responses",
+        source: "the applied gains and delay",
         measure: "relative gain, s",
         is_verified: false,
     },
@@ -197,7 +197,7 @@ const OTHERS: &[EvidenceRow] = &[
         code: "identification-of-exact-records",
         sections: "M14",
         what: "identification from three records of an aircraft in closed loop, without noise",
-        source: "the aircraft that was simulated in steps of a tenth of the sample time",
+        source: "the simulated aircraft, integrated in steps of a tenth of the sample time",
         measure: "relative to the largest magnitude at each frequency",
         is_verified: false,
     },

@@ -11,8 +11,8 @@ const OPTIMA: [&str; 3] = ["certified-gains", "certified-delays", "signed-delays
 const HEAD: &str = "\
 # Verification
 
-What the program was compared with, and how well it agrees. Sections M1 to M18 are those of
-[method.md](method.md) and the pages beside it. The figures are those of the tests:
+Comparisons of the program with independent results, and how well they agree. Sections M1 to M18
+are those of [method.md](method.md) and the pages beside it. The tests record the figures:
 
 ```sh
 docs/make-verification            # runs the tests named below and writes this page
@@ -30,11 +30,11 @@ the tolerance with its reason. It ends with status 0 if all pass and with status
 ";
 
 const PEERS: &str = "
-## Peers compared
+## Independent references
 
-| peer | compared | where |
+| reference | compared | where |
 |---|---|---|
-| arithmetic of 50 digits | frequency responses | `tests/data/reference/frequency-response-golden.json` |
+| arithmetic with 50 digits | frequency responses | `tests/data/reference/frequency-response-golden.json` |
 | an independent interval branch and bound; SCIP or IPOPT | minima of eq. (7) | `tests/data/reference/gain-instances.json` |
 | an interior-point method | minima of eq. (11) | `tests/data/reference/delay-instances.json` |
 | NumPy and SciPy, by code that shares nothing with the program | M3 to M18, as the tables above say | `tests/data/reference/`, `tests/data/identification*.json` |
@@ -53,10 +53,10 @@ const NOT_VERIFIED: &str = "
   compared with independent code, not with the published numbers.
 - **Against other identification programs.** CIFER and MATLAB's System Identification Toolbox were
   not available; identified models are compared with known truths and with independent code.
-- **The reference code** and this program were written from one description. An error in the
-  description would be in both.
-- **Errors that all identified models share** (airspeed offset, feedback, aliasing) widen no bar; the
-  coverage above holds for the generated errors that its rows name.
+- **The reference code** and this program were written from the same description. An error in
+  the description would be in both.
+- **Errors that all identified models share** (airspeed offset, feedback, aliasing) are not part of
+  the error bars; the coverage above holds for the generated errors that its rows name.
 - **MATLAB** was not available: its files are read from the layouts that GNU Octave, SciPy and h5py
   write, and exported MATLAB programs are run by GNU Octave.
 - **Requirements** are evaluated, not certified: levels and tolerances are those that the engineer
@@ -78,7 +78,7 @@ pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
     for row in rows.iter().filter(|row| row.is_verified) {
         text.push_str(&evidence_line(row, deviations(figures, row.code)?));
     }
-    text.push_str("\nTheir tolerances and the reasons for them: `gdcm verify`.\n");
+    text.push_str("\n`gdcm verify` prints their tolerances and the reasons for them.\n");
     text.push_str("\n## Further comparisons\n\n");
     text.push_str(EVIDENCE_HEAD);
     for row in rows.iter().filter(|row| !row.is_verified) {

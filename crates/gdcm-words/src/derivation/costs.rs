@@ -134,7 +134,7 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         .iter()
         .map(|coordinate| {
             format!(
-                "w_{} = {} over ±{}",
+                "w_{} = {}, perturbations up to ±{}",
                 coordinate.name,
                 five_digits(coordinate.weight),
                 five_digits(coordinate.largest)

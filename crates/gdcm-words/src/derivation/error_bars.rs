@@ -72,7 +72,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     lines.extend(bar_remark_texts(bar).into_iter().map(str::to_owned));
     if bar.left_out > 0 {
         lines.push(format!(
-            "{} exchanges of a model give no value of this result",
+            "{} model exchanges give no value for this result",
             bar.left_out
         ));
     }

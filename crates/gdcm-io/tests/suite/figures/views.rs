@@ -486,7 +486,7 @@ fn responses_before_and_after_the_parameters_keep_the_cost_of_their_shape() {
         // Weights of eq. (14): 20 for dB^2, 20 * 0.0175 for deg^2.
         for (panel, weight) in plot.panels.iter().zip([20.0, 20.0 * 0.0175]) {
             let identified = curve_named(panel, "identified");
-            let moved = curve_named(panel, "physics, parameters moved");
+            let moved = curve_named(panel, "physics, parameters changed");
             let errors = identified.y.iter().zip(moved.y.iter());
             let mut squares: Vec<f64> = errors
                 .map(|(reference, moved)| {

@@ -123,6 +123,10 @@ fn names(pairs: &[Pair], pair_name: &impl Fn(Pair) -> String) -> String {
 }
 
 /// Describes a model that is set aside, and why; empty for any other caution.
+///
+/// Each missing response is zero at every frequency with a value (`zero`), not finite (`why`), or
+/// zero somewhere. The reason names the first that explains all: all of them zero; some zero
+/// somewhere; all not finite; some zero, the others not finite.
 fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> String {
     let Caution::SetAside {
         model,
@@ -134,7 +138,7 @@ fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> Str
     else {
         return String::new();
     };
-    let why = match why {
+    let reason = match why {
         None if zero == lacks => "zero over the whole band".to_owned(),
         None => "zero somewhere in the band".to_owned(),
         Some(why) if zero.is_empty() => not_finite_text(why),
@@ -150,7 +154,7 @@ fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> Str
         ""
     };
     format!(
-        "{model} is set aside: it has no {}, which another model of its bundle has ({why}){pin}",
+        "{model} is set aside: it has no {}, which another model of its bundle has ({reason}){pin}",
         names(lacks, pair_name)
     )
 }

@@ -55,8 +55,9 @@ pub fn remedy_text(remedy: &Remedy, inputs: &[String], outputs: &[String]) -> St
     }
 }
 
-/// Describes a constrained response's deviation; for a delay also the phase error that remains at
-/// `omega_top` \[rad/s\], the upper band end.
+/// Describes a constrained response's deviation: in a gain; in a signed delay that should be a
+/// lead; else in a delay. The latter two with the phase error that remains at `omega_top`
+/// \[rad/s\], the upper band end.
 pub fn miss_text(
     miss: &Unmatched,
     omega_top: f64,
@@ -87,6 +88,8 @@ fn lead_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     )
 }
 
+/// Describes a delay's deviation: a needed lead, if the response conflicts with nothing else; else
+/// too much delay; else too little.
 fn delay_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     let excess_ms = 1e3 * miss.excess;
     let size_ms = telling(excess_ms.abs(), 1);
@@ -143,6 +146,9 @@ impl ConflictText<'_> {
 
     /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is what the
     /// bounds allow and the entries exceed, CHANGE a sufficient change in the bounds.
+    ///
+    /// A loop, a conflict without a known limit, and a single delay that would have to be a lead
+    /// have neither, and shorter sentences of their own.
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);

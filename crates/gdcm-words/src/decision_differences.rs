@@ -156,15 +156,18 @@ fn parameter_differences(before: &Study, after: &Study) -> Vec<DecisionDifferenc
     differences
 }
 
-/// Describes the decisions about a parameter: "off", "held at 5, plausible ± 10".
+/// Describes the decisions about a parameter: off, else held by hand, else fitted; then the
+/// plausible change, if there is a decision about it: "off", "held at 5, plausible ± 10".
 fn parameter_words(settings: &PhysicsSettings, name: &str) -> String {
-    let mut words = vec![match settings.by_hand.get(name) {
-        Some(change) => format!("held at {}", number(*change)),
-        None => "fitted".to_owned(),
-    }];
-    if settings.off.contains(name) {
-        words = vec!["off".to_owned()];
-    }
+    let state = if settings.off.contains(name) {
+        "off".to_owned()
+    } else {
+        match settings.by_hand.get(name) {
+            Some(change) => format!("held at {}", number(*change)),
+            None => "fitted".to_owned(),
+        }
+    };
+    let mut words = vec![state];
     if let Some(plausible_sd) = settings.plausible_sd.get(name) {
         words.push(format!("plausible ± {}", number(*plausible_sd)));
     }
@@ -191,12 +194,12 @@ fn condition_differences(
         yes: "held out",
         no: "not held out",
     };
-    let a = before.choice(id);
-    let b = after.choice(id);
+    let was = before.choice(id);
+    let is = after.choice(id);
     let mut differences = Vec::new();
     for (words, before, after) in [
-        (scheduled, a.scheduled, b.scheduled),
-        (held_out, a.held_out, b.held_out),
+        (scheduled, was.scheduled, is.scheduled),
+        (held_out, was.held_out, is.held_out),
     ] {
         if before != after {
             differences.push(DecisionDifference::new(
@@ -207,7 +210,12 @@ fn condition_differences(
         }
     }
     for kind in BundleKind::BOTH {
-        differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
+        differences.extend(bundle_differences(
+            id,
+            kind,
+            was.bundle(kind),
+            is.bundle(kind),
+        ));
     }
     differences
 }

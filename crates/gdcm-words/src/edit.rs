@@ -1,4 +1,5 @@
-//! Names decisions, for the undo list and for decisions that no longer apply.
+//! Names decisions: for the undo list, and for decisions made with another dataset that do not
+//! apply to the present one.
 
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_study::Edit;
@@ -46,9 +47,12 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
             format!("{verb} {}", dataset.pair_name(*pair))
         }
         Edit::Set(setting, _) => setting.name.to_owned(),
-        Edit::SetSign { channel, of } => {
+        Edit::SetSign {
+            channel,
+            of: reversed,
+        } => {
             let name = channel.name_in(dataset);
-            match of {
+            match reversed {
                 Some(role) => format!("reverse the sign of {name} ({})", role.word()),
                 None => format!("restore the sign of {name}"),
             }
@@ -95,7 +99,7 @@ fn requirement_part_text(part: RequirementPart) -> &'static str {
     }
 }
 
-/// Names a decision that was carried over from another dataset.
+/// Names a decision made with another dataset, where it does not apply to the present one.
 pub(crate) fn carried_decision_text(decision: &CarriedDecision) -> String {
     match decision {
         CarriedDecision::Edit { edit, dataset } => edit_text(edit, dataset),

@@ -195,7 +195,9 @@ pub fn caution_with_advice(
     format!("{text}. Predicted: {}", sentences.join("; "))
 }
 
-/// Returns the ways to a target, a line for each.
+/// Returns the ways to a target: a line that it is reached now; else a heading, and a line each for
+/// more sweeps, a longer sweep, a larger amplitude, and more sweeps over a narrow band. The last
+/// line says that no number of such flights reaches it, if that is so.
 pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String> {
     let target = &plan.target;
     let wanted = format!(

@@ -97,6 +97,7 @@ pub fn verdict_text(findings: &PhysicsFindings) -> String {
     format!("{} {LIKE_EFFECT}", verdict_sentence(findings))
 }
 
+/// States the verdict, or that there are too few conditions for one.
 fn verdict_sentence(findings: &PhysicsFindings) -> String {
     let diagnosis = &findings.diagnosis;
     let count = findings.parameters.len();
@@ -260,7 +261,8 @@ pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
         ]);
     }
     for parameter in &findings.off {
-        let mut cells = vec![String::new(); 11];
+        // Only name, unit, plausible change and verdict.
+        let mut cells = vec![String::new(); table.columns.len()];
         cells[0] = parameter.name.clone();
         cells[1] = parameter.unit.clone();
         cells[4] = number(parameter.plausible_sd);

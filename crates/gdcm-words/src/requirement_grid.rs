@@ -117,8 +117,13 @@ pub fn shown_value(unit: RequirementUnit, value: f64) -> f64 {
 /// Formats a cell's value without decimals: a difference has a sign; a missing value becomes an en
 /// dash.
 ///
-/// A value is rounded away from its limit where rounding would move it to the other side: 100.4 % of
-/// a tolerance is "101".
+/// Rounding must not move a value outside its limit to the other side (100.4 % of a tolerance is
+/// "101"):
+///
+/// - a peak error and J outside their limits are rounded up
+/// - a share of the band is rounded down: only the whole is "100"
+/// - differences in bandwidth and phase delay outside their limits are rounded away from zero
+/// - all others to the nearest number
 pub fn value_text(requirement: Requirement, cell: &RoleCell) -> String {
     let Some(value) = cell.value else {
         return NONE.to_owned();

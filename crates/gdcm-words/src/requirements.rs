@@ -72,7 +72,9 @@ pub fn has_levels(requirements: &Requirements, levels: &LevelBoundaries) -> bool
         .any(|finding| levels.assesses(&finding.output))
 }
 
-/// Returns the cautions about a bandwidth, or the reason why it has no value.
+/// Returns why a bandwidth or phase delay has no value, if that is so, and the cautions: the rule
+/// that gives the bandwidth, if it is the gain margin or every value exists; dependence on the
+/// model outside the band; a phase delay from the least-squares line.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     let mut words: Vec<String> = Vec::new();
     let absent = finding
@@ -226,6 +228,7 @@ pub fn summary_table(requirements: &Requirements, histories: Option<&TimeHistori
     if let Some(histories) = histories {
         add_identified_rows(&mut table, histories);
     }
+    // By condition: the identified models' rows come last so far.
     table
         .rows
         .sort_by_key(|row| row[0].parse::<i64>().unwrap_or(i64::MAX));

@@ -1,4 +1,5 @@
-//! Tables for display, copying and saving, with the same content in every format.
+//! A table of strings, and its format as monospaced text. The window, the report and CSV files
+//! format its cells themselves.
 
 use gdcm_model::units::without_sign_of_zero;
 

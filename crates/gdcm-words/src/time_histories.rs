@@ -101,7 +101,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
         .iter()
         .filter(|finding| finding.condition == condition)
         .collect();
-    let mut all = 0;
+    let mut row_count = 0;
     // Two records may have the same name; a new record starts where the role does not increase.
     for models in findings.chunk_by(|a, b| a.record == b.record && a.role < b.role) {
         let held_out = if models[0].held_out {
@@ -110,7 +110,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
             ""
         };
         for (row, first) in models[0].tolerances.iter().enumerate() {
-            all += 1;
+            row_count += 1;
             let found = RequirementRole::ALL.map(|role| finding_of_role(models, role, row));
             if !found
                 .iter()
@@ -132,9 +132,9 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     }
     table.title = format!(
         "Records of condition {condition}: share of time inside, and largest excess beyond the \
-        corridor with its time; {} of {all} rows are omitted, because every model is always \
+        corridor with its time; {} of {row_count} rows are omitted, because every model is always \
         inside",
-        all - table.rows.len()
+        row_count - table.rows.len()
     );
     table
 }

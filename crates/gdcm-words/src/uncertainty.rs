@@ -55,23 +55,23 @@ pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
 
 /// Summarises the differences at equal airspeed in a sentence.
 pub fn differences_summary(uncertainty: &Uncertainty) -> String {
-    let all = uncertainty.differences.len();
+    let compared = uncertainty.differences.len();
     let significant = uncertainty
         .differences
         .iter()
         .filter(|difference| difference.is_significant(uncertainty.level))
         .count();
-    match (all, significant, uncertainty.too_many_differences) {
+    match (compared, significant, uncertainty.too_many_differences) {
         (0, _, None) => "No two conditions have equal airspeeds.".to_owned(),
         (0, _, Some(count)) => {
             format!("{count} differences at equal airspeed are too many to compare.")
         }
         (_, 0, _) => format!(
-            "None of the {all} pairs of conditions at equal airspeed has significantly different \
-             net gains."
+            "None of the {compared} pairs of conditions at equal airspeed has significantly \
+             different net gains."
         ),
         (_, significant, _) => format!(
-            "{significant} of {all} pairs of conditions at equal airspeed have significantly \
+            "{significant} of {compared} pairs of conditions at equal airspeed have significantly \
              different net gains."
         ),
     }

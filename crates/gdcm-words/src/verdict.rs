@@ -56,7 +56,7 @@ pub fn unbroken(name: &str) -> String {
     name.replace(' ', "\u{a0}")
 }
 
-/// Returns "lags by ≈ 66 ms", "lags 20–110 ms".
+/// Returns "lags by ≈ 66 ms", "lags 20–110 ms", "leads −5 to 60 ms".
 fn remaining_lag_text(lag: RemainingLag) -> String {
     match lag {
         RemainingLag::Equal(lag_ms) => {

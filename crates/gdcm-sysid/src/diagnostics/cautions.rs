@@ -200,10 +200,11 @@ impl IdentificationCaution {
 
     /// Returns whether `other` is a mere consequence.
     ///
-    /// A contradicting record's residual is not due to its noise; and if a channel's sign is
-    /// reversed, no input seems to be swept in the mean over the records. No model follows measured
-    /// points that are means over contradicting records. Spikes enlarge their record's residual and
-    /// are visible above the band; a delay or a sign that is found beside them is a separate fault.
+    /// - A contradiction explains the residual and the noise level of its records; points that no
+    ///   model follows, because they are means over contradicting records; and, if a channel's sign
+    ///   is reversed, inputs that cancel in this mean and so do not seem to be swept.
+    /// - Spikes explain the residual and the noise level of their record, a contradiction without a
+    ///   delay or a sign, which would be a separate fault, and vibration of their channel.
     fn explains(&self, other: &Self) -> bool {
         match self {
             Self::Contradiction { records, .. } => match other {
@@ -231,7 +232,7 @@ impl IdentificationCaution {
         }
     }
 
-    /// Removes the cautions that others explain.
+    /// Removes the cautions that others explain, even if these are explained themselves.
     pub(crate) fn without_consequences(cautions: Vec<Self>) -> Vec<Self> {
         let mut kept = Vec::with_capacity(cautions.len());
         for caution in &cautions {

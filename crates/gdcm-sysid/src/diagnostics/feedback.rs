@@ -2,17 +2,19 @@
 //!
 //! ```text
 //! y_k = sum_{i = 1..p} (A_i y_{k-i} + B_i u_{k-i}) + B_0 u_k + e_k
-//!     least squares over all records, every dec-th sample, no filter
+//!     least squares over all records, every dec-th sample, no filter; N samples of a record
+//!     dec = round(0.25 / (omega2 dt)), at least 1;   omega2 upper band end, dt sample time
 //!
-//! 1  S(0, j) = sum_k z_k z_{k-j}', z = [u; y]
-//!    S(i+1, j+1) = S(i, j) + z_{p-1-i} z_{p-1-j}' - z_{N-1-i} z_{N-1-j}'
+//! 1  S(0, j) = sum_k x_k x_{k-j}', x = [u; y], k = p .. N - 1
+//!    S(i+1, j+1) = S(i, j) + x_{p-1-i} x_{p-1-j}' - x_{N-1-i} x_{N-1-j}'
 //! 2  A, B from S with a ridge on unit columns; e from the records
-//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect of noise
-//!    and gusts on y
+//! 3  V = (I - sum A_i e^(-j omega dt dec i))^-1 E on the lines: the effect of noise and gusts on y
 //! 4  G_b = local polynomial of V on U at 16 points in the band, and G of the model there
 //! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
-//!    over the points with |G| > 3 % of the maximum of the output and sd G_b < 0.4 |G|
+//!    over the points with |G| > 3 % of the maximum of the output and sd G_b < 0.4 |G|,
+//!    or over all points if these are fewer than 5 %
 //! 6  p = 40; if b and z reach a level, again with p = 200, and the lower level counts
+//!    (short records permit fewer; not again unless the second p is 1.5 times the first)
 //! level 1  b >= 0.08 and z >= 1.6
 //! level 2  b >= 0.18 and z >= 3; or z >= 1.6 and no input with a median partial coherence >= 0.6
 //! ```
@@ -164,10 +166,8 @@ impl Feedback {
         (squares / near.len() as f64).sqrt()
     }
 
-    /// Measures the feedback relative to a model; `None` if the records are too short for a
-    /// predictor.
-    ///
-    /// A level is confirmed with a longer predictor (step 6).
+    /// Measures the feedback relative to a model (steps 1 to 6); `None` without segments, if the
+    /// records do not determine a predictor, or if the local polynomials fail.
     pub(crate) fn measure(
         records: &FeedbackRecords<'_>,
         model: &SchurModel,
@@ -257,7 +257,8 @@ impl<'a> ThinnedRecords<'a> {
         self.inputs + self.outputs
     }
 
-    /// Returns how many past samples a predictor from these records can have, at most `most`.
+    /// Returns how many past samples a predictor from these records can have: with 8 samples for
+    /// each of its unknowns, at most `most`, and at least 6.
     fn past(&self, most: usize) -> usize {
         let samples: usize = self.samples.iter().map(DMatrix::ncols).sum();
         (samples / (SAMPLES_AN_UNKNOWN * self.channels()))
@@ -298,10 +299,10 @@ struct ComparedPoint {
 }
 
 /// Returns the points with large modulus and small relative standard deviation, over all responses;
-/// all points if these are too few.
+/// all points if these are too few (step 5).
 fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<ComparedPoint> {
     let (outputs, inputs) = moduli.first().map_or((0, 0), DMatrix::shape);
-    let mut sure = Vec::new();
+    let mut large_and_sure = Vec::new();
     let mut every = Vec::new();
     for output in 0..outputs {
         let largest = moduli
@@ -319,13 +320,13 @@ fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<C
                 };
                 every.push(compared);
                 if own > LARGE * largest && variance.sqrt() < SURE * own {
-                    sure.push(compared);
+                    large_and_sure.push(compared);
                 }
             }
         }
     }
-    if sure.len() as f64 >= LEAST_SHARE * every.len() as f64 {
-        sure
+    if large_and_sure.len() as f64 >= LEAST_SHARE * every.len() as f64 {
+        large_and_sure
     } else {
         every
     }
@@ -355,13 +356,13 @@ fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
 struct Predictor {
     inputs: usize,
     past: usize,
-    /// Columns are outputs; rows `[u_k | z_{k-1} | ... | z_{k-p}]`, `z = [u; y]`.
+    /// Columns are outputs; rows `[u_k | x_{k-1} | ... | x_{k-p}]`, `x = [u; y]`.
     coefficients: DMatrix<f64>,
 }
 
 impl Predictor {
-    /// Fits a predictor from `past` samples to all records (steps 1 and 2); `None` if they do not
-    /// determine it.
+    /// Fits a predictor from `past` samples to all records with more than twice as many (steps 1
+    /// and 2); `None` if they do not determine it.
     fn fit(records: &[DMatrix<f64>], inputs: usize, past: usize) -> Option<Self> {
         let channels = records.first()?.nrows();
         let outputs = channels - inputs;
@@ -445,10 +446,11 @@ impl Predictor {
             let mut memory = DMatrix::<Complex<f64>>::identity(outputs, outputs);
             for lag in 1..=self.past {
                 let turn = Complex::cis(-omega * step_s * lag as f64);
-                let first = self.inputs + (lag - 1) * channels + self.inputs;
+                // First row of the past outputs: A_lag is transposed from here on.
+                let a_lag = self.inputs + (lag - 1) * channels + self.inputs;
                 for to in 0..outputs {
                     for from in 0..outputs {
-                        memory[(to, from)] -= turn * self.coefficients[(first + from, to)];
+                        memory[(to, from)] -= turn * self.coefficients[(a_lag + from, to)];
                     }
                 }
             }
@@ -461,7 +463,8 @@ impl Predictor {
     }
 }
 
-/// Adds a record's `sum_k z_{k-i} z_{k-j}'`, k from `past` on, to the blocks (i, j) (step 1).
+/// Adds a record's `S(i, j) = sum_k x_{k-i} x_{k-j}'`, k from `past` on, to the blocks (i, j) (step
+/// 1): along each block diagonal, j - i = lag, by the recursion.
 fn add_lagged(gram: &mut DMatrix<f64>, record: &DMatrix<f64>, past: usize) {
     let (channels, samples) = record.shape();
     for lag in 0..=past {

@@ -60,8 +60,9 @@ impl Diagnostics<'_> {
             .map_or_else(String::new, |record| record.name.clone())
     }
 
-    /// Returns cautions about costs beyond their limits: over all records, in each record and over
-    /// the held-out records.
+    /// Returns cautions about costs per degree of freedom beyond their limits: over all fitted
+    /// records (1.5), in each of them (1.5, and 1.5 times that over all) and over the held-out
+    /// records (2).
     pub(crate) fn adequacy(&self, fits: &RecordFits) -> Vec<IdentificationCaution> {
         let (held_out, fitted): (Vec<&RecordFit>, Vec<&RecordFit>) =
             fits.records.iter().partition(|fit| fit.held_out);
@@ -153,10 +154,9 @@ fn place_of_greatest(values: &[f64]) -> usize {
     greatest.map_or(0, |(place, _)| place)
 }
 
-/// Predicts the measured points from a model.
-///
-/// Without a reference, the model passes through the same local polynomials as the records, which
-/// flatten a peak within a window equally in both.
+/// Predicts the measured points from a model: without a reference, by the same local polynomials as
+/// the records, which flatten a peak within a window equally in both; otherwise, and if they fail,
+/// by the model's response at the points.
 pub(crate) fn predict_points(
     model: &SchurModel,
     data: &MeasuredData<'_>,
@@ -208,6 +208,7 @@ fn predict_lines(model: &SchurModel, lines: &Spectrum) -> Spectrum {
 /// T = mean |G_model - G|^2 / var G over five points
 /// D = mean |G_model / G - 1| over the same points
 /// the model leaves the points where T > 12 and D > 0.12 (1 dB or 7 degrees)
+/// band: from the first point of the first such five to the last point of the last
 /// ```
 pub(crate) struct Departure {
     /// Largest `T`.

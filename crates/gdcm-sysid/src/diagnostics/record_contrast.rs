@@ -1,17 +1,21 @@
 //! Compares records with each other: contradictions and their causes (M14.16).
 //!
 //! ```text
-//! G = sum G_r, V'GV = I, at the optimum before reweighing, which would hide the wrong record
+//! G_r, g_r normal equations of record r, J Jacobian, e residual (`local_system`); phi dispersion
+//! G = sum G_r,  g = sum g_r,  V'GV = I,  at the optimum before records are weighed by their noise,
+//!    which would hide the wrong record
 //! 1  a = V'G_r V = Q diag(eps) Q';  in the nu directions with 0.02 < eps < 0.98 both the
 //!    record and the others hold information
-//! 2  c = Q'(V'g_r - a V'g);   F_r = sum c^2 / (eps (1 - eps)) / (nu phi): 1 if the record agrees with
-//!    the others' model
-//! 3  for the record with the largest F, residual columns d with transient and theta
-//!    projected out:
+//! 2  c = Q'(V'g_r - a V'g);   F_r = sum c^2 / (eps (1 - eps)) / (nu phi): 1 if the record agrees
+//!    with the others' model
+//! 3  a contradiction if the largest F exceeds 6, or 12 in gusts. Suspect: the record with the
+//!    largest F; and that with the second largest, if there is no third record or the largest is
+//!    less than 1.5 times the second
+//! 4  for each suspect, residual columns d with transient and theta projected out:
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
 //!      an input late -W G_j jw U_j,  a gain W e_o Y_o
 //!      h = d'e - d'J G^+ g,  S = d'd - d'J G^+ J'd
-//!    the fault with the largest h^2/S; its size is -h/S
+//!    the fault with the largest h^2/S, but all outputs late from 98 % of it on; its size is -h/S
 //! ```
 //!
 //! If leaving a record out changes the model much, the record need not be wrong: it may be the only
@@ -128,7 +132,7 @@ impl<'a> RecordContrasts<'a> {
     }
 
     /// Returns the caution about the record that contradicts the others, or about two records that
-    /// contradict each other, each with its most likely fault.
+    /// contradict each other, each with its most likely fault (steps 3 and 4).
     pub(crate) fn caution(
         &self,
         is_in_gusts: bool,
@@ -147,13 +151,13 @@ impl<'a> RecordContrasts<'a> {
             return None;
         }
         let is_alone = worst.len() > 2 && first.contrast >= ALONE * second.contrast;
-        let mut numbers = vec![first.record];
+        let mut suspects = vec![first.record];
         if !is_alone {
-            numbers.push(second.record);
+            suspects.push(second.record);
         }
-        numbers.sort_unstable();
-        let mut records = Vec::with_capacity(numbers.len());
-        for record in numbers {
+        suspects.sort_unstable();
+        let mut records = Vec::with_capacity(suspects.len());
+        for record in suspects {
             records.push(ContradictingRecord {
                 record,
                 name: names.record_name(record),
@@ -166,7 +170,8 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Finds the fault that explains most of a record's residual (step 3).
+    /// Finds the fault that explains most of a record's residual (step 4); `None` if its size is
+    /// not finite.
     pub(crate) fn fault(&self, record: usize, options: &Options) -> Option<RecordFault> {
         let faults = self.possible_faults(options);
         let sums = each(self.likelihood.executor, &faults, |fault| {
@@ -240,11 +245,11 @@ impl<'a> RecordContrasts<'a> {
             let column = lines.without_transient(model, &resolvents, &effect)?;
             with_residual += column.dotc(&part.residual).re;
             square += column.norm_squared();
-            let along = SegmentCost {
+            let extra = SegmentCost {
                 residual: column,
                 ..part.clone()
             };
-            with_parameters += self.systems.gradient_along(lines, model, &along);
+            with_parameters += self.systems.gradient_along(lines, model, &extra);
         }
         let known = self.root.tr_mul(&with_parameters);
         let optimum = self.root.tr_mul(&self.whole.gradient);
@@ -255,8 +260,8 @@ impl<'a> RecordContrasts<'a> {
     }
 }
 
-/// Computes `F` for a record with the normal system `own`; `root` is `V`, `gradient` is `V'g` and
-/// `dispersion` is `phi`.
+/// Computes `F` for a record with the normal system `own` (steps 1 and 2); `root` is `V`,
+/// `gradient` is `V'g` and `dispersion` is `phi`.
 fn contrast(
     own: &LocalSystem,
     root: &DMatrix<f64>,
@@ -264,9 +269,9 @@ fn contrast(
     dispersion: f64,
 ) -> Option<f64> {
     let share = root.tr_mul(&(&own.matrix * root));
-    let wanted = root.tr_mul(&own.gradient) - &share * gradient;
+    let excess = root.tr_mul(&own.gradient) - &share * gradient;
     let eigen = share.try_symmetric_eigen(f64::EPSILON, 10_000)?;
-    let along = eigen.eigenvectors.tr_mul(&wanted);
+    let along = eigen.eigenvectors.tr_mul(&excess);
     let mut compared = Vec::new();
     for (c, eps) in along.iter().zip(eigen.eigenvalues.iter()) {
         if LEAST_KNOWN < *eps && *eps < MOST_KNOWN {

@@ -1,4 +1,4 @@
-//! How well a model fits each record and each output.
+//! How well a model fits each record and each output, for the cautions and the report (M14.6).
 
 use nalgebra::{Complex, DMatrix};
 
@@ -81,7 +81,7 @@ impl RecordFits {
 }
 
 /// Divides held-out costs by their degrees of freedom; `moved` is the total cost with the model
-/// moved within its uncertainty.
+/// moved within its uncertainty, or `None`, if it is unknown: then the model is not moved.
 fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCost> {
     let raw = mean_cost(held_out)?;
     let freedom: usize = held_out.iter().map(|fit| fit.freedom).sum();

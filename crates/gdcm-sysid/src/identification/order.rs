@@ -7,11 +7,12 @@
 //! 1  top = order of the minimum BIC before any refinement
 //! 2  top model: noise from its residuals, descent, noise again, descent to the minimum (M14.20)
 //! 3  with the same weights: one state less (two for m + l > 6 and n > 8), with or without its
-//!    static part, whichever costs less; descent;  until BIC has risen twice
+//!    static part, whichever costs less; descent;  until BIC has exceeded the best twice in a row
 //!    an order ends early if BIC(J - 3 delta^2) cannot reach the best
 //! 4  if the top order is best: once more from the next available order
-//! 5  a held-out record decides between orders whose BIC differ by less than 1 %; an order without
-//!    an unstable pole above the lines used is preferred to one with such a pole within 3 %
+//! 5  of the orders within 3 % of the least BIC, the best without an unstable pole above the lines
+//!    used; then a held-out record decides between the orders within 1 % of that, with such a pole
+//!    or without it alike
 //! ```
 //!
 //! The weights remain those of the top order: a model that lacks a mode would take it for noise,

@@ -3,7 +3,8 @@
 //! ```text
 //! Wc = Re sum X X^H,         X = (j omega - A)^-1 B U
 //! Wo = Re sum (W C R)^H W C R,   R = (j omega - A)^-1
-//! 1  Wc = L L',  Wo = M M'
+//! U inputs at the lines, W whitening weights (`cost`)
+//! 1  Wc = L L',  Wo = M M', each with 1e-14 of its mean added to the diagonal
 //! 2  M' L = Q S V',  S descending, at least 1e-9 of its largest value
 //! 3  T = L V S^(-1/2),  T^-1 = S^(1/2) V' L^-1:   T^-1 Wc T^-T = T' Wo T = S
 //! ```
@@ -99,9 +100,10 @@ pub(crate) struct Coordinates {
     pub(crate) inverse: DMatrix<f64>,
 }
 
-/// Returns the coordinates in which both Gramians are equal and diagonal; `None` if an iteration
-/// does not converge.
+/// Returns the coordinates in which both Gramians are equal and diagonal (steps 1 to 3); `None` if
+/// a Gramian is not positive definite, or the iteration for the singular values does not converge.
 pub(crate) fn balancing_coordinates(gramians: &Gramians) -> Option<Coordinates> {
+    // L and M: what the inputs excite, and what the outputs show.
     let reached = with_floor(gramians.controllability.clone())
         .cholesky()?
         .unpack();
@@ -139,13 +141,15 @@ fn with_floor(mut gramian: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Removes the last `count` states from a balanced model and returns two models: without and with
-/// their static part. Empty if no state would remain.
+/// their static part.
 ///
 /// ```text
 /// A = [A11 A12; A21 A22]
 /// without: (A11, B1, C1, D)
 /// with:    (A11 - A12 A22^-1 A21, B1 - A12 A22^-1 B2, C1 - C2 A22^-1 A21, D - C2 A22^-1 B2)
 /// ```
+///
+/// Only the first if A22 is singular; none if no state would remain.
 pub(crate) fn without_last_states(model: &SchurModel, count: usize) -> Vec<SchurModel> {
     let order = model.order();
     if count >= order {

@@ -5,14 +5,18 @@
 //! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r - gaps) |^2
 //! gaps = sum_q c_q e_o b_q (missing output o) + sum_q c_q G_j b_q (missing input j)    (M14.21)
 //!
-//! 1  T = W [C (j omega - A)^-1, I, I/(j omega), e_o b_q, G_j b_q],   e0 = W (Y - G U)
+//! segment r, line k at omega; U, Y spectra; G the model's response; e_o unit vector of output o
+//! W whitens the noise (`noise_covariance`);   b_q spectrum of a hat in a gap (`gap_hat`)
+//!
+//! 1  T = W [C (j omega - A)^-1, I, I/(j omega), e_o b_q, G_j b_q]   (nuisance columns),
+//!    e0 = W (Y - G U)
 //! 2  c = argmin |e0 - T c|^2 for real c, from the Gram matrix of the scaled columns,
 //!    eigenvalues below 1e-12 times the largest dropped
 //! 3  e = e0 - T c,   J_r = |e|^2
 //! ```
 //!
 //! Nothing is simulated, so unstable models have a cost like any other. tau, c0 and c1 absorb the
-//! trim, the drift, the step at the record's end, and its initial and final states. `J` per
+//! trim, the drift, the step at the segment's end, and its initial and final states. `J` per
 //! degree of freedom is 1 for an adequate model, because W whitens the noise: its real and
 //! imaginary parts have unit variance.
 
@@ -115,7 +119,8 @@ impl SpectralLines {
         (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
     }
 
-    /// Computes the segment's contribution to the cost; `None` if it is not finite.
+    /// Computes the segment's contribution to the cost; `None` if it is not finite, or the
+    /// eigenvalue iteration of its nuisance columns does not converge.
     pub(crate) fn cost(
         &self,
         model: &SchurModel,
@@ -222,7 +227,7 @@ impl<'s> NuisanceColumns<'s> {
         self.matrix[(row + 1, column)] = value.im;
     }
 
-    /// Fills the columns for tau, c0 and c1.
+    /// Fills the columns for tau, c0 and c1 (step 1).
     fn fill_transient(&mut self) {
         let outputs = self.lines.outputs.nrows();
         for (k, &omega) in self.lines.omega.iter().enumerate() {
@@ -242,7 +247,7 @@ impl<'s> NuisanceColumns<'s> {
         }
     }
 
-    /// Fills a hat's column: `W e_o b_q` for an output, `W G_j b_q` for an input.
+    /// Fills a hat's column (step 1): `W e_o b_q` for an output, `W G_j b_q` for an input.
     fn fill_hat(&mut self, number: usize, model: &SchurModel) {
         let outputs = self.lines.outputs.nrows();
         let column = self.order + 2 * outputs + number;

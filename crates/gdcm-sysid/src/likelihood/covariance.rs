@@ -1,7 +1,8 @@
 //! Computes the covariance of a model's parameters and poles (M14.5, M14.22).
 //!
 //! ```text
-//! Cov theta = max(phi, 1) G^-1,   phi = J / (N - k),   G = sum_r J_r'J_r,  theta: local parameters
+//! Cov theta = max(phi, 1) G^-1,   phi = J / (N - k)
+//!    theta: local parameters (`local_parameters`),   G: their normal matrix (`local_system`)
 //! pole:      d lambda = w^H dA v,   w^H A = lambda w^H,  A v = lambda v,  w^H v = 1
 //! response:  dH = [C R, I] d[A B; C D] [R B; I],   R = (j omega - A)^-1
 //! ```
@@ -27,6 +28,7 @@ const ROUNDING: f64 = 1e-13;
 const UNKNOWN: f64 = 1e3;
 /// A pole is determined if its interval has at most this half-width, relative to its modulus.
 const DETERMINED: f64 = 0.5;
+
 /// The model parameters' covariance and information matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {
@@ -38,7 +40,8 @@ pub(crate) struct ParameterCovariance {
 }
 
 impl ParameterCovariance {
-    /// Computes the covariance for the dispersion `phi`; `None` if an iteration does not converge.
+    /// Computes the covariance for the dispersion `phi`; `None` if the eigenvalue iteration does
+    /// not converge.
     pub(crate) fn new(systems: &LocalSystems, dispersion: f64) -> Option<Self> {
         let LocalSystem { matrix, .. } = systems.whole();
         let dispersion = dispersion.max(1.0);
@@ -49,7 +52,9 @@ impl ParameterCovariance {
         })
     }
 
-    /// Computes a model's covariance from lines other than the fitted lines.
+    /// Computes a model's covariance from lines other than the fitted lines; `None` if the cost or
+    /// the normal equations are not finite, if an eigenvalue iteration does not converge, or if
+    /// there are no degrees of freedom.
     pub(crate) fn from_lines(likelihood: &Likelihood, model: &SchurModel) -> Option<Self> {
         let fit = Fit::start(likelihood, model.clone())?;
         let systems = LocalSystems::new(likelihood, &fit)?;
@@ -57,7 +62,8 @@ impl ParameterCovariance {
     }
 
     /// Computes the cost over other records with the model free to move within its uncertainty:
-    /// `r'r - r'J (G/phi + J'J)^-1 J'r` (M14.17).
+    /// `e'e - g' (G / max(phi, 1) + G_o)^-1 g` (M14.17), with the residual e and the normal
+    /// equations `G_o`, `g` of the other records.
     pub(crate) fn moved_cost(
         &self,
         records: &Likelihood,
@@ -104,6 +110,9 @@ impl ParameterCovariance {
 
     /// Returns the model's poles with their standard deviations; `lowest` is the lower band end
     /// \[rad/s\].
+    ///
+    /// A pole is determined if its modulus reaches the lower band end, and its interval is at most
+    /// half the modulus to each side.
     pub(crate) fn poles(&self, model: &SchurModel, lowest: f64) -> Vec<PoleEstimate> {
         let (outputs, inputs) = model.d().shape();
         let mut estimates = Vec::new();

@@ -1,13 +1,19 @@
 //! Levenberg-Marquardt descent over all entries of `A`, `B`, `C`, `D` (M14.19).
 //!
 //! ```text
+//! J cost, N degrees of freedom, k parameters (`cost`); G, g as in `normal_equations`
 //! lambda = 1e-3
-//! for each step, in balanced coordinates:
-//! 1  G, g;  stop if delta^2 = g' G^+ g < limit k phi,  phi = J/(N - k)
-//! 2  (G + lambda diag G) d = g;  while J does not fall: lambda = max(6 lambda, 1e-7), at most 10 times
-//! 3  rho = decrease / (2 g'd - d'G d):
-//!       lambda /= 10 for rho > 0.75, /= 3 for rho > 0.4, unchanged for rho > 0.15, *= 4 otherwise
+//! for each of at most 40 steps:
+//! 1  balanced coordinates (`balancing`), then G and g there
+//! 2  delta^2 = g' G^+ g;  stop if delta^2 < limit k phi,  phi = J/(N - k): converged;
+//!       or if J - 3 delta^2 > the cost above which the model is useless: hopeless
+//! 3  (G + lambda diag G) d = g;  while J does not fall: lambda = max(6 lambda, 1e-7);
+//!       stop if it does not fall after 10 such increases
+//! 4  rho = decrease / (2 g'd - d'G d):  lambda, at least 1e-8,
+//!       /= 10 for rho > 0.75, /= 3 for rho > 0.4, unchanged for rho > 0.15, *= 4 otherwise
 //! ```
+//!
+//! The descent also stops if N <= k, or without normal equations.
 //!
 //! delta is the Newton decrement: at delta^2 = 0.02 k phi the remaining distance is 14 % of the
 //! parameters' standard deviation. A limit on the relative decrease in `J` would stop in a valley.
@@ -31,9 +37,9 @@ pub(crate) const COMPARABLE: f64 = 0.1;
 /// Limit on `delta^2 / (k phi)` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
 /// The cost is expected to fall by no more than this many times `delta^2`.
-const HOPE: f64 = 3.0;
+const LARGEST_FALL: f64 = 3.0;
 /// Maximum number of steps in a descent.
-const LARGEST_STEPS: usize = 40;
+const MOST_STEPS: usize = 40;
 /// Damping in the first step.
 const FIRST_DAMPING: f64 = 1e-3;
 /// Factor on the damping after a failure.
@@ -49,7 +55,7 @@ const LEAST_SHARE_LEFT: f64 = 1e-6;
 /// Number of failures after which a step is given up.
 const FAILURES: usize = 10;
 /// Share of the total progress per step.
-const SHARE: f64 = 0.01;
+const STEP_PROGRESS: f64 = 0.01;
 
 /// When a descent ends.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +86,7 @@ pub(crate) struct Fit {
     pub(crate) cost: f64,
     /// `delta^2 / (k phi)` where it was last computed; infinite before.
     pub(crate) decrement: f64,
+    /// `lambda` for the next step.
     damping: f64,
     /// Gramians in the present coordinates where they were last computed.
     gramians: Option<Gramians>,
@@ -131,8 +138,11 @@ impl Fit {
         limits: Limits,
         progress: &Shares,
     ) -> Result<Self, Cancelled> {
-        for step in 1..=LARGEST_STEPS {
-            progress.advance(SHARE, &format!("order {}, step {step}", self.order()))?;
+        for step in 1..=MOST_STEPS {
+            progress.advance(
+                STEP_PROGRESS,
+                &format!("order {}, step {step}", self.order()),
+            )?;
             if !self.step(likelihood, limits) {
                 break;
             }
@@ -140,7 +150,7 @@ impl Fit {
         Ok(self)
     }
 
-    /// Takes a step; returns whether a further one may be worthwhile.
+    /// Takes a step (1 to 4); returns whether a further one may be worthwhile.
     fn step(&mut self, likelihood: &Likelihood, limits: Limits) -> bool {
         let Some(dispersion) = self.dispersion(likelihood) else {
             return false;
@@ -153,20 +163,20 @@ impl Fit {
         };
         self.gramians = Some(system.gramians.clone());
         let scaled = ScaledSystem::new(system);
-        let unit = self.model.parameters() as f64 * dispersion;
+        let k_phi = self.model.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
         // With damping, g'd is a lower bound on delta^2, which is computed only where it may end
         // the descent.
-        let bound = direction
+        let square_at_least = direction
             .as_ref()
             .map_or(0.0, |direction| scaled.gradient.dot(direction));
-        let may_end =
-            bound < limits.decrement * unit || self.cost - HOPE * bound > limits.hopeless_above;
+        let may_end = square_at_least < limits.decrement * k_phi
+            || self.cost - LARGEST_FALL * square_at_least > limits.hopeless_above;
         if may_end {
             let square = scaled.decrement().unwrap_or(f64::INFINITY);
-            self.decrement = square / unit;
+            self.decrement = square / k_phi;
             if self.decrement < limits.decrement
-                || self.cost - HOPE * square > limits.hopeless_above
+                || self.cost - LARGEST_FALL * square > limits.hopeless_above
             {
                 return false;
             }
@@ -185,7 +195,7 @@ impl Fit {
     }
 
     /// Transforms model and transients to balanced coordinates, with the Gramians from the previous
-    /// step.
+    /// step, or sampled anew in the first. Changes nothing if there are no such coordinates.
     fn balance(&mut self, likelihood: &Likelihood) {
         let gramians = self
             .gramians
@@ -206,7 +216,8 @@ impl Fit {
         }
     }
 
-    /// Tries a step, in scaled columns; returns whether it lowered the cost.
+    /// Tries a step, in scaled columns, and takes it if it lowers the cost (step 4); returns
+    /// whether it did.
     fn try_step(
         &mut self,
         likelihood: &Likelihood,
@@ -311,7 +322,8 @@ impl ScaledSystem {
         }
     }
 
-    /// Returns `delta^2`, the squared Newton decrement, `g' G^+ g`.
+    /// Returns `delta^2`, the squared Newton decrement, `g' G^+ g`, with the first damping from
+    /// 1e-8 on for which the matrix is positive definite; `None` if none of ten is large enough.
     fn decrement(&self) -> Option<f64> {
         let mut damping = LEAST_DAMPING;
         for _ in 0..FAILURES {

@@ -1,4 +1,17 @@
-//! Normal equations in a model's [local parameters](super::local_parameters), for each segment.
+//! Normal equations in a model's [local parameters](super::local_parameters), kept segment by
+//! segment, so that those of some records can be summed, or left out.
+//!
+//! ```text
+//! e   whitened residual of a segment's spectral lines (`cost`): their cost is e'e
+//! J   Jacobian of the whitened model output: a step d in the parameters changes e to e - J d
+//! G = J'J,   g = J'e
+//! ```
+//!
+//! The nuisance columns (`nuisance_elimination`), which describe a segment's transient, trim, drift
+//! and missing samples, are projected out of e and J.
+//!
+//! Used for the covariance (M14.5), for models without a record (M14.5), and for records compared
+//! with one another (M14.16) or held out (M14.17).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,10 +24,10 @@ use super::local_parameters::LocalParameters;
 use super::normal_equations::{EXACT, NormalEquations, gradient_along};
 use super::schur_model::SchurModel;
 
-/// `G` and `g`: a step `d` changes the cost by `-2 g'd + d'G d`.
+/// `G` and `g`: a step d in the parameters changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalSystem {
-    /// `G = J'J`, with the nuisance columns eliminated.
+    /// `G = J'J`.
     pub(crate) matrix: DMatrix<f64>,
     /// `g = J'e`.
     pub(crate) gradient: DVector<f64>,
@@ -42,8 +55,15 @@ impl LocalSystem {
         }
     }
 
-    /// Computes the Levenberg-Marquardt step, `(G + lambda diag G) d = g`; `None` if it is not
-    /// finite.
+    /// Computes the Levenberg-Marquardt step, `(G + lambda diag G) d = g`.
+    ///
+    /// ```text
+    /// 1  G in columns scaled to unit length
+    /// 2  its diagonal becomes 1 + lambda, or 1 for a column of zeros, whose step is then 0
+    /// 3  Cholesky solution, scaled back
+    /// ```
+    ///
+    /// `None` if the matrix is not positive definite, or the step not finite.
     pub(crate) fn damped_step(&self, lambda: f64) -> Option<DVector<f64>> {
         let mut scaled = self.matrix.clone();
         let scales = scale_columns(&mut scaled);
@@ -72,10 +92,11 @@ pub(crate) struct LocalSystems {
 }
 
 impl LocalSystems {
-    /// Selects parameters for a fit, and computes the systems; `None` if an iteration does not
-    /// converge.
+    /// Selects parameters for a fit, and computes the systems; `None` under the conditions of
+    /// [`NormalEquations::new`].
     pub(crate) fn new(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
-        let whole = NormalEquations::new(likelihood, &fit.model, &fit.parts, EXACT)?;
+        let bin_width = EXACT;
+        let whole = NormalEquations::new(likelihood, &fit.model, &fit.parts, bin_width)?;
         let parameters = LocalParameters::select(&fit.model, &whole.matrix);
         Self::in_parameters(parameters, likelihood, &fit.model, &fit.parts)
     }
@@ -89,9 +110,11 @@ impl LocalSystems {
     ) -> Option<Self> {
         let places = parameters.places();
         let segments = likelihood.segments.iter().zip(parts);
-        let systems = each(likelihood.executor, segments, |(segment, part)| {
+        let bin_width = EXACT;
+        let computed = each(likelihood.executor, segments, |(segment, part)| {
             let alone = Likelihood::of_segment(segment.clone());
-            let equations = NormalEquations::new(&alone, model, std::slice::from_ref(part), EXACT)?;
+            let own_part = std::slice::from_ref(part);
+            let equations = NormalEquations::new(&alone, model, own_part, bin_width)?;
             Some(LocalSystem {
                 matrix: equations
                     .matrix
@@ -100,14 +123,14 @@ impl LocalSystems {
                 gradient: equations.gradient.select_rows(&places),
             })
         });
-        let mut all = Vec::with_capacity(systems.len());
-        for system in systems {
-            all.push(system?);
+        let mut systems = Vec::with_capacity(computed.len());
+        for system in computed {
+            systems.push(system?);
         }
         let records = likelihood.segments.iter().map(|segment| segment.record);
         Some(Self {
             parameters,
-            systems: all,
+            systems,
             records: records.collect(),
         })
     }
@@ -120,18 +143,21 @@ impl LocalSystems {
     /// Sums a record's systems.
     pub(crate) fn of_record(&self, record: usize) -> LocalSystem {
         let segments = self.systems.iter().zip(&self.records);
-        let own = segments.filter(|(_, of)| **of == record);
+        let own = segments.filter(|(_, segment_record)| **segment_record == record);
         LocalSystem::sum(self.parameters.count(), own.map(|(system, _)| system))
     }
 
-    /// Computes `J'd` for a segment; `part` holds the column `d` as its residual, with the nuisance
-    /// columns removed.
+    /// Computes the inner products of a segment's `J` with a further column, such as the effect of
+    /// a fault in its record (M14.16).
+    ///
+    /// `extra` is the segment's cost with that column instead of its residual; the nuisance columns
+    /// are already projected out of it.
     pub(crate) fn gradient_along(
         &self,
         lines: &SpectralLines,
         model: &SchurModel,
-        part: &SegmentCost,
+        extra: &SegmentCost,
     ) -> DVector<f64> {
-        gradient_along(lines, model, part).select_rows(&self.parameters.places())
+        gradient_along(lines, model, extra).select_rows(&self.parameters.places())
     }
 }

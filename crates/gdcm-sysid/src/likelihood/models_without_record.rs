@@ -25,8 +25,9 @@ pub(crate) struct ModelWithoutRecord {
 /// normal systems.
 ///
 /// ```text
-/// (G - G_r + lambda diag) d = g - g_r
-/// lambda = 1e-4, times 8 until the cost over the other records falls, at most 8 times
+/// (G' + lambda diag G') d = g - g_r,   G' = G - G_r: without the record r
+/// lambda = 1e-4, times 8 until the cost over the other records falls, at most 8 times;
+/// if it does not fall, the full model is also the best without the record
 /// ```
 ///
 /// An undamped step diverges in weakly determined directions. Returns no models for a single
@@ -51,7 +52,6 @@ pub(crate) fn without_each_record(
             .map(|(_, part)| part.cost)
             .sum();
         let others = likelihood.without(record);
-        // If no step lowers the cost, the full model is also the best without the record.
         let model = stepped(&others, fit, systems, &system, cost);
         ModelWithoutRecord {
             record,

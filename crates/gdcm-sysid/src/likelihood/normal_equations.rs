@@ -1,11 +1,13 @@
 //! Normal equations for all entries of `[[A, B], [C, D]]`, in bins over frequency (M14.19).
 //!
 //! ```text
-//! The column of entry (v, s) of [[A, B], [C, D]] at a line is v s:
-//!    v in the columns of V = [W C R, W],   s in the entries of S = [X; U],   X = R (B U + tau)
+//! G = J'J,  g = J'e;   e: whitened residual, W: weights, U: inputs, tau: transient (`cost`)
+//! The column of J for entry (v, s) of [[A, B], [C, D]] is v s at each line:
+//!    v in the columns of V = [W C R, W],   s in the entries of S = [X; U],
+//!    X = R (B U + tau),   R = (j omega - A)^-1
 //! 1  bins over ln omega, each with V^H V at its middle
-//! 2  G = sum over bins of Re(V^H V (x) sum conj(S) S')
-//! 3  G less the part that the nuisance columns explain (nuisance_elimination)
+//! 2  G = sum over bins of Re(V^H V (x) sum conj(S) S'),   (x) the Kronecker product
+//! 3  G less the part that the nuisance columns explain (`nuisance_elimination`)
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
@@ -44,7 +46,8 @@ impl NormalEquations {
     /// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the segment
     /// costs there.
     ///
-    /// `None` if an iteration does not converge.
+    /// `None` if the nuisance columns of a segment are not finite, or their eigenvalue iteration
+    /// does not converge.
     pub(crate) fn new(
         likelihood: &Likelihood,
         model: &SchurModel,
@@ -54,21 +57,29 @@ impl NormalEquations {
         let resolvents = likelihood.resolvents(model);
         let binning = Binning::new(likelihood, bin_width);
         let products = binning.vector_products(likelihood, model);
-        let bins = binning.power.len();
-        let segments = likelihood.segments.iter().zip(parts).zip(&binning.places);
-        let sums = each(likelihood.executor, segments, |((lines, part), places)| {
-            let segment = SegmentAtModel {
-                lines,
-                model,
-                part,
-                resolvents: &resolvents,
-            };
-            segment.sums(places, bins)
-        });
+        let bin_count = binning.power.len();
+        let segments = likelihood
+            .segments
+            .iter()
+            .zip(parts)
+            .zip(&binning.line_bins);
+        let sums = each(
+            likelihood.executor,
+            segments,
+            |((lines, part), line_bins)| {
+                let segment = SegmentAtModel {
+                    lines,
+                    model,
+                    part,
+                    resolvents: &resolvents,
+                };
+                segment.sums(line_bins, bin_count)
+            },
+        );
         let outputs = model.d().nrows();
         let order = model.order();
         let size = order + model.d().ncols();
-        let mut squares = ScalarSquares::zeros(size, bins);
+        let mut squares = ScalarSquares::zeros(size, bin_count);
         let mut gradient = DMatrix::zeros(order + outputs, size);
         for segment in &sums {
             squares.re += &segment.squares.re;
@@ -98,24 +109,25 @@ impl NormalEquations {
     }
 }
 
-/// Computes a segment's `J'd` in all entries; `part` holds the column `d` as its residual.
+/// Computes the inner products of a segment's `J` with a further column, in all entries; `extra` is
+/// the segment's cost with that column instead of its residual.
 pub(super) fn gradient_along(
     lines: &SpectralLines,
     model: &SchurModel,
-    part: &SegmentCost,
+    extra: &SegmentCost,
 ) -> DVector<f64> {
     let table = FrequencyTable::new([lines.omega.as_slice()].into_iter());
     let resolvents = table.output_resolvents(model, &Sequential);
     let segment = SegmentAtModel {
         lines,
         model,
-        part,
+        part: extra,
         resolvents: &resolvents,
     };
     DVector::from_column_slice(segment.gradient(&segment.scalars()).as_slice())
 }
 
-/// The bin of every line.
+/// The bin of every line (step 1).
 struct Binning {
     /// Mean frequency of each bin \[rad/s\].
     omega: Vec<f64>,
@@ -124,10 +136,12 @@ struct Binning {
     /// Sum of the lines' squared weight scales in each bin.
     power: Vec<f64>,
     /// Bin index for each line in each segment.
-    places: Vec<Vec<usize>>,
+    line_bins: Vec<Vec<usize>>,
 }
 
 impl Binning {
+    /// Fills bins from the lowest frequency on; a bin begins at the first line that the one before
+    /// does not reach.
     fn new(likelihood: &Likelihood, width: f64) -> Self {
         let mut lines: Vec<(f64, usize, usize)> = Vec::new();
         for (segment, own) in likelihood.segments.iter().enumerate() {
@@ -140,7 +154,7 @@ impl Binning {
             omega: Vec::new(),
             representatives: Vec::new(),
             power: Vec::new(),
-            places: likelihood
+            line_bins: likelihood
                 .segments
                 .iter()
                 .map(|segment| vec![0; segment.omega.len()])
@@ -152,18 +166,18 @@ impl Binning {
                 first + lines[first..].partition_point(|line| line.0 < lines[first].0 + width);
             let members = &lines[first..end];
             let mean = members.iter().map(|line| line.0).sum::<f64>() / members.len() as f64;
-            let nearest = members
+            let representative = members
                 .partition_point(|line| line.0 < mean)
                 .min(members.len() - 1);
             let mut power = 0.0;
             for &(_, segment, k) in members {
-                binning.places[segment][k] = binning.omega.len();
+                binning.line_bins[segment][k] = binning.omega.len();
                 power += likelihood.segments[segment].scale.powi(2);
             }
             binning.power.push(power);
             binning
                 .representatives
-                .push((members[nearest].1, members[nearest].2));
+                .push((members[representative].1, members[representative].2));
             binning.omega.push(mean.exp());
             first = end;
         }
@@ -260,6 +274,7 @@ impl ScalarSquares {
     }
 }
 
+/// A segment's contributions to steps 2 to 4.
 struct SegmentSums {
     squares: ScalarSquares,
     nuisance: NuisanceSums,
@@ -274,7 +289,7 @@ struct Scalars {
 }
 
 impl SegmentAtModel<'_> {
-    /// Computes S at each line.
+    /// Computes S at each line, with the missing inputs completed.
     fn scalars(&self) -> Scalars {
         let lines = self.lines;
         let order = self.model.order();
@@ -294,29 +309,29 @@ impl SegmentAtModel<'_> {
         Scalars { re, im }
     }
 
-    /// Computes `g = Re sum (V^H e) S^H`, (n + outputs) x (n + inputs).
+    /// Computes `g = Re sum (V^H e) S^H` (step 4), (n + outputs) x (n + inputs).
     fn gradient(&self, scalars: &Scalars) -> DMatrix<f64> {
         let along = self.residuals_along_vectors();
         along.map(|v| v.re) * scalars.re.transpose() + along.map(|v| v.im) * scalars.im.transpose()
     }
 
-    /// Sums over the lines; `places` holds the bin of each line.
-    fn sums(&self, places: &[usize], bins: usize) -> SegmentSums {
+    /// Sums over the lines, bin by bin.
+    fn sums(&self, line_bins: &[usize], bin_count: usize) -> SegmentSums {
         let lines = self.lines;
         let scalars = self.scalars();
         let size = scalars.re.nrows();
-        let mut squares = ScalarSquares::zeros(size, bins);
-        let mut nuisance = NuisanceSums::new(size, bins, lines.hats.len());
+        let mut squares = ScalarSquares::zeros(size, bin_count);
+        let mut nuisance = NuisanceSums::new(size, bin_count, lines.hats.len());
         let power = lines.scale * lines.scale;
         let mut conjugate = vec![Complex::default(); size];
-        for (k, &place) in places.iter().enumerate() {
+        for (k, &bin) in line_bins.iter().enumerate() {
             let re = &scalars.re.as_slice()[k * size..(k + 1) * size];
             let im = &scalars.im.as_slice()[k * size..(k + 1) * size];
             for (entry, (re, im)) in conjugate.iter_mut().zip(re.iter().zip(im)) {
                 *entry = Complex::new(*re, -*im);
             }
-            squares.add(place, re, im, power);
-            nuisance.add(lines, k, place, &conjugate);
+            squares.add(bin, re, im, power);
+            nuisance.add(lines, k, bin, &conjugate);
         }
         SegmentSums {
             squares,
@@ -346,8 +361,11 @@ impl SegmentAtModel<'_> {
     }
 }
 
-/// Computes `sum over bins of Re(P (x) Q)` for Hermitian `P` and `Q`: entry ((v, s), (v', s')) is
-/// `Re(P[v, v'] Q[s, s'])`, with v running fastest.
+/// Computes `sum over bins of Re(P (x) Q)` for Hermitian `P = V^H V` and `Q = sum conj(S) S'` (step
+/// 2): entry ((v, s), (w, t)) is `Re(P[v, w] Q[s, t])`, with v running fastest.
+///
+/// Only the pairs v <= w and s <= t are computed: the entries (v, s), (w, t) are
+/// `Re P Re Q - Im P Im Q`; the entries (v, t), (w, s), with conj(Q), are `Re P Re Q + Im P Im Q`.
 fn kronecker_sum(
     products: &VectorProducts,
     squares: &ScalarSquares,
@@ -393,10 +411,12 @@ fn kronecker_sum(
     matrix
 }
 
-/// Number of columns that are updated at a time.
+/// Number of columns in a panel: the unit of parallel work in [`subtract_squares`].
 const PANEL: usize = 64;
 
-/// Subtracts `sum F F'` over the matrices F from a symmetric matrix.
+/// Subtracts `sum F F'` over the matrices F from a symmetric matrix (step 3).
+///
+/// Each panel is computed from its diagonal block down, and copied to the right of it.
 fn subtract_squares(matrix: &mut DMatrix<f64>, roots: &[DMatrix<f64>], executor: &dyn Executor) {
     let size = matrix.nrows();
     let panels = each(executor, (0..size).step_by(PANEL), |first| {

@@ -2,13 +2,14 @@
 //! M14.19).
 //!
 //! ```text
-//! A nuisance column is V times a real vector, times a scalar sigma of the line:
+//! J: Jacobian, T: nuisance columns; V, S as in `normal_equations`; tau, c0, c1, b_q as in `cost`
+//! A nuisance column is V times a real vector w, times a scalar sigma of the line:
 //!    tau_i, c0_o, c1_o          unit vectors,   sigma = 1, 1, 1/(j omega)
 //!    missing output o           unit vector,    sigma = b_q
 //!    missing input j            [B_j; D_j],     sigma = b_q
 //! 1  J'T[(v, s), (w, sigma)] = sum over bins of Re(V^H V[v, w] sum conj(S_s) sigma)
 //! 2  T'T[(v, sigma), (w, sigma')] = sum over bins of Re(V^H V[v, w] sum conj(sigma) sigma')
-//! 3  J'T F with F F' = (T'T)^+:  G is reduced by its product with its transpose
+//! 3  J'T F with F F' = (T'T)^+:  the caller subtracts (J'T F) (J'T F)' from G
 //! ```
 
 use nalgebra::{Complex, DMatrix};
@@ -116,12 +117,12 @@ impl NuisanceSums {
         }
     }
 
-    /// Adds a segment's line `k`, which is in the bin `place`; `conjugate` is conj(S).
+    /// Adds a segment's line `k`, which is in bin `bin`; `conjugate` is conj(S).
     pub(super) fn add(
         &mut self,
         lines: &SpectralLines,
         k: usize,
-        place: usize,
+        bin: usize,
         conjugate: &[Complex<f64>],
     ) {
         let power = lines.scale * lines.scale;
@@ -129,17 +130,17 @@ impl NuisanceSums {
         for (second, sigma) in scalars.iter().enumerate() {
             let weighted = sigma * power;
             for (entry, value) in conjugate.iter().enumerate() {
-                self.with_parameters[second].add(place, entry, value * weighted);
+                self.with_parameters[second].add(bin, entry, value * weighted);
             }
             for (first, other) in scalars.iter().enumerate() {
                 let column = second * scalars.len() + first;
-                self.squares.add(place, column, other.conj() * weighted);
+                self.squares.add(bin, column, other.conj() * weighted);
             }
         }
     }
 
-    /// Computes `J'T F`, a row for each entry of `[[A, B], [C, D]]`; `None` if an iteration does
-    /// not converge.
+    /// Computes `J'T F` (steps 1 to 3), a row for each entry of `[[A, B], [C, D]]`; `None` if `T'T`
+    /// is not finite, or its eigenvalue iteration does not converge.
     pub(super) fn explained(
         &self,
         products: &VectorProducts,
@@ -162,8 +163,9 @@ impl NuisanceSums {
         let size = self.with_parameters[ONE].table.ncols();
         let mut result = DMatrix::zeros(vectors * size, columns.len());
         for (scalar, sums) in self.with_parameters.iter().enumerate() {
-            let of_scalar = columns.iter().filter(|column| column.scalar == scalar);
-            let used = of_scalar.flat_map(|column| column.vector.iter().map(|(w, _)| *w));
+            // The range of columns in V that this scalar's nuisance columns use.
+            let with_scalar = columns.iter().filter(|column| column.scalar == scalar);
+            let used = with_scalar.flat_map(|column| column.vector.iter().map(|(w, _)| *w));
             let Some(first) = used.clone().min() else {
                 continue;
             };

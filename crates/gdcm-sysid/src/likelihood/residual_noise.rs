@@ -1,13 +1,15 @@
 //! Computes the noise covariance from a model's residuals (M14.20).
 //!
 //! ```text
+//! l outputs
 //! 1  e(omega): residual of each record, transient removed, in output units
 //!    h(omega): share of the line taken by the transient, at most 0.9
 //! 2  at 24 log-spaced frequencies, over the lines of all records:
 //!       C = sum a e e^H / sum a (1 - h - k/N)
 //!       a = (1 + cos(pi x / w)) / 2,  x = ln(omega/omega_0),  |x| < w
 //!       N real values in all lines, k parameters
-//!       w = 0.25, times 1.2 until nu = (sum b)^2 / sum b^2 >= 8 l,  b = a (1 - h - k/N)
+//!       w = 0.25, times 1.2 until nu = (sum b)^2 / sum b^2 >= 8 l,  b = a (1 - h - k/N),
+//!       or until w is twice the range of ln omega
 //! 3  C <- (nu C + l diag C) / (nu + l),  plus 1e-4 of its diagonal
 //! ```
 //!
@@ -29,7 +31,8 @@ use crate::subspace::tried_orders::parameters_of_order;
 
 /// Number of frequencies at which the covariance is computed.
 const POINTS: usize = 24;
-/// Upper limit on `h`, the share of a line that the transient takes.
+/// Upper limit on `h`, the share of a line that the transient takes, so that `1 - h` does not
+/// vanish.
 const LARGEST_SHARE: f64 = 0.9;
 /// First half-width of the Hann weight, in ln omega.
 const HALF_WIDTH: f64 = 0.25;
@@ -51,7 +54,8 @@ struct ResidualLine {
 
 /// Computes the noise covariance from a model's residuals; `parts` are its segment costs.
 ///
-/// `None` if there are no more values than parameters, or an iteration does not converge.
+/// `None` if there are no more values than parameters, if a weight has no inverse, or if the
+/// eigenvalue iteration of a segment's nuisance columns does not converge.
 pub(crate) fn residual_noise(
     likelihood: &Likelihood,
     model: &SchurModel,
@@ -101,7 +105,7 @@ fn residual_lines(
 ) -> Option<Vec<ResidualLine>> {
     let mut lines = Vec::with_capacity(shares.len());
     for (k, (&omega, weight)) in segment.omega.iter().zip(&segment.weights).enumerate() {
-        // Without the record's own noise level.
+        // Divided by the record's noise level, 1 / scale.
         let whitened = part.residual.column(k).scale(segment.scale);
         let residual = weight.solve_lower_triangular(&whitened)?;
         lines.push(ResidualLine {
@@ -119,21 +123,22 @@ fn covariance_around(
     log_omega: f64,
     outputs: usize,
 ) -> DMatrix<Complex<f64>> {
-    let wanted = FREEDOM_AN_OUTPUT * outputs as f64;
+    let least_freedom = FREEDOM_AN_OUTPUT * outputs as f64;
     let mut half_width = HALF_WIDTH;
     let mut sums = WeightedSums::new(lines, log_omega, half_width, outputs);
-    let whole = lines[lines.len() - 1].log_omega - lines[0].log_omega;
-    while sums.freedom() < wanted && half_width < 2.0 * whole {
+    let log_range = lines[lines.len() - 1].log_omega - lines[0].log_omega;
+    while sums.freedom() < least_freedom && half_width < 2.0 * log_range {
         half_width *= WIDENING;
         sums = WeightedSums::new(lines, log_omega, half_width, outputs);
     }
     let freedom = sums.freedom();
-    let prior = outputs as f64;
+    // The diagonal matrix counts as much as this many degrees of freedom: l in step 3.
+    let diagonal_freedom = outputs as f64;
     let mut covariance = sums.products.unscale(sums.left);
     for row in 0..outputs {
         for column in 0..outputs {
             if row != column {
-                covariance[(row, column)] *= freedom / (freedom + prior);
+                covariance[(row, column)] *= freedom / (freedom + diagonal_freedom);
             }
         }
     }

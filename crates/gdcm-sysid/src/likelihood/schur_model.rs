@@ -62,7 +62,7 @@ impl SchurModel {
         })
     }
 
-    /// Copies a model's matrices.
+    /// Copies a model's matrices; `None` under the conditions of [`SchurModel::new`].
     pub(crate) fn from_state_space(model: &StateSpace) -> Option<Self> {
         Self::new(
             model.a().clone(),
@@ -166,6 +166,9 @@ impl SchurModel {
 
     /// Returns `w^H` and `v` for the eigenvalue with this index, with `w^H A = lambda w^H`, `A v =
     /// lambda v` and `w^H v = 1`. The entries are not finite for a double eigenvalue.
+    ///
+    /// Eigenvectors of T by substitution, each 1 in this row: the right one has zeros below it, the
+    /// left one before it, so that their product is 1. Q converts them to eigenvectors of `A`.
     pub(crate) fn eigenvectors(&self, number: usize) -> Eigenvectors {
         let order = self.order();
         let pole = self.t[(number, number)];

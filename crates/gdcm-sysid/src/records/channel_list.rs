@@ -58,6 +58,8 @@ impl SaidChannel {
     }
 }
 
+/// Parses `NAME`, `NAME [UNIT]`, `NAME=COLUMN` or `NAME [UNIT]=COLUMN`, the column with or without
+/// quotation marks. Digits in the bracket are an index, which belongs to the name.
 impl FromStr for SaidChannel {
     type Err = ChannelListError;
 

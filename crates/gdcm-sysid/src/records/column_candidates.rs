@@ -1,13 +1,16 @@
 //! Searches the columns that may hold a channel, by name, documentation and unit.
 //!
 //! ```text
-//! 1  names: the exact name; else the name with a sign mark; else synonyms of the field
-//!    aliases replace the name: exactly as given; else the first that is found in any spelling
-//!    or by its number; else, without a number, in folded spelling, with a sign mark, synonyms
-//! 2  none: columns whose documentation names the channel
-//! 3  none: fields of topics with the exact name
+//! 1  names: the exact name; else the name beside a sign mark (-az); else a synonym
+//!    aliases replace the name: exactly as given; else the first column that an alias finds without
+//!    regard to case, by its number or by its index (RecordTable::find); else, unless an alias is a
+//!    number, in folded spelling, then beside a sign mark, then a synonym
+//!    only columns that the file does not assign to the other side
+//! 2  none: columns that the logging system's documentation assigns to the channel
+//! 3  none: fields of topics with the exact name (`xyz` in TOPIC.xyz), but without aliases not in
+//!    logs with documented columns
 //! 4  without aliases: no latitude and no longitude
-//! 5  several: the only column whose unit can be converted
+//! 5  several: the only column whose unit can be converted, if there is just one
 //! ```
 
 use gdcm_model::dataset::channel::ChannelSide;
@@ -145,6 +148,7 @@ impl ColumnSearch<'_> {
         found
     }
 
+    /// Returns the columns that the logging system's documentation assigns to the channel (step 2).
     fn by_documentation(&self, names: &[String]) -> Vec<usize> {
         self.columns(|column| match column.meaning {
             Some(meaning) => names.iter().any(|name| same_channel(meaning, name)),
@@ -164,6 +168,7 @@ impl ColumnSearch<'_> {
         !self.rule.aliases.is_empty() || !is_documented
     }
 
+    /// Returns the columns with the channel's name within their topic (step 3).
     fn by_field(&self, names: &[String]) -> Vec<usize> {
         self.columns(|column| names.iter().any(|name| column.field() == *name))
     }

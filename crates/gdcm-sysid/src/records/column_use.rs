@@ -47,9 +47,9 @@ impl ColumnUse {
         }
     }
 
-    /// Uses a column for a channel with this unit, converted from the unit in the file, or else
-    /// from the only unit in which its samples are plausible; the unit is open if there are
-    /// several.
+    /// Uses a column for a channel with this unit: converted from the unit in the file, if that is
+    /// possible; else from the only unit in which its samples are plausible; else, with several
+    /// such units and none in the file, with an open unit; else unchanged.
     pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
         let Some(samples) = table.columns.get(column) else {
             return Self::as_it_is(column);
@@ -77,11 +77,11 @@ impl ColumnUse {
         }
     }
 
-    /// Converts the column from the unit `said` to the channel's unit `unit`.
+    /// Converts the column from the unit `from`, given by the user, to the channel's unit `unit`.
     #[must_use]
-    pub fn in_unit(self, said: &str, unit: &str) -> Self {
+    pub fn in_unit(self, from: &str, unit: &str) -> Self {
         Self {
-            factor: self.factor * conversion_factor(said, unit).unwrap_or(1.0),
+            factor: self.factor * conversion_factor(from, unit).unwrap_or(1.0),
             unit: UnitBasis::Known,
             ..self
         }
@@ -127,13 +127,14 @@ impl ColumnUse {
             Some(column) => factor_from_file(column, rule),
             None => 1.0,
         };
-        let besides = if self.factor == from_file {
+        // Exactly 1 for equal factors.
+        let not_from_file = if self.factor == from_file {
             1.0
         } else {
             self.factor / from_file
         };
         ChannelRemedy {
-            factor: self.remedy.factor * besides,
+            factor: self.remedy.factor * not_from_file,
             ..self.remedy
         }
     }

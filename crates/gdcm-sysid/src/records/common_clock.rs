@@ -44,8 +44,8 @@ impl CommonClock {
     /// ```text
     /// ω2  the upper band end, whi the highest spectral line used, wc the cut-off
     /// whi = 4/3 ω2
-    /// fs  = min(slowest rate, 20 whi/2π), at least 4 whi/2π
-    /// wc  = min(5 whi, 0.8 π · slowest rate)
+    /// fs  = the requested rate, or else min(slowest rate, 20 whi/2π), at least 4 whi/2π
+    /// wc  = min(5 whi, 0.8 π · min(slowest rate, fs))
     /// from the latest first stamp to the earliest last stamp
     /// ```
     ///

@@ -1,4 +1,5 @@
-//! A record with its channels' columns, and the information in its name.
+//! A record with its channels' columns, and the information in its name: as proposed, as stored in
+//! a dataset, or as edited by the user.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -19,6 +19,13 @@ const LONGEST_DELAY_S: f64 = 10.0;
 impl RecordLayout {
     /// Returns all problems with the chosen columns; empty if [`RecordLayout::flight_record`] returns
     /// a record.
+    ///
+    /// ```text
+    /// 1  time: none chosen, not positive, not increasing, steps too long
+    /// 2  each channel: no column; or the first of factor, delay, samples, unit
+    /// 3  a column chosen twice
+    /// 4  without these: clocks that cannot be combined (M14.11)
+    /// ```
     pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         let mut problems = self.time_problems(table);
         for ChannelUse { side, rule, used } in self.uses(channels) {
@@ -59,13 +66,13 @@ impl RecordLayout {
     fn shared_columns(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         struct Taken<'r> {
             column: usize,
-            by: &'r str,
+            user: &'r str,
         }
         let mut taken: Vec<Taken> = Vec::new();
         if let Some(column) = self.time_column() {
             taken.push(Taken {
                 column,
-                by: "the time",
+                user: "the time",
             });
         }
         let mut problems = Vec::new();
@@ -73,19 +80,20 @@ impl RecordLayout {
             if let Some(earlier) = taken.iter().find(|earlier| earlier.column == used.column) {
                 problems.push(LayoutProblem::OneColumn {
                     first: rule.name.clone(),
-                    second: earlier.by.to_owned(),
+                    second: earlier.user.to_owned(),
                     column: table.quoted(used.column),
                 });
             }
             taken.push(Taken {
                 column: used.column,
-                by: &rule.name,
+                user: &rule.name,
             });
         }
         problems
     }
 
-    /// Returns unusual features, which may be correct.
+    /// Returns unusual features, which may be correct: missing stamps; for each channel an assumed
+    /// unit, missing samples, and a constant or else the same samples as an earlier channel.
     pub fn cautions(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutCaution> {
         let mut cautions = Vec::new();
         cautions.extend(self.missing_stamps(table));
@@ -96,6 +104,7 @@ impl RecordLayout {
                 continue;
             };
             cautions.extend(assumed_unit(table, channel));
+            // In a table that joins several clocks, most samples are missing.
             let are_holes_filled = is_resampled && has_holes(&column.values);
             if !are_holes_filled {
                 cautions.extend(missing_samples(table, channel, &column.values));

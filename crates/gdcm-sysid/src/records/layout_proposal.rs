@@ -42,15 +42,20 @@ impl RecordLayout {
     /// Proposes columns for the time and for each channel.
     ///
     /// ```text
-    /// 1  time     topic stamps; the user's sample time or column; the column named like
-    ///             a time; the file's sample time
+    /// 1  time     the topics' stamps, if columns have their own clocks (M14.11); else the user's
+    ///             sample time; the user's column; the column named like a time; the file's sample
+    ///             time; else open, with a problem
     /// 2  channel  by name, or by aliases if it has some (column_candidates); if no input has a
-    ///             candidate and the file marks equally many inputs: the marked columns in order
-    ///             (the same for outputs)
-    /// 3  factor   the user's; from the file's unit; from the rule's unit for files without units;
-    ///             from the only unit in which the samples are plausible; else open
+    ///             candidate, but the file marks equally many columns as inputs (such as the
+    ///             columns of u): these in order (the same for outputs). Neither a column name nor
+    ///             an alias: none, with the problem Unnamed
+    /// 3  factor   the user's; 1 if the channel has no unit; from the user's unit or else the
+    ///             file's; from the rule's unit for files without units; from the only unit in
+    ///             which the samples are plausible; open if there are several, 1 if there is none
     /// 4  sign     by the mark in the alias or in the column name: -R, az (down); a channel NZ from
     ///             a column az needs the user's decision
+    /// 5  checks   problems and cautions of the layout (layout_checks); a missing column or time is
+    ///             not reported again
     /// ```
     pub fn proposed(
         table: &RecordTable,
@@ -69,7 +74,6 @@ impl RecordLayout {
             mut problems,
             ..
         } = proposer;
-        // Missing columns are not reported again if the proposal has already reported problems.
         let is_reported = !problems.is_empty();
         for problem in layout.problems(table, channels) {
             let is_missing = matches!(
@@ -112,9 +116,9 @@ enum UnitSource {
 impl Proposer<'_> {
     /// Proposes the time, then inputs and outputs. Without column names and aliases, columns cannot
     /// be assigned.
-    fn layout(&mut self, wish: &TimeWish) -> RecordLayout {
+    fn layout(&mut self, time: &TimeWish) -> RecordLayout {
         let mut layout = RecordLayout {
-            time: self.time(wish),
+            time: self.time(time),
             inputs: vec![None; self.channels.inputs.len()],
             outputs: vec![None; self.channels.outputs.len()],
         };
@@ -135,17 +139,17 @@ impl Proposer<'_> {
     }
 
     /// Proposes the time (step 1).
-    fn time(&mut self, wish: &TimeWish) -> Option<TimeBase> {
+    fn time(&mut self, settings: &TimeWish) -> Option<TimeBase> {
         let table = self.table;
         if table.has_topics() {
             self.notes.push(LayoutNote::TopicStamps);
             return Some(TimeBase::Topics);
         }
-        if let Some(step_s) = wish.sample_time_s {
+        if let Some(step_s) = settings.sample_time_s {
             self.notes.push(LayoutNote::RequestedStep { step_s });
             return Some(TimeBase::SampleTime(step_s));
         }
-        let column = match &wish.column {
+        let column = match &settings.column {
             Some(name) => {
                 let column = table.find(name);
                 if column.is_none() {
@@ -240,6 +244,7 @@ impl Proposer<'_> {
     fn column_use(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let used = self.converted(rule, column)?;
         let name = self.table.columns[column].name.as_str();
+        // Users give a channel at most one alias, the column's name: it is the one that matched.
         let marked_alias = rule.aliases.iter().find(|alias| has_sign_mark(alias));
         let Some(sign) = self.sign(rule, name, marked_alias.map(String::as_str)) else {
             self.problems.push(LayoutProblem::Sign {
@@ -263,9 +268,12 @@ impl Proposer<'_> {
         })
     }
 
-    /// Returns a column's sign for a channel (step 4); `None` if its name leaves the sign open. A
-    /// user-defined factor includes the sign, and so does an alias without a sign mark for a column
-    /// without one.
+    /// Returns the sign by which a column's factor is multiplied (step 4):
+    ///
+    /// 1. an alias with a sign mark: by this mark, whether or not the user gives a factor
+    /// 2. a user-defined factor: 1, because it includes the sign
+    /// 3. an alias without a sign mark, for a column without one: 1, by the user's decision
+    /// 4. else by the column's name; `None` if it leaves the sign open
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
         if let Some(alias) = marked_alias {
             return sign_between(alias, &rule.name);
@@ -280,7 +288,8 @@ impl Proposer<'_> {
         sign_between(column, &rule.name)
     }
 
-    /// Returns the column with the factor to the channel's unit (step 3), and adds a note.
+    /// Returns the column with the factor to the channel's unit (step 3), and adds a note; `None`,
+    /// with a problem, if the unit cannot be converted.
     fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let table = self.table;
         let unit = match self.channels.said.get(&rule.name) {
@@ -339,15 +348,18 @@ impl Proposer<'_> {
         Some(ColumnUse::times(column, factor))
     }
 
-    /// Returns a column for which the file gives no unit; adds a note unless its unit stays open.
+    /// Returns a column for which neither file nor rule gives a unit: with one plausible unit, in
+    /// this unit; with several, with an open unit and without a note; with none, in the channel's
+    /// unit.
     fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
         let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);
         if used.unit == UnitBasis::Open {
             return used;
         }
-        let possible = possible_units(&table.columns[column], &rule.unit);
-        let conversion = match possible.as_slice() {
+        // At most one, because the unit is not open.
+        let plausible = possible_units(&table.columns[column], &rule.unit);
+        let conversion = match plausible.as_slice() {
             [only] => ColumnConversion::OnlyPlausibleUnit {
                 unit: only.to_string(),
                 factor: used.factor,

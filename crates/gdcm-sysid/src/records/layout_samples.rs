@@ -14,8 +14,8 @@ use super::resampling::Resampling;
 use super::time_base::TimeBase;
 
 impl RecordLayout {
-    /// Returns the flight record from the chosen columns: each sample times its factor, otherwise
-    /// unchanged.
+    /// Returns the flight record from the chosen columns: resampled, if they have several clocks or
+    /// a rate is requested (M14.11); else each sample times its factor, otherwise unchanged.
     ///
     /// # Errors
     /// All problems with the columns.
@@ -33,12 +33,14 @@ impl RecordLayout {
         }
         match Resampling::new(self, table, channels) {
             Some(Ok(resampling)) => Ok(resampling.flight_record(table.name.clone())),
-            _ => Ok(self.as_logged(table, time)),
+            // An error of the resampling is among the problems.
+            None | Some(Err(_)) => Ok(self.as_logged(table, time)),
         }
     }
 
     /// Returns the samples on their common clock, restricted to the selected part.
     fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
+        // Topics that are not resampled have the same stamps.
         let time_s = if time == TimeBase::Topics {
             self.stamps_of_first_topic(table).unwrap_or_default()
         } else {
@@ -46,9 +48,12 @@ impl RecordLayout {
         };
         let mut rows = Vec::new();
         for (row, time) in time_s.iter().enumerate() {
-            match table.part_s {
-                Some([from, to]) if !(from..=to).contains(time) => {}
-                _ => rows.push(row),
+            let is_selected = match table.part_s {
+                Some([from, to]) => (from..=to).contains(time),
+                None => true,
+            };
+            if is_selected {
+                rows.push(row);
             }
         }
         let samples = RowSamples {

@@ -26,8 +26,10 @@ impl RecordLayout {
     }
 
     /// Applies the changes between two layouts for `from` to this layout for `table`, channel by
-    /// channel: transfers the user's edits to another record with the same column names. Remedies,
-    /// which belong to one record, are not changed.
+    /// channel: transfers the user's edits to another record with the same column names.
+    ///
+    /// A channel whose column was removed, or is missing in this record, keeps its own. So do the
+    /// remedies, which belong to one record.
     #[must_use]
     pub fn following(
         &self,

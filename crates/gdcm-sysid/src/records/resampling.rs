@@ -55,8 +55,15 @@ impl RecordLayout {
 impl Resampling {
     /// Chooses a common clock for the chosen columns.
     ///
-    /// Returns `None` if no resampling is needed, or if the time or a channel's column is not yet
-    /// chosen.
+    /// ```text
+    /// 1  several clocks: topics with different or uneven stamps, columns with and without a topic,
+    ///    or samples missing repeatedly; or a requested rate
+    /// 2  each channel by itself: its stamps less its delay, its values, whether it is held
+    /// 3  the common clock, restricted to the part of the record that is used
+    /// ```
+    ///
+    /// Returns `None` if step 1 finds no reason to resample, or if the time or a channel's column
+    /// is not yet chosen.
     ///
     /// # Errors
     /// The reason why the columns cannot be resampled.
@@ -66,10 +73,10 @@ impl Resampling {
         channels: &RecordChannels,
     ) -> Option<Result<Self, ResamplingError>> {
         let chosen = channel_columns(layout, table, channels)?;
-        let wish = &channels.resampling;
+        let settings = &channels.resampling;
         let has_several_clocks =
             has_separate_clocks(&chosen) || chosen.iter().any(|c| has_holes(&c.column.values));
-        if chosen.is_empty() || !(has_several_clocks || wish.rate_hz.is_some()) {
+        if chosen.is_empty() || !(has_several_clocks || settings.rate_hz.is_some()) {
             return None;
         }
         let table_time_s = layout.time?.times_s(table);
@@ -79,7 +86,7 @@ impl Resampling {
             let name = &chosen.channel.rule.name;
             let stamps = chosen.stamps(&table_time_s);
             let values = chosen.values();
-            let is_held = chosen.is_held(&values, wish);
+            let is_held = chosen.is_held(&values, settings);
             if is_held {
                 held.push(name.clone());
             }
@@ -88,7 +95,7 @@ impl Resampling {
                 Err(error) => return Some(Err(error)),
             }
         }
-        let clock = match CommonClock::choose(&stamped, wish.band_end, wish.rate_hz) {
+        let clock = match CommonClock::choose(&stamped, settings.band_end, settings.rate_hz) {
             Ok(clock) => clock,
             Err(error) => return Some(Err(error)),
         };
@@ -169,9 +176,9 @@ impl ChannelColumn<'_> {
 
     /// Returns whether the channel is an input that is held between its samples, by request or by
     /// its repeated values.
-    fn is_held(&self, values: &[f64], wish: &ResamplingWish) -> bool {
+    fn is_held(&self, values: &[f64], settings: &ResamplingWish) -> bool {
         self.channel.side == ChannelSide::Input
-            && (wish.held.contains(&self.channel.rule.name) || is_held(values))
+            && (settings.held.contains(&self.channel.rule.name) || is_held(values))
     }
 }
 

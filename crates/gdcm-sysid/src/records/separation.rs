@@ -1,4 +1,5 @@
-//! Splits a table that holds several records.
+//! Splits a table that holds several records: by a column that numbers them, or where its stamps
+//! restart.
 
 use std::ops::Range;
 

@@ -15,8 +15,14 @@ impl RecordTable {
     /// Splits a table with several stamp columns, each followed by its samples, into topics;
     /// returns any other table unchanged.
     ///
-    /// The stamps must increase, and the clocks must overlap: a second clock with another origin is
-    /// an ordinary column.
+    /// ```text
+    /// 1  stamp columns: named like a time, with at least 20 increasing stamps, missing only at the
+    ///    end
+    /// 2  side by side: several, the first column among them, a sample column after each; clocks
+    ///    that differ, and overlap with the first by over half the shorter one. A second clock with
+    ///    another origin is an ordinary column
+    /// 3  the columns after each stamp column become a topic; the stamp columns are removed
+    /// ```
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {
         let stamp_columns = self.stamp_columns();

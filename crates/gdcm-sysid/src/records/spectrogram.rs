@@ -33,8 +33,9 @@ pub struct Spectrogram {
 
 /// Window length as a fraction of the record length.
 const WINDOW_SHARE: f64 = 0.15;
-/// Shortest and longest window \[s\].
+/// Shortest window \[s\].
 const SHORTEST_WINDOW_S: f64 = 4.0;
+/// Longest window \[s\].
 const LONGEST_WINDOW_S: f64 = 20.0;
 /// Minimum number of samples in a window.
 const FEWEST_SAMPLES: usize = 8;

@@ -38,7 +38,8 @@ pub struct StampedChannel {
 }
 
 impl StampedChannel {
-    /// Creates a channel from the samples that have increasing stamps and finite values.
+    /// Creates a channel from the samples that have increasing stamps and finite values, in runs
+    /// between gaps of more than 4.5 median steps.
     ///
     /// A held command acts until the next sample: its stamps are moved later by half this time
     /// (M14.1).

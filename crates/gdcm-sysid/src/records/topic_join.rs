@@ -48,7 +48,14 @@ pub(super) fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTab
     joined
 }
 
-/// Combines a record's topics side by side; tables without a time are omitted and listed in a note.
+/// Combines a record's topics side by side.
+///
+/// ```text
+/// 1  topic names, from variables or files (topic_names), less their common beginning
+/// 2  seconds per stamp unit, by the stamp column's name: from the fastest topic
+/// 3  each table's columns, with the topic's name and stamps; a table without a time is omitted
+/// 4  notes on the topics that are joined and omitted
+/// ```
 pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
     let source = common_source(tables);
     let mut joined = RecordTable {
@@ -127,8 +134,8 @@ fn common_name(tables: &[RecordTable]) -> &str {
     if name.is_empty() { "topics" } else { name }
 }
 
-/// Returns the seconds per stamp unit, by column name. A log's topics share the unit, which only
-/// the fast topics' short steps reveal.
+/// Returns the seconds per stamp unit, by column name (step 2). A log's topics share the unit,
+/// which only the fast topics' short steps reveal.
 fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
     struct Fastest {
         step: f64,
@@ -159,7 +166,7 @@ fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
         .collect()
 }
 
-/// Returns a topic's columns with its stamps; `None` without sample times.
+/// Returns a topic's columns with its stamps (step 3); `None` without sample times.
 fn topic_columns(
     table: &RecordTable,
     name: &str,

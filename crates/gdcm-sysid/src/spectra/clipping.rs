@@ -2,11 +2,12 @@
 //! (M14.18).
 //!
 //! ```text
-//! flat: consecutive |dx| <= 1e-3 mean |dx|
-//! run: a stretch of flat samples, or a single sample
-//! at its limit: share of the samples in runs of at least max(5, 3 q) samples whose mean lies in
-//!     the outer 5 % of the range, with the 90 % quantile q of the flat runs elsewhere; a caution
-//!     above 0.5 %, or above 10 % where flat runs elsewhere hold over 20 % of all samples
+//! run           consecutive samples with steps |dx| <= 1e-3 mean |dx|; or a single sample
+//! flat          a run of two samples or more
+//! at an end     a run whose mean lies in the outer 5 % of the range
+//! 1  usual      90 % quantile of the lengths of flat runs elsewhere
+//! 2  share      of the samples in runs at an end, of at least max(5, 3 usual) samples
+//! 3  excessive  above 0.5 %; above 10 % only, if flat runs elsewhere hold over 20 % of all samples
 //! ```
 
 use gdcm_model::statistics::quantile;
@@ -34,12 +35,14 @@ const HELD_SHARE: f64 = 0.2;
 /// How often a channel is at its limit, and how often it may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clipping {
+    /// Share of the samples that are at a limit.
     pub(crate) share: f64,
+    /// Largest share that is not excessive.
     pub(crate) most: f64,
 }
 
 impl Clipping {
-    /// Measures the share of samples at a limit.
+    /// Measures the share of samples at a limit (steps 1 to 3).
     pub(crate) fn measure(samples: &[f64]) -> Self {
         let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;

@@ -1,4 +1,5 @@
 //! Reduces a channel to the samples at which it was updated: stairs keep their first sample only.
+//! Used by the searches for spikes and rate limits, which compare neighbouring samples.
 
 use gdcm_model::statistics::median;
 

@@ -22,9 +22,9 @@ pub(crate) fn record_gaps(clock: &Clock, channels: &[ValidSamples]) -> Vec<Gap> 
     gaps
 }
 
-/// A gap in a channel. Gaps are sorted by these fields, in this order.
+/// A gap that channels share. Gaps are sorted by these fields, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct ChannelGap {
+struct SharedGap {
     stamps: StampRange,
     is_frozen: bool,
     treatment: Treatment,
@@ -32,10 +32,10 @@ struct ChannelGap {
 
 /// Returns the gaps in the channels; channels with the same gap share it.
 fn channel_gaps(clock: &Clock, channels: &[ValidSamples]) -> Vec<Gap> {
-    let mut signals_by_gap: BTreeMap<ChannelGap, Vec<Signal>> = BTreeMap::new();
+    let mut signals_by_gap: BTreeMap<SharedGap, Vec<Signal>> = BTreeMap::new();
     for channel in channels {
         for run in &channel.invalid {
-            let gap = ChannelGap {
+            let gap = SharedGap {
                 stamps: run.stamps,
                 is_frozen: run.is_frozen,
                 treatment: treatment(channel, clock, run.stamps),
@@ -85,7 +85,7 @@ impl Interval {
     }
 }
 
-/// Returns the gaps between the stamps.
+/// Returns the gaps between the stamps: rows without a stamp, or a step above 1.5 sample times.
 fn stamp_gaps(clock: &Clock) -> Vec<Gap> {
     let mut gaps = Vec::new();
     for k in 1..clock.times.len() {

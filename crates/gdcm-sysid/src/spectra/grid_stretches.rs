@@ -2,9 +2,12 @@
 //! samples can be estimated (M14.1, M14.21).
 //!
 //! ```text
-//! hole: consecutive grid points at which a channel misses its value
-//! 1  a part of the record: from a point where all channels have a value to another such point
-//! 2  hats of all gaps in the part < 1/10 of the 2 l lines real values:   the part stays whole
+//! row   all channels' values at a grid point;   hole: consecutive rows in which a value is missing
+//! run   consecutive rows between holes
+//! hat   an unknown for missing samples (`gap_hat`);   l outputs
+//! 1  a part: from the first run to the last
+//! 2  no hole in the part, or the hats of all its gaps < 1/10 of the 2 l lines real values in its
+//!    outputs' lines:   it stays whole
 //!    otherwise it is cut at the hole with the most hats, and both parts are examined
 //! ```
 
@@ -40,19 +43,20 @@ pub(crate) struct GridRows {
 
 /// Reads a record on the grid `k dt`, relative to its first stamp. `inputs` channels come first.
 ///
-/// Rows end at a gap without stamps that is longer than all stretches with stamps together.
+/// Rows end, and further ones begin, at a gap without stamps that is longer than all stretches with
+/// stamps together, so that missing rows cannot fill the memory.
 pub(crate) fn grid_rows(clock: &Clock, channels: &[ValidSamples], inputs: usize) -> Vec<GridRows> {
     let grid = clock.grid();
-    let stamped: usize = grid.iter().map(|stretch| stretch.points).sum();
+    let stamped_points: usize = grid.iter().map(|stretch| stretch.points).sum();
     let mut readers: Vec<_> = channels.iter().map(ValidSamples::reader).collect();
     let mut row = vec![None; channels.len()];
     let mut found: Vec<GridRows> = Vec::new();
     for stretch in grid {
-        let missing = match found.last() {
+        let missing_points = match found.last() {
             Some(rows) => stretch.first - rows.first - rows.count() as f64,
             None => f64::INFINITY,
         };
-        if missing > stamped as f64 {
+        if missing_points > stamped_points as f64 {
             found.push(GridRows {
                 first: stretch.first,
                 inputs,
@@ -63,8 +67,9 @@ pub(crate) fn grid_rows(clock: &Clock, channels: &[ValidSamples], inputs: usize)
         let Some(rows) = found.last_mut() else {
             continue;
         };
-        let absent = (stretch.first - rows.first) as usize * channels.len();
-        rows.values.resize(absent, None);
+        // Rows without samples up to the stretch.
+        let values_before = (stretch.first - rows.first) as usize * channels.len();
+        rows.values.resize(values_before, None);
         for k in (0..stretch.points).map(|point| stretch.first + point as f64) {
             read_row(&mut readers, k * clock.sample_time_s, &mut row);
             rows.values.extend_from_slice(&row);
@@ -159,7 +164,7 @@ impl GridRows {
         }
     }
 
-    /// Divides the rows into parts; without `lines`, at every hole.
+    /// Divides the rows into parts (steps 1 and 2); without `lines`, at every hole.
     pub(crate) fn parts(&self, lines: Option<LineRange>, sample_time_s: f64) -> Vec<RowRange> {
         let runs = self.runs(0..self.count());
         let Some(lines) = lines else {
@@ -183,10 +188,10 @@ impl GridRows {
         }
         while let Some(range) = open.pop() {
             let rows = runs[range.start].start..runs[range.end - 1].end;
-            let inner = range.start..range.end - 1;
-            let hats: usize = hats_after[inner.clone()].iter().sum();
+            let holes = range.start..range.end - 1;
+            let hats: usize = hats_after[holes.clone()].iter().sum();
             let values = 2 * outputs * line_count(lines, sample_time_s * rows.len() as f64);
-            let worst = inner.max_by_key(|&run| hats_after[run]);
+            let worst = holes.max_by_key(|&run| hats_after[run]);
             match worst {
                 Some(worst) if VALUES_A_HAT * hats >= values => {
                     open.push(worst + 1..range.end);

@@ -108,6 +108,7 @@ pub(crate) struct LocalFit {
 }
 
 impl LocalFit {
+    /// Fits the polynomials (steps 2 and 3).
     fn new(spectra: &[Spectrum], window: Window) -> Self {
         let inputs = spectra[0].inputs.nrows();
         let outputs = spectra[0].outputs.nrows();
@@ -123,6 +124,7 @@ impl LocalFit {
         }
     }
 
+    /// Returns the number of columns in `A`.
     fn unknowns(&self) -> usize {
         self.window.terms * self.inputs
     }
@@ -132,7 +134,7 @@ impl LocalFit {
         &self.power / self.window.count as f64
     }
 
-    /// Returns `Cov V` at a line, outputs x outputs.
+    /// Returns `Cov V` at a line (step 4), outputs x outputs.
     pub(crate) fn covariance(&self) -> DMatrix<Complex<f64>> {
         let residual = self.r.view(
             (self.unknowns(), self.unknowns()),
@@ -148,7 +150,8 @@ impl LocalFit {
             .unwrap_or_else(|| right.map(|_| Complex::default()))
     }
 
-    /// Returns `G0`, outputs x inputs, from its transpose in the first rows of `R11^-1 R12`.
+    /// Returns `G0` (step 4), outputs x inputs, from its transpose in the first rows of
+    /// `R11^-1 R12`.
     pub(crate) fn response(&self) -> DMatrix<Complex<f64>> {
         let unknowns = self.unknowns();
         let theta = self.solve(
@@ -160,7 +163,7 @@ impl LocalFit {
         theta.rows(0, self.inputs).transpose()
     }
 
-    /// Returns the block of `(A'A)^-1` that belongs to `G0`, inputs x inputs.
+    /// Returns the block of `(A'A)^-1` that belongs to `G0` (step 4), inputs x inputs.
     pub(crate) fn spread(&self) -> DMatrix<Complex<f64>> {
         let unknowns = self.unknowns();
         let inverse = self.solve(&DMatrix::identity(unknowns, unknowns));
@@ -172,7 +175,7 @@ impl LocalFit {
         squares_below(&self.r, self.unknowns(), self.outputs, from)
     }
 
-    /// Returns each output's multiple coherence.
+    /// Returns each output's multiple coherence (step 5).
     pub(crate) fn coherence(&self) -> Vec<f64> {
         let residual = self.squares(self.unknowns());
         let total = self.squares(0);
@@ -196,7 +199,7 @@ impl LocalFit {
         squares_below(&smaller, remaining, self.outputs, remaining)
     }
 
-    /// Returns the partial coherence, outputs x inputs.
+    /// Returns the partial coherence (step 5), outputs x inputs.
     fn partial_coherence(&self) -> DMatrix<f64> {
         let residual = self.squares(self.unknowns());
         let mut coherence = DMatrix::zeros(self.outputs, self.inputs);

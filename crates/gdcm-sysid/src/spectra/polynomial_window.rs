@@ -5,8 +5,9 @@
 //!     terms inputs + terms records + outputs + spare lines
 //! ```
 //!
-//! Records with no more lines than terms in the window are omitted. There are three terms and six
-//! spare lines or, if all lines together are too few, two terms and four spare lines.
+//! `share` is 0.2, or 0.15 with a reference. Records with no more lines than terms in the window
+//! are omitted. There are three terms and six spare lines or, if all lines together are too few,
+//! two terms and four spare lines; if they are too few for these also, an error.
 
 use std::ops::Range;
 

@@ -46,6 +46,9 @@ pub struct Prepared {
 /// 3  value of a channel at t: the straight line at t + shift between two samples that are at most
 ///    (bridge + 1.5) dt apart, for fresh samples (bridge + 1.5) times the sensor's sample time
 /// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
+/// then, over all records
+///    no segment, or a channel that is constant in all of them: an error
+///    cautions about channels (record_cautions)
 /// ```
 ///
 /// No mean or trend is removed, and nothing is filtered. No gap is filled: `filled` holds the same
@@ -71,6 +74,9 @@ pub fn prepare(
 ///    (grid_stretches)
 /// 6  straight lines in the channels that miss samples, and in those alone
 /// ```
+///
+/// # Errors
+/// As [`prepare`].
 pub(crate) fn prepare_filled(
     records: &[FlightRecord],
     preparation: &Preparation,
@@ -265,8 +271,8 @@ struct RecordParts<'a> {
 }
 
 impl RecordParts<'_> {
-    /// Adds consecutive grid points. A part is used if it has a run that is long enough for a
-    /// segment.
+    /// Adds consecutive grid points (steps 4 to 6). A part is used if it has a run that is long
+    /// enough for a segment; otherwise its runs are dropped.
     fn add(&mut self, rows: &GridRows) {
         for part in rows.parts(self.lines, self.clock.sample_time_s) {
             let runs = rows.runs(part.clone());
@@ -310,7 +316,7 @@ impl RecordParts<'_> {
         }
     }
 
-    /// Returns whether a gap lies in a filled segment.
+    /// Returns whether a gap's middle lies in a filled segment.
     fn is_filled(&self, gap: &Gap) -> bool {
         let middle = 0.5 * (gap.start_s + gap.end_s);
         self.filled.iter().any(|part| {

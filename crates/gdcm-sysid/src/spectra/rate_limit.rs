@@ -1,13 +1,15 @@
 //! Finds rate limits: a channel often moves at one constant rate and never faster (M14.24).
 //!
 //! ```text
-//! s_k      slopes between consecutive samples; moving: |s| > 2 % of R
-//! R        98 % quantile of the moving |s|
-//! at R     ||s| - R| <= tau R, in runs of at least 3 slopes of one sign;
-//!          tau = 0.5 %, or the step of the log divided by R dt if that is more; then twice and four
-//!          times as much, at most 10 %
-//! limited  at least 3 runs; at least 5 % and less than 90 % of the moving slopes at R;
-//!          at most 1 % above (1 + tau) R; at least 70 % of the slopes within 5 tau of R are at R
+//! 1  s_k   slopes between consecutive samples;   moving: |s| > 2 % of the steepest
+//! 2  R0    98 % quantile of the moving |s|; no limit with fewer than 50
+//! 3  tau   0.5 %, or the step of the log divided by R0 dt if that is more
+//! 4  R     mean of the moving |s| within tau of R0
+//!    at R     within tau of R, in runs of at least 3 slopes of one sign
+//!    limited  at least 3 runs; at least 5 % and less than 90 % of the moving slopes at R;
+//!             at most 1 % above (1 + tau) R; at least 70 % of the slopes within 5 tau of R are
+//!             within tau
+//! 5  not limited: step 4 with 2 tau, then 4 tau; no limit where that exceeds 10 %
 //! ```
 //!
 //! The last condition distinguishes a limit from the steepest part of a smooth signal: in a sine,
@@ -20,7 +22,8 @@ use gdcm_model::statistics::quantile;
 use super::finite_samples::Sample;
 use super::fresh_samples::FreshSamples;
 
-/// Minimum slope at which a channel moves, relative to the limit.
+/// Minimum slope at which a channel moves, relative to the steepest, or to the limit once it is
+/// known.
 const MOVING: f64 = 0.02;
 /// The limit, if there is one, is this quantile of the moving slopes.
 const STEEPEST: f64 = 0.98;
@@ -59,7 +62,7 @@ pub(crate) struct RateLimit {
 }
 
 impl RateLimit {
-    /// Finds the rate limit in a record's samples; `None` if there is none.
+    /// Finds the rate limit in a record's samples (steps 1 to 5); `None` if there is none.
     pub(crate) fn find(samples: Vec<Sample>) -> Option<Self> {
         let fresh = FreshSamples::new(samples);
         let slopes = slopes(&fresh);

@@ -238,7 +238,16 @@ impl<'r> RecordSpikes<'r> {
 
 /// Returns cautions about the channels in the records as logged and in the segments made from them.
 ///
-/// Spikes are found first; the other doubts about values are about the remaining samples.
+/// ```text
+/// for each channel
+/// 1  spikes, record by record; steps 2, 4 and 5 do not count their samples
+/// 2  a value above the channel's plausible limit: wrong unit?
+/// 3  stairs, if no hold is declared
+/// 4  input: rate limit
+/// 5  output: at its limit; coarse steps
+/// over all segments
+/// 6  inputs that move together, outputs that copy another channel
+/// ```
 pub(crate) fn channel_cautions(
     records: &[FlightRecord],
     segments: &[Segment],
@@ -273,15 +282,16 @@ fn unit_caution(
     spikes: &[RecordSpikes<'_>],
 ) -> Option<RecordCaution> {
     let limit = channel.limit?;
-    let used = segments
+    let greatest_used = segments
         .iter()
         .map(|segment| segment.channel(signal).amax())
         .fold(0.0, f64::max);
-    let logged = spikes
+    let greatest_logged = spikes
         .iter()
         .flat_map(|record| record.other_values(signal))
         .fold(0.0, |most: f64, value| most.max(value.abs()));
-    let greatest = used.min(logged);
+    // Neither a spike nor a sample that is not used is a reason to doubt the unit.
+    let greatest = greatest_used.min(greatest_logged);
     if greatest > limit {
         Some(RecordCaution::UnlikelyUnit {
             signal: signal.clone(),
@@ -394,6 +404,7 @@ fn correlation_cautions(segments: &[Segment], preparation: &Preparation) -> Vec<
         for (first, a) in signals.iter().enumerate().take(second) {
             let power = (covariance[(first, first)] * covariance[(second, second)]).sqrt();
             let correlation: f64 = covariance[(first, second)] / power;
+            // Inputs come first: if b is an input, so is a.
             match b.role {
                 ChannelSide::Input if correlation.abs() > TOGETHER => {
                     cautions.push(RecordCaution::MovedTogether {

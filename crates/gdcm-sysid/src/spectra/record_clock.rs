@@ -41,6 +41,9 @@ pub(crate) struct GridStretch {
 
 impl Clock {
     /// Reads the clock from `record`; gaps up to `longest_bridge` samples are bridged.
+    ///
+    /// # Errors
+    /// Stamps that do not increase.
     pub fn new(record: &FlightRecord, longest_bridge: usize) -> Result<Self, PreparationError> {
         let rows: Vec<usize> = (0..record.time_s.len())
             .filter(|&row| record.time_s[row].is_finite())
@@ -79,7 +82,7 @@ impl Clock {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the grid `k dt` in stretches between gaps.
+    /// Returns the grid `k dt` in stretches between gaps; single stamps between gaps are omitted.
     pub fn grid(&self) -> Vec<GridStretch> {
         let mut grid = Vec::new();
         let mut from = 0;

@@ -5,11 +5,12 @@
 //! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line
 //!    of the longest record, h = max(0.45, 0.15 omega);  S = the block for R in (F'F)^-1
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
-//! 3  the cost (M14.4) with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
-//!    with leverage R S R' < 0.5
+//! 3  U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines with leverage
+//!    R S R' < 0.5: the spectra for the cost (M14.4)
 //! 4  bands: standard deviations of this model from the lines as logged,
 //!    divided by sqrt(coherence between input and R)
-//! 5  valid where the coherence between an input and R is at least 0.6: elsewhere R does not excite
+//! 5  valid where the coherence between an input and R, which takes the place of the partial
+//!    coherence, is at least 0.6: elsewhere R does not excite
 //! ```
 //!
 //! `U`, `Y` and `R` are the spectral lines of inputs, outputs and references, `Gamma_y` and
@@ -59,8 +60,11 @@ pub(crate) struct Instrument {
 }
 
 impl Instrument {
-    /// Measures the response from lines whose inputs are the references and whose outputs are the
-    /// model's outputs, then its inputs.
+    /// Measures the response (steps 1 to 3) from lines whose inputs are the references and whose
+    /// outputs are the model's outputs, then its inputs; `outputs` counts the former.
+    ///
+    /// # Errors
+    /// As [`local_fits`].
     pub(crate) fn new(
         lines: &[Spectrum],
         used: LineRange,
@@ -146,7 +150,7 @@ impl InstrumentPoint {
 impl ResponseEstimate {
     /// Widens bands from the lines as logged where the reference excites little: the standard
     /// deviations are divided by the square root of the coherence between each input and the
-    /// reference (M14.15).
+    /// reference (step 4). `None` if the bands are not valid.
     pub(crate) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
         let omegas: Vec<f64> = self.points.iter().map(|point| point.omega).collect();
         let neighbours: Vec<Neighbours> = bands
@@ -187,7 +191,7 @@ impl ResponseEstimate {
 fn through_reference(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
     let omegas: Vec<f64> = points.iter().map(|point| point.estimate.omega).collect();
     let mut omega = Vec::new();
-    let mut seen = Vec::new();
+    let mut explained = Vec::new();
     for (k, &at) in lines.omega.iter().enumerate() {
         let Neighbours {
             before,
@@ -205,14 +209,14 @@ fn through_reference(lines: &Spectrum, points: &[InstrumentPoint], outputs: usiz
         let gamma =
             &before.gamma * Complex::from(1.0 - share) + &after.gamma * Complex::from(share);
         omega.push(at);
-        seen.push(gamma * reference);
+        explained.push(gamma * reference);
     }
     let inputs = points
         .first()
         .map_or(0, |point| point.gamma.nrows() - outputs);
     Spectrum {
-        inputs: DMatrix::from_fn(inputs, seen.len(), |i, k| seen[k][outputs + i]),
-        outputs: DMatrix::from_fn(outputs, seen.len(), |o, k| seen[k][o]),
+        inputs: DMatrix::from_fn(inputs, explained.len(), |i, k| explained[k][outputs + i]),
+        outputs: DMatrix::from_fn(outputs, explained.len(), |o, k| explained[k][o]),
         omega,
         ..lines.clone()
     }

@@ -131,8 +131,12 @@ pub struct ResponseEstimate {
 }
 
 impl ResponseEstimate {
-    /// Returns the narrower band \[rad/s\] in which the records show a response, if the lower or
-    /// upper fifth (in logarithm) shows none: no input is coherent with any output there.
+    /// Returns the narrower band \[rad/s\] in which the records show a response: without the lower
+    /// end, the upper end or both, where at least a fifth (in logarithm) shows none, because no
+    /// input is coherent with any output there.
+    ///
+    /// `None` if fewer than two points show a response, if both ends do, or if what is left is
+    /// narrower than a fifth.
     #[must_use]
     pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
         let mut shown = self
@@ -153,9 +157,9 @@ impl ResponseEstimate {
         } else {
             band[1]
         };
-        let part = [lower, upper];
-        if part != band && part[1] > part[0] * fifth {
-            Some(part)
+        let narrower = [lower, upper];
+        if narrower != band && narrower[1] > narrower[0] * fifth {
+            Some(narrower)
         } else {
             None
         }

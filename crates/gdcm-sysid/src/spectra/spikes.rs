@@ -1,14 +1,15 @@
 //! Finds spikes: single wrong samples, as after a faulty transmission (M14.24).
 //!
 //! ```text
+//! samples    without repetitions in stairs (`fresh_samples`)
 //! candidate  at most 3 consecutive samples, at most 0.1 s (a single sample always), on one side of
 //!            the straight line between their neighbours, the nearest at least half as far as the
 //!            farthest; the neighbours differ by at most half of the nearest distance, and each
 //!            differs from the sample beyond it by at most a quarter
 //! scale      of single samples, |x_k - (x_{k-1} + x_{k+1}) / 2|: the larger of the 95 % quantile of
 //!            the record and the 90 % quantile of 25 samples on each side
-//! spike      nearest distance >= 6 scales, >= 3 steps of the log and >= 1 standard deviation of the
-//!            other samples
+//! spike      the longest candidate from a sample on, with a nearest distance >= 6 scales,
+//!            >= 3 steps of the log and >= 1 standard deviation of the other samples
 //! no spikes  more than 2 % of the samples: the channel moves in pulses
 //! ```
 //!
@@ -57,7 +58,7 @@ pub(crate) struct Spikes {
     /// The largest spike's distance from the line between its neighbours, in standard deviations of
     /// the other samples.
     pub(crate) deviations: f64,
-    /// Each spike's first and last stamp \[s\].
+    /// Each spike's first stamp and the first stamp after it \[s\].
     spans_s: Vec<[f64; 2]>,
 }
 

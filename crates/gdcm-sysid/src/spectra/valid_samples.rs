@@ -56,6 +56,7 @@ pub(crate) struct ValidSamples {
 }
 
 impl ValidSamples {
+    /// Takes the samples that are finite and not frozen; if the hold asks for it, the fresh ones.
     fn new(
         channel: &StampedValues,
         frozen: &[StampRange],
@@ -100,8 +101,13 @@ pub(crate) struct SampleReader<'a> {
 }
 
 impl SampleReader<'_> {
-    /// Returns the channel's value at `t` \[s\], on the straight line between two samples; `None`
-    /// in a gap that is cut out, and beyond the ends.
+    /// Returns the channel's value at `t` \[s\], with the delay removed:
+    ///
+    /// - before the first sample, `None`
+    /// - after the last, its value within the rounding, else `None`
+    /// - on a sample, its value
+    /// - in a gap that is not bridged, a value at its ends within the rounding, else `None`
+    /// - else on the straight line between two samples
     pub fn at(&mut self, t: f64) -> Option<f64> {
         let ValidSamples { times, values, .. } = self.samples;
         let t = t + self.samples.shift_s;

@@ -11,6 +11,7 @@
 //!    i = 0 ... f - 1, f = min(p, f_max)
 //! 3  Gamma K Z0' = W S V';   T = S_n^-1/2 W_n' Gamma K;   states X0 = Z0 T', X1 = Z1 T'
 //! 4  [Co Do] from Y on [X0 U], residual E;   [Ao Bo Ko] from X1 on [X0 U E]
+//! 5  (Ao, Bo, Co, Do), a model in k, to continuous time (`continuous_model`)
 //! ```
 //!
 //! A. Chiuso, "The role of vector autoregressive modeling in predictor-based subspace
@@ -37,6 +38,7 @@ pub(crate) struct SubspaceShape {
 /// States for models of all orders, from one Laguerre pole and one past window.
 #[derive(Clone, Debug)]
 pub(crate) struct Subspace {
+    /// Laguerre pole \[rad/s\].
     pole: f64,
     inputs: usize,
     /// The leading (p + 1) q rows and columns in `R`.
@@ -104,8 +106,8 @@ impl Subspace {
         })
     }
 
-    /// Computes the continuous-time model at an order (step 4); `None` if the data do not contain
-    /// so many states.
+    /// Computes the continuous-time model at an order (steps 4 and 5); `None` if the data do not
+    /// contain so many states.
     pub(crate) fn model(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;
         let width = self.map.ncols();
@@ -128,7 +130,8 @@ impl Subspace {
         continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
     }
 
-    /// Computes `T = S_n^-1/2 W_n' Gamma K`.
+    /// Computes `T = S_n^-1/2 W_n' Gamma K` (step 3); `None` if there are fewer than `order`
+    /// nonzero singular values.
     fn state_map(&self, order: usize) -> Option<DMatrix<f64>> {
         let singular_values = self.singular_values.get(..order)?;
         let mut map = self.left.columns(0, order).transpose() * &self.map;

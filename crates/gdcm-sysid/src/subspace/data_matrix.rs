@@ -27,12 +27,14 @@ pub(crate) struct Projections {
 }
 
 impl Projections {
-    /// Computes a segment's rows, including its trim and drift.
+    /// Computes a segment's rows, including its trim and drift, from the signals less their last
+    /// samples (`laguerre`).
     ///
     /// ```text
     /// row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)]
     /// z_k = [u~_k; y~_k] the projected inputs and outputs
-    /// instants t_i every `spacing_s`, except for the last min((2p + 4)/a, 0.3 T) s
+    /// instants t_i every `spacing_s`, except for the last min((2p + 4)/a, 0.3 T) s, where the
+    /// projections lack the future; T the segment's length
     /// ```
     pub(crate) fn rows(&self, segment: &Segment) -> DMatrix<f64> {
         let instants = self.instants(segment);

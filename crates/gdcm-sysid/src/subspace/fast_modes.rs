@@ -1,6 +1,7 @@
 //! Removes modes far above the band, but keeps their static gain.
 //!
 //! ```text
+//! without fast modes the model is returned as it is
 //! 1  Q = [Q1 Q2] orthonormal, Q1 spans the slow modes:   Q' A Q = [A1 A12; 0 A2]
 //! 2  A1 X - X A2 = -A12:  the states x1 - X x2 and x2 are decoupled
 //! 3  B1 = Q1' B - X Q2' B,  B2 = Q2' B,   C1 = C Q1,  C2 = C (Q1 X + Q2)

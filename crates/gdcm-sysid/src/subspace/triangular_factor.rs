@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! R <- qr([R; rows]), R upper triangular, for each column panel J with the width w:
+//!    b_j column j of rows;   e_j, E: unit columns of j and of J;   V = [v_j] over J
 //! 1  for each column j in J: beta = -sign(R_jj) hypot(R_jj, |b_j|), v_j = b_j / (R_jj - beta),
 //!       tau_j = (beta - R_jj) / beta
 //!       the reflector is I - tau_j [e_j; v_j] [e_j; v_j]', applied to the later columns in J
@@ -39,7 +40,7 @@ impl TriangularFactor {
         &self.0
     }
 
-    /// Appends rows to `A`.
+    /// Appends rows to `A`, in blocks of [`ROWS`].
     pub(crate) fn append(&mut self, rows: &DMatrix<f64>) {
         for first in (0..rows.nrows()).step_by(ROWS) {
             let count = ROWS.min(rows.nrows() - first);
@@ -47,6 +48,7 @@ impl TriangularFactor {
         }
     }
 
+    /// Appends at most [`ROWS`] rows, panel by panel (steps 1 to 3).
     fn append_block(&mut self, mut rows: DMatrix<f64>) {
         let columns = self.0.ncols();
         for first in (0..columns).step_by(PANEL) {
@@ -109,8 +111,8 @@ impl TriangularFactor {
 
 /// Computes `X = argmin |A X - Y|^2 + ridge |N X|^2` from the triangular factor of `[A Y]`.
 ///
-/// `A` has `regressors` columns, and `N` holds their lengths. Returns `None` if the columns depend
-/// on each other.
+/// `A` has `regressors` columns, and the diagonal `N` holds their lengths: the ridge applies to
+/// columns scaled to unit length. Returns `None` if the columns depend on each other.
 pub(crate) fn ridge_solution(
     factor: DMatrixView<'_, f64>,
     regressors: usize,

@@ -1,11 +1,13 @@
 //! Chooses the orders and past windows to try, as far as the amount of data allows (M14.13).
 //!
-//! A data matrix has `past + 1` column blocks, one for each projection, and a row for each instant;
-//! a model with n states needs a map to the future with at least n rows.
+//! A data matrix (`data_matrix`) has a column for each channel and each of the projections 0 to
+//! `past`, and a row for each instant. A model with n states needs a map to the future (`ct_pbsid`)
+//! with at least n rows.
 
 use std::ops::RangeInclusive;
 
-/// Low orders, which are all tried.
+/// Low orders: the even ones are always tried, the odd ones above `LAST_ODD_ORDER` only for few
+/// channels.
 const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
 /// Higher orders: only the even ones are tried.
 const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
@@ -65,7 +67,8 @@ impl Extent {
             .max(LEAST_FUTURE)
     }
 
-    /// Returns the past windows that the amount of data allows.
+    /// Returns the past windows that the amount of data allows: those with 2 rows per column; if
+    /// there are none, the longest with 1.5 rows per column, but at least 3.
     pub(crate) fn pasts(self) -> Vec<usize> {
         let rows = self.radians / SPACING;
         let mut pasts = PASTS.to_vec();
@@ -84,8 +87,13 @@ impl Extent {
     }
 
     /// Returns the orders that the amount of data allows, with past windows up to `longest_past`.
+    ///
+    /// ```text
+    /// 1 to 8, without 5 and 7 for more than 6 channels;   10, 12 ... 24
+    /// at most as many as the map to the future has rows, min(longest_past, f_max) l
+    /// 5 real values for each parameter
+    /// ```
     pub(crate) fn orders(self, longest_past: usize) -> Vec<usize> {
-        // A model has at most as many states as the map to the future has rows.
         let most = longest_past.min(self.longest_future()) * self.outputs;
         let tries_odd = self.channels() <= ODD_ORDERS_CHANNELS;
         LOW_ORDERS

@@ -210,9 +210,9 @@ struct Optimum<'a> {
 }
 
 impl Optimum<'_> {
-    /// Lists the constrained products or sums that contain the channel, then its bounds with `last`
-    /// between them: the channel's name and value.
-    fn steps(&self, channel: Channel, last: &str) -> Vec<String> {
+    /// Lists the constrained products or sums that contain the channel, then its bounds with
+    /// `result` between them: the channel's name and value.
+    fn steps(&self, channel: Channel, result: &str) -> Vec<String> {
         let is_gain = self.problem.quantity.is_gain();
         let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
         let mut steps = Vec::new();
@@ -243,7 +243,7 @@ impl Optimum<'_> {
             ""
         };
         steps.push(format!(
-            "{} ≤ {last} ≤ {}{unit}{place}",
+            "{} ≤ {result} ≤ {}{unit}{place}",
             five_digits(scale * bounds.lower),
             five_digits(scale * bounds.upper)
         ));

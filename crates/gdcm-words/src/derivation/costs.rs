@@ -104,7 +104,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
 }
 
 /// Derives a physics model's discontinuity ratio: its distance to other models, relative to the
-/// distance that the difference in trim explains.
+/// distance that the difference in trim explains (the fitted distance).
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
         divided by its maximum, w_k ≥ 0 by least absolute deviations";

@@ -36,7 +36,9 @@ fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     }
 }
 
-/// Derives a response's delta gain `G`.
+/// Derives a response's delta gain `G`: with leads, the median of the representatives' ratio that
+/// remains after them (M15.5); else, if the settings ask for it, the mean over all pairs of kept
+/// models; else the median of the representatives' ratio.
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;

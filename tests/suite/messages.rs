@@ -353,7 +353,7 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
             "\"conditions\": [",
             "\"conditions\": [{},".to_owned(),
             "missing-key",
-            ["condition number 1 ", "\"id\""].as_slice(),
+            ["condition at position 1 ", "\"id\""].as_slice(),
         ),
         (
             identified,

@@ -31,7 +31,9 @@ pub enum ContentFault {
         column: usize,
     },
     /// Lists or objects are nested too deeply.
-    #[error("lists or objects are nested too deeply (line {line}, column {column})")]
+    #[error(
+        "lists or objects are nested too deeply; check the brackets (line {line}, column {column})"
+    )]
     TooDeep {
         /// Line, counted from 1.
         line: usize,

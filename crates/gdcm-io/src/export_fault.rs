@@ -13,8 +13,8 @@ use crate::reading_budget::VariableFault;
 pub enum ExportFault {
     /// A scheduled curve contains a value that is not finite.
     #[error(
-        "the {curve} of {channel} has a value that is not finite; correct the schedule before \
-        exporting it"
+        "the scheduled {curve} of {channel} is not finite at every airspeed; change the degree or \
+        the conditions of the schedule"
     )]
     Curve {
         channel: String,
@@ -23,14 +23,14 @@ pub enum ExportFault {
     },
     /// The requested airspeeds are not finite and increasing, or there are none.
     #[error(
-        "the airspeeds of the table must be finite and increasing, and there must be at least \
-        one"
+        "airspeeds of the lookup table: expected at least one, all finite and in increasing order \
+        (in kt)"
     )]
     Breakpoints,
     /// The file name for a MATLAB function is not a valid function name.
     #[error(
-        "invalid name for the file of a MATLAB function: use a letter, then letters, digits and \
-        _, at most 63 characters, and neither a keyword nor a name used inside the file; found {}",
+        "file name of a MATLAB function: expected a letter, then letters, digits and _ (at most 63 \
+        characters), neither a keyword nor a name used inside the file; found {}",
         quoted(found)
     )]
     FunctionName { found: String },
@@ -67,7 +67,8 @@ pub enum ExportFault {
     },
     /// A model is a measured response, which has no matrices.
     #[error(
-        "condition {condition}, model \"{model}\": a measured response has no matrices to export"
+        "condition {condition}, model \"{model}\": a measured response has no matrices to export; \
+        choose another model"
     )]
     NoMatrices {
         condition: ConditionId,

@@ -9,7 +9,7 @@ use gdcm_model::message_text::quoted;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileCaution {
     /// An unknown key, the first of `count` like it.
-    #[error("{place}the key {} is not known and not used{}", quoted(key), more(*count))]
+    #[error("{place}the key {} is unknown and ignored{}", quoted(key), more(*count))]
     UnknownKey {
         /// Where the first such key is, with a colon at the end; empty for the whole file.
         place: String,
@@ -17,13 +17,13 @@ pub enum FileCaution {
         count: usize,
     },
     /// A list entry that the program does not use, the first of `count` like it.
-    #[error("{place}this entry is not known and not used{}", more(*count))]
+    #[error("{place}this entry is unknown and ignored{}", more(*count))]
     UnknownEntry { place: String, count: usize },
     /// Further unknown keys, which are only counted.
-    #[error("{} not known and not used", others(*count))]
+    #[error("{} unknown and ignored", others(*count))]
     MoreUnknownKeys { count: usize },
     /// A key that is only valid in the other kind of model.
-    #[error("{place}the key \"{key}\" has no meaning here and is not used")]
+    #[error("{place}the key \"{key}\" has no meaning here and is ignored")]
     MisplacedKey { place: String, key: String },
     /// An unusual model property.
     #[error("{}{}", .0.place.before(), .0.oddity)]
@@ -43,13 +43,13 @@ impl FileCaution {
     }
 }
 
-/// Returns the words for further occurrences: ", and 2 more like it"; empty for a single
+/// Returns the words for further occurrences: ", as are 2 more like it"; empty for a single
 /// occurrence.
 fn more(count: usize) -> String {
-    if count > 1 {
-        format!(", and {} more like it", count - 1)
-    } else {
-        String::new()
+    match count {
+        0 | 1 => String::new(),
+        2 => ", as is 1 more like it".to_owned(),
+        count => format!(", as are {} more like it", count - 1),
     }
 }
 

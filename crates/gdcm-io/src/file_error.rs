@@ -43,7 +43,7 @@ pub enum FileError {
     )]
     TooLarge { path: PathBuf, most_mib: u64 },
     #[error(
-        "{}: the gzip data are damaged; pack or copy the file again",
+        "{}: the gzip data are damaged; compress or copy the file again",
         sanitized_path(path)
     )]
     Gzip { path: PathBuf },
@@ -144,7 +144,7 @@ pub enum FileError {
     },
     /// A directory cannot be created because a file has its name.
     #[error(
-        "{}: cannot be written: a file with the name of this directory exists",
+        "{}: this directory cannot be created, because a file has its name; choose another directory",
         sanitized_path(path)
     )]
     NotADirectory { path: PathBuf },
@@ -355,16 +355,20 @@ fn line_words(line: Option<usize>) -> String {
 
 fn no_record_words(record: Option<&str>, held: usize) -> String {
     let held = match held {
-        0 => "contains no record".to_owned(),
-        1 => "contains another record".to_owned(),
+        0 => "contains no records".to_owned(),
+        1 => "contains only another record".to_owned(),
         _ => format!("contains {held} records"),
     };
     match record {
         Some(record) => format!(
-            "the record {} is not in this file, which {held}",
+            "the record {} is not in this file, which {held}; correct \"variable\" of the record in the \
+            dataset",
             quoted(record)
         ),
-        None => format!("a single record is required, but the file {held}"),
+        None => format!(
+            "a single record is required, but the file {held}; name one as \"variable\" of the record \
+            in the dataset"
+        ),
     }
 }
 

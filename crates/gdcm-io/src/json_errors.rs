@@ -84,7 +84,7 @@ fn syntax_error(
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
             expected: "text in quotation marks".to_owned(),
-            found: "something else".to_owned(),
+            found: token_at(text, position).unwrap_or_else(|| "another kind of value".to_owned()),
             line,
             column,
         };

@@ -162,7 +162,7 @@ mod tests {
             "4",
         ]);
         let place = location_of(&path, &Outline::default());
-        let expected = "condition number 3 in the file, identified model number 2, frequency_response, re, output 1, input 2, entry 5";
+        let expected = "condition at position 3 in the file, identified model number 2, frequency_response, re, output 1, input 2, entry 5";
         assert_eq!(place.to_string(), expected);
     }
 }

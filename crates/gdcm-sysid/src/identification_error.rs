@@ -28,8 +28,8 @@ pub enum IdentificationError {
     /// The records are too short for the lower band end.
     #[error(
         "the longest record lasts {longest_s:.0} s: a lower band end of {lowest:.2} rad/s needs \
-        at least {needed_s:.1} s, better {better_s:.0} s. The records are long enough for a \
-        lower band end of {enough:.2} rad/s"
+        at least {needed_s:.1} s, preferably {better_s:.0} s. Raise the lower band end to \
+        {enough:.2} rad/s, or log longer"
     )]
     TooShort {
         longest_s: f64,
@@ -45,7 +45,7 @@ pub enum IdentificationError {
     },
     /// The lines hold fewer real values than a first-order model needs.
     #[error(
-        "the spectral lines in the band hold {figures} real values, but {needed} are needed: 5 \
+        "the spectral lines in the band contain {figures} real values, but {needed} are needed: 5 \
         for each of the {unknowns} unknowns in a first-order model. Log longer or more records, \
         widen the band, or leave out channels"
     )]
@@ -82,7 +82,9 @@ pub enum IdentificationError {
         greater than 0"
     )]
     Settings,
-    #[error("every input is given as a reference: the model needs at least one input")]
+    #[error(
+        "every input is given as a reference, but the model needs at least one input: remove a reference"
+    )]
     OnlyReferences,
     #[error("record {} is to be held out, but there are only {records} records", record + 1)]
     HeldOutMissing {

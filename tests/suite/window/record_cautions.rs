@@ -87,7 +87,7 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     window.get_by_label("Cautions of flight 3");
     assert!(window.query_by_label("Cautions of flight 1").is_none());
     // The band extends beyond the sweeps, so the response has a caution.
-    window.get_by_label_contains("⚠ no response shown");
+    window.get_by_label_contains("⚠ no coherent response");
     press(&mut window, "Fit flight 3 too");
     assert!(
         records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed

@@ -26,7 +26,7 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     stem: "corrections",
     group: FormatGroup::PerCondition,
     title: "All values",
-    words: "corrections.json alone",
+    words: "All values of each condition and the schedule, as in corrections.json",
     options: OPTIONS,
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),
@@ -49,7 +49,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     name: "csv",
     extension: "csv",
     title: "One row per channel",
-    words: "corrections.csv alone",
+    words: "Gains and delays, one row per condition and channel, as in corrections.csv",
     export: |export| {
         let mut text = Vec::new();
         let chosen = export.request.chosen(export.analysis);
@@ -68,7 +68,7 @@ pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
     extension: "csv",
     stem: "assessment",
     title: "One row per response",
-    words: "assessment.csv alone",
+    words: "J without and with correction, one row per condition and response, as in assessment.csv",
     export: |export| {
         let mut text = Vec::new();
         let chosen = export.request.chosen(export.analysis);
@@ -87,7 +87,7 @@ pub(super) const PHYSICS: ExportFormat = ExportFormat {
     extension: "csv",
     stem: "physics",
     title: "One row per physics parameter",
-    words: "physics.csv alone",
+    words: "Physics parameters, one row each, as in physics.csv",
     options: &[],
     contents: |analysis, _| ExportContents::of_physics(analysis),
     export: |export| {

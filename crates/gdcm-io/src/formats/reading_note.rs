@@ -106,7 +106,7 @@ pub enum ReadingNote {
     ColumnNames { line: usize, start: String },
     #[error("line {line} (\"{name}\") is skipped: no numbers follow")]
     NameWithoutNumbers { line: usize, name: String },
-    #[error("{name} is printed with the factor {factor:e}, and therefore with few digits")]
+    #[error("{name} is printed with the common factor {factor:e}, and therefore with few digits")]
     PrintedWithFactor { name: String, factor: f64 },
     #[error("line {line} (\"{start}\") {reason}")]
     StatementSkipped {
@@ -125,7 +125,7 @@ pub enum ReadingNote {
     #[error("a Betaflight log; axisSum is the sum of the controller terms")]
     BetaflightLog,
     #[error(
-        "according to the documentation of the logging system: {}; {signs}",
+        "channels proposed from the documentation of the logging system: {}; {signs}",
         assignment_list(assignments)
     )]
     DocumentedChannels {
@@ -167,7 +167,7 @@ pub enum ReadingNote {
     // Records among variables.
     #[error("clock times: converted to seconds since the first sample")]
     ClockTimes,
-    #[error("omitted because of another length: {}", names.join(", "))]
+    #[error("omitted, because they have another number of samples: {}", names.join(", "))]
     OtherLengths { names: Vec<String> },
 
     // Models among variables.
@@ -183,7 +183,7 @@ pub enum ReadingNote {
     DelayInSamples { name: String },
     #[error("{name} is assumed to be in s, because its name contains no unit")]
     DelayInSeconds { name: String },
-    #[error("{name} split into delays of inputs and of outputs")]
+    #[error("{name} is split into input delays and output delays")]
     DelaysSplit { name: String },
 }
 
@@ -194,19 +194,19 @@ pub enum ColumnReading {
     Frequency { unit: &'static str },
     #[error("a standard deviation, which is not used")]
     StandardDeviation,
-    #[error("real part")]
+    #[error("the real part")]
     Real,
-    #[error("imaginary part")]
+    #[error("the imaginary part")]
     Imaginary,
-    #[error("magnitude in dB")]
+    #[error("the magnitude in dB")]
     MagnitudeInDb,
-    #[error("absolute magnitude")]
+    #[error("the magnitude as a ratio")]
     AbsoluteMagnitude,
-    #[error("phase in {unit}")]
+    #[error("the phase in {unit}")]
     Phase { unit: &'static str },
-    #[error("coherence")]
+    #[error("the coherence")]
     Coherence,
-    #[error("coherence in percent")]
+    #[error("the coherence in percent")]
     CoherenceInPercent,
 }
 
@@ -326,7 +326,7 @@ fn modes_words(spans: &[ModeSpan]) -> String {
         let [begin_s, end_s] = span.ends_s;
         shown.push(format!("{} {begin_s:.1} to {end_s:.1} s", span.name));
     }
-    let mut words = shown.join(", ");
+    let mut words = format!("flight modes: {}", shown.join(", "));
     if spans.len() > SHOWN_MODES {
         words.push_str(&format!(" and {} more", spans.len() - SHOWN_MODES));
     }

@@ -81,7 +81,7 @@ impl ArchiveReading {
             }
         }
         self.ignored.push(format!(
-            "{}: an unsupported format, or an archive in the archive",
+            "{}: not read: an unsupported format, or an archive within the archive",
             file.path
         ));
         Ok(())

@@ -30,9 +30,9 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     let choice = usual_choice(analysis);
     let table = AssessmentTable::assess(analysis, choice);
     page.paragraph(&format!(
-        "Change in J of the nominal model of each condition due to the scheduled correction; J is \
-        the deviation from the identified representative, so negative changes are improvements. \
-        J takes {} over frequency; J up to {ACCEPTABLE} is acceptable, and J up to 50 is nearly \
+        "Change in J of each condition's nominal model due to the scheduled correction; J is the \
+        deviation from the identified representative, so negative changes are improvements. \
+        J is based on {} over frequency; J up to {ACCEPTABLE} is acceptable, and J up to 50 is nearly \
         indistinguishable from flight.",
         average_word(choice.average)
     ));
@@ -151,7 +151,7 @@ fn add_tables(
         for (pair, why) in &assessed.missing {
             if pairs.contains(pair) {
                 missing.push(format!(
-                    "Condition {}: no ΔJ of {}: {}.",
+                    "Condition {}: no ΔJ for {}: {}.",
                     assessed.condition,
                     dataset.pair_name(*pair),
                     missing_cost_text(*why)

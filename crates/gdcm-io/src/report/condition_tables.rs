@@ -214,7 +214,7 @@ fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     }
     let mut lines = Vec::with_capacity(reasons.len());
     for (why, pairs) in reasons {
-        lines.push(format!("No G and no D of {}: {why}.", names(&pairs)));
+        lines.push(format!("No G and no D for {}: {why}.", names(&pairs)));
     }
     lines
 }
@@ -303,7 +303,7 @@ fn kept_word(
     {
         "set aside"
     } else if result.representative_name(kind) == name {
-        "represents"
+        "representative"
     } else {
         "yes"
     }

@@ -44,8 +44,8 @@ pub(super) fn add_conditions(
     let conditions = analysis.study.dataset.conditions();
     if conditions.len() > CONDITIONS_DRAWN {
         page.paragraph(&format!(
-            "Only the first {CONDITIONS_DRAWN} conditions have figures; gdcm figure draws those \
-            of the others."
+            "Only the first {CONDITIONS_DRAWN} conditions have figures here; the command gdcm figure \
+            draws those of the others."
         ));
     }
     page.paragraph(
@@ -98,7 +98,8 @@ fn shared_remarks(analysis: &Analysis) -> Vec<String> {
         };
         let also = match others {
             [] => String::new(),
-            _ => format!(" Likewise in {}.", names(others)),
+            [other] => format!(" Likewise in condition {other}."),
+            _ => format!(" Likewise in conditions {}.", names(others)),
         };
         lines.push(format!("Condition {first}: {}{also}", remark.words));
     }

@@ -224,7 +224,7 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
         Err(_) => false,
     };
     let between = if fails_between {
-        " Between the conditions' airspeeds the schedule must not be used (see its cautions)."
+        " Do not use the schedule between the conditions' airspeeds (see its cautions)."
     } else {
         ""
     };

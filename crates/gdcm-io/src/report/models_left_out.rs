@@ -124,7 +124,7 @@ fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     kept.retain(|name| !rejected.contains(name));
     if !kept.is_empty() {
         lines.push(format!(
-            "Condition {id}: suspect because of their discontinuity ratios, but kept: {}.",
+            "Condition {id}: models kept despite suspect discontinuity ratios: {}.",
             names(&kept)
         ));
     }

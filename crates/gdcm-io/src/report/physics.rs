@@ -62,11 +62,11 @@ pub(super) fn add_physics(page: &mut Page, analysis: &Analysis) {
     }
     let values = applied_value_list(applied);
     if values.is_empty() {
-        page.paragraph("No parameter is moved: the physics models are those of the dataset.");
+        page.paragraph("No parameter is changed: the physics models are those of the dataset.");
     } else {
         page.paragraph(&format!(
-            "The physics models in this report are moved by {}. Couplings, G, D, gains, delays, leads \
-            and J are based on them. The choice of the representative of a bundle and the suspected \
+            "In this report the physics models have these parameter changes: {}. Couplings, G, D, gains, \
+            delays, leads and J are based on the changed models. The choice of the representative of a bundle and the suspected \
             models are determined without them. {}.",
             values.join(", "),
             capital(BARS_KEEP_VALUES)

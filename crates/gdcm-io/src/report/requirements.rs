@@ -61,9 +61,9 @@ pub(super) fn add_requirements(
         page.figure(&figure.columns(BANDWIDTH_COLUMNS), &title, caption);
     }
     page.paragraph(
-        "Means of J (M4), and of the share of the band (in ln \u{3c9}) inside the envelopes of \
-        maximum unnoticeable added dynamics (MIL-STD-1797A, appendix A, 4.2.1.2), relative to \
-        the identified representative.",
+        "Mean J relative to the identified representative (M4), and mean share of the band (in ln \
+        \u{3c9}) in which the difference from it lies inside the envelopes of maximum unnoticeable \
+        added dynamics (MIL-STD-1797A, appendix A, 4.2.1.2).",
     );
     page.wide_table_behind(
         &summary_table(requirements, subject.histories),

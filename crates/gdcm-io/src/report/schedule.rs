@@ -164,7 +164,7 @@ fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedul
     }
     for delayed in analysis.unscheduled_delays() {
         lines.push(format!(
-            "Left out: {}.",
+            "Not scheduled: {}.",
             delayed_channel_text(&delayed, dataset)
         ));
     }

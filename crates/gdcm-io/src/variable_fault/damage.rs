@@ -18,7 +18,7 @@ pub enum Damage {
     // MATLAB files up to version 7.
     #[error("{found} at the expected start of a matrix")]
     NoMatrix {
-        /// What is there instead, for example "no matrix type".
+        /// What is there instead, for example "a negative size".
         found: &'static str,
     },
     #[error("a sparse matrix with inconsistent numbers")]
@@ -65,7 +65,7 @@ pub enum Damage {
     CompressedData,
     #[error("more compressed data than announced")]
     CompressedDataLength,
-    #[error("{packed} compressed bytes that claim to expand to {length}")]
+    #[error("{packed} compressed bytes that claim to expand to {length} bytes")]
     Expansion { packed: usize, length: u64 },
     // MATLAB class objects.
     #[error("the file has no object part")]

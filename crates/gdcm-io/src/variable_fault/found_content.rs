@@ -13,7 +13,7 @@ pub enum FoundContent {
     Nothing,
     #[error("an empty file")]
     EmptyFile,
-    #[error("other bytes")]
+    #[error("another format")]
     OtherBytes,
     #[error("a binary file (byte {byte} is zero)")]
     Binary {
@@ -35,13 +35,13 @@ pub enum FoundContent {
     #[error("a file that begins with the bytes {}", hexadecimal(bytes))]
     Bytes { bytes: Vec<u8> },
     /// A table that is not recognised as a frequency response.
-    #[error(
-        "a table with {lacking} among its columns; name each column in the first line, with \
-        --headings, or under \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \
-        \"phase Q/LON [deg]\""
-    )]
+    #[error("a table without {lacking}")]
     NotAResponse { lacking: ResponseLack },
 }
+
+/// Remedy for columns without names.
+const NAME_COLUMNS: &str = "name each column in the first line, with --headings, or under \
+    \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\"";
 
 /// What a table lacks to be a frequency response.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,14 +63,23 @@ pub struct MissingUnit {
 impl Display for ResponseLack {
     fn fmt(&self, out: &mut Formatter<'_>) -> Result {
         match self {
-            Self::Frequency => out.write_str("no frequency"),
-            Self::Parts => out.write_str("neither magnitude and phase nor real and imaginary part"),
+            Self::Frequency => write!(out, "a frequency column; {NAME_COLUMNS}"),
+            Self::Parts => write!(
+                out,
+                "a pair of columns for magnitude and phase, or for real and imaginary part; \
+                {NAME_COLUMNS}"
+            ),
             Self::Units(columns) => {
                 let mut questions = Vec::with_capacity(columns.len());
                 for MissingUnit { place, units } in columns {
-                    questions.push(format!("{place} (write [{}] or [{}])", units[0], units[1]));
+                    questions.push(format!("{place}: write [{}] or [{}]", units[0], units[1]));
                 }
-                write!(out, "no unit of {}", questions.join(", of "))
+                write!(
+                    out,
+                    "the unit of {} in the heading, with --headings, or under \"headings\" in the \
+                    rules",
+                    questions.join(", and of ")
+                )
             }
         }
     }

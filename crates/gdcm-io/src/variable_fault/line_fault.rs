@@ -81,7 +81,7 @@ pub enum LineFault {
     HalfNumber { place: ColumnPlace },
     #[error("{place} is too large for a magnitude; if it is in dB, write [dB] in the heading")]
     Magnitude { place: ColumnPlace },
-    #[error(transparent)]
+    #[error("{0}: the file is damaged; save it again in Octave")]
     Octave(#[from] OctaveFault),
 }
 

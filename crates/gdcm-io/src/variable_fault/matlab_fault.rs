@@ -12,7 +12,7 @@ pub enum MatlabFault {
     OpenString { quote: char },
     #[error("the bracket is never closed; close it")]
     OpenBracket,
-    #[error("\"{text}\" is not a number")]
+    #[error("\"{text}\" is not a number; correct it")]
     NotANumber { text: String },
     #[error("a value is missing here; write it")]
     MissingValue,
@@ -59,17 +59,17 @@ pub enum MatlabFault {
     StringsInBrackets,
     #[error("only numbers are supported in brackets; {REMEDY}")]
     NotANumberInBrackets,
-    #[error("a name is missing")]
+    #[error("the name of a variable is missing; write it")]
     MissingName,
     #[error("{name} has not been assigned; write its value")]
     NotAssigned { name: String },
-    #[error("{path} has no field {field}")]
+    #[error("{path} has no field {field}; assign the field first")]
     NoField { path: String, field: String },
     /// The copied variable or field is itself opaque.
-    #[error("{path} itself could not be read")]
+    #[error("{path} itself could not be read; write the value here")]
     CopyOfUnread { path: String },
     #[error(
-        "it is set within a condition or a loop, which is not executed; write its value outside"
+        "it is set inside an if, switch or loop, which is not executed; assign its value outside"
     )]
     InBlock,
     #[error("only a part of the variable is set here; write the whole value in one statement")]

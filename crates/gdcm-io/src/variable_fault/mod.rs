@@ -52,7 +52,7 @@ pub enum VariableFault {
         fault: LineFault,
     },
     /// The format permits the content, but this program does not read it.
-    #[error("{}{content} cannot be read; {}", at(variable), content.remedy())]
+    #[error("{}{content} cannot be {}; {}", at(variable), content.action(), content.remedy())]
     Unsupported {
         variable: String,
         content: UnsupportedContent,
@@ -80,10 +80,14 @@ pub enum VariableFault {
         most_millions: u64,
     },
     /// The log contains more flights than the limit.
-    #[error("{found} flights, more than {most}; split the file")]
+    #[error("expected at most {most} flights, found {found}; split the file")]
     TooManyFlights { found: usize, most: usize },
     /// Values are nested more deeply than the limit, or in a cycle.
-    #[error("{}values are nested too deeply, or contain themselves", at(variable))]
+    #[error(
+        "{}values are nested too deeply, or contain themselves; save the inner values as separate \
+        variables",
+        at(variable)
+    )]
     TooDeep { variable: String },
     /// A name that must be unique occurs more than once.
     #[error("duplicate name \"{name}\"; rename one")]
@@ -120,7 +124,8 @@ impl VariableFault {
                     .remedy()
                     .replace("{file}", file)
                     .replace("{stem}", stem);
-                format!("{}{content} cannot be read; {remedy}", at(variable))
+                let action = content.action();
+                format!("{}{content} cannot be {action}; {remedy}", at(variable))
             }
             _ => self.to_string(),
         }

@@ -4,24 +4,24 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OctaveFault {
     /// A line with this key, such as "# rows: 3", is missing.
-    #[error("expected \"# {key}: …\"")]
+    #[error("expected a line \"# {key}: …\"")]
     MissingKey { key: String },
     /// This key's value is not a whole number.
-    #[error("{key}: expected a whole number")]
-    KeyNotWhole { key: String },
-    #[error("expected a whole number")]
-    NotWhole,
-    #[error("expected a number")]
-    NotANumber,
-    #[error("expected a complex number, (re,im)")]
-    NotComplex,
-    #[error("expected at least two dimensions")]
-    Dimensions,
+    #[error("{key}: expected a whole number, found \"{found}\"")]
+    KeyNotWhole { key: String, found: String },
+    #[error("expected a whole number, found \"{found}\"")]
+    NotWhole { found: String },
+    #[error("expected a number, found \"{found}\"")]
+    NotANumber { found: String },
+    #[error("expected a complex number, (re,im), found \"{found}\"")]
+    NotComplex { found: String },
+    #[error("expected at least two dimensions, found {found}")]
+    Dimensions { found: usize },
     #[error("an element is outside the matrix")]
     ElementOutsideMatrix,
     #[error("the number of elements is too large")]
     ElementCount,
-    #[error("a range does not have three numbers")]
+    #[error("expected three numbers in a range: base, limit and increment")]
     RangeNumbers,
     #[error("a field has more or fewer values than there are records")]
     FieldLength,
@@ -29,10 +29,8 @@ pub enum OctaveFault {
     NegativeLength,
     #[error("the number type is unknown")]
     NumberType,
-    #[error("the type of the value has no name")]
+    #[error("expected the name of a type, found none")]
     UnnamedType,
-    #[error("an array has fewer than two dimensions")]
-    FewDimensions,
     #[error("the sparse matrix is inconsistent")]
     SparseMatrix,
 }

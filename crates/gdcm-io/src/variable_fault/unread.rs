@@ -39,22 +39,22 @@ pub enum Unread {
     /// The file's object part, to which all objects refer, cannot be read.
     #[error("{0}")]
     ObjectPart(VariableFault),
-    #[error("the file has no object part")]
+    #[error("the data of this object are missing from the file; in MATLAB, save them as matrices")]
     NoObjectPart,
-    #[error("its reference is damaged")]
+    #[error("its reference to data in the file is damaged; save the file again")]
     DamagedReference,
-    #[error("enumerations are not supported")]
+    #[error("enumerations are not supported; in MATLAB, save it as text or numbers")]
     Enumeration,
-    #[error("functions cannot be read as data")]
+    #[error("functions cannot be read; in MATLAB, save the values that it returns")]
     Function,
-    #[error("it is empty")]
+    #[error("empty objects cannot be read; in MATLAB, save its data as numbers or text")]
     Empty,
-    #[error("it is neither a dataset nor a group")]
+    #[error("expected an HDF5 dataset or group; save its values as a dataset")]
     NeitherDatasetNorGroup,
-    #[error("it holds neither numbers nor strings")]
+    #[error("expected numbers or strings in an HDF5 dataset; save its values as one of these")]
     NeitherNumbersNorStrings,
     /// A record field in an HDF5 dataset.
-    #[error("it is neither a number nor a string of fixed length")]
+    #[error("expected a number or a string of fixed length; save it as one of these")]
     RecordField,
     #[error("{}", .0.remedy())]
     Unsupported(UnsupportedContent),

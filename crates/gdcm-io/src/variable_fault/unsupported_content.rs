@@ -24,8 +24,10 @@ pub enum UnsupportedContent {
     },
     #[error("a ULog of a later version")]
     UlogVersion,
-    #[error("a blackbox log of data version \"{version}\", or with fields of a later version")]
+    #[error("a blackbox log of data version \"{version}\" (expected 2)")]
     BlackboxVersion { version: String },
+    #[error("a blackbox log whose intra frames are not described, or have an unknown encoding,")]
+    BlackboxFields,
     #[error("a dataset with several unlimited dimensions")]
     UnlimitedDimensions,
     #[error("a dataset of this kind ({message})")]
@@ -44,18 +46,28 @@ pub enum UnsupportedContent {
     #[error("data after the array")]
     DataAfterArray,
     /// A value other than numbers and strings, which a NumPy archive cannot contain.
-    #[error("{value} cannot be written, and therefore")]
+    #[error("{value}")]
     ValueNotWritten {
         /// Description of the value, for the message.
         value: String,
     },
-    #[error("a name this long cannot be written, and therefore")]
+    #[error("a name this long")]
     LongNameNotWritten,
-    #[error("an archive this large cannot be written, and therefore")]
+    #[error("an archive this large")]
     LargeArchiveNotWritten,
 }
 
 impl UnsupportedContent {
+    /// Returns what is impossible: "read" or "written".
+    pub(super) fn action(&self) -> &'static str {
+        match self {
+            Self::ValueNotWritten { .. }
+            | Self::LongNameNotWritten
+            | Self::LargeArchiveNotWritten => "written",
+            _ => "read",
+        }
+    }
+
     /// Returns how to export the data in another format; `{file}` and `{stem}` represent the file
     /// name with and without its extension.
     pub fn remedy(&self) -> &'static str {
@@ -67,7 +79,9 @@ impl UnsupportedContent {
                 "compress it again with deflate, without a password"
             }
             Self::UlogVersion => "save its topics as CSV: ulog2csv \"{file}\"",
-            Self::BlackboxVersion { .. } => "save it as CSV: blackbox_decode \"{file}\"",
+            Self::BlackboxVersion { .. } | Self::BlackboxFields => {
+                "save it as CSV: blackbox_decode \"{file}\""
+            }
             Self::UnlimitedDimensions => "write it with a fixed shape",
             // A program that requests the latest HDF5 2.0 format writes a new chunk layout.
             Self::HdfDataset { .. } => {

@@ -19,10 +19,10 @@ pub enum ProblemKind {
     #[error("the dataset has no {0}; define them")]
     NoChannels(&'static str),
     /// Dataset channel without a unit.
-    #[error("{0}: choose a unit")]
+    #[error("{0}: the unit is missing; choose one")]
     NoUnit(String),
     /// Dataset channel whose unit in a file is given neither by the file nor by the rules.
-    #[error("{0}: choose the unit that it has in files without units")]
+    #[error("the file gives no unit for {0}; choose the unit of its values")]
     UnitOfFile(String),
     #[error(
         "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset, which cannot \
@@ -34,7 +34,9 @@ pub enum ProblemKind {
         to: String,
     },
     /// Dataset channel that the model lacks.
-    #[error("the model has no {side} {channel}; it has {found}")]
+    #[error(
+        "the model has no {side} {channel}; its {side}s are {found}; choose one of them, or leave the model out"
+    )]
     NoChannel {
         side: ChannelSide,
         channel: String,
@@ -110,7 +112,7 @@ pub enum ProblemKind {
     },
     /// Two files give the same measured response.
     #[error(
-        "{output}/{input} of the measured model \"{name}\" is also in {first}; leave one of them out, or rename one to make it a separate \
+        "{input} → {output} of the measured model \"{name}\" is also in {first}; leave one of them out, or rename one to make it a separate \
          model"
     )]
     ResponseTwice {
@@ -138,7 +140,7 @@ pub enum ProblemKind {
     #[error("enter the airspeed of its condition")]
     NoAirspeed,
     /// Models in a condition contradict one another.
-    #[error("condition {condition}: {field} is both {first} and {second}")]
+    #[error("condition {condition}: {field} is both {first} and {second}; correct one")]
     Contradiction {
         condition: i64,
         field: &'static str,
@@ -157,9 +159,13 @@ pub enum ProblemKind {
         of_name: f64,
     },
     /// Condition without a nominal model, or with several.
-    #[error("condition {condition} has {found} nominal models; it needs exactly one")]
+    #[error(
+        "condition {condition}: expected exactly one nominal model, found {found}; change the roles"
+    )]
     Nominal { condition: i64, found: usize },
-    #[error("duplicate name \"{name}\" among the {bundle} models of condition {condition}")]
+    #[error(
+        "duplicate name \"{name}\" among the {bundle} models of condition {condition}; rename one"
+    )]
     DuplicateName {
         condition: i64,
         /// "physics" or "identified".
@@ -167,7 +173,7 @@ pub enum ProblemKind {
         name: String,
     },
     /// Measured data with the role of a physics model, which needs matrices.
-    #[error("a {} model needs matrices; this is measured data", .0.word())]
+    #[error("a {} model needs matrices, but this is a measured response; choose the role identified", .0.word())]
     MeasuredPhysics(RowRole),
     /// One model's measured parts have different frequency grids.
     #[error(

@@ -74,11 +74,9 @@ pub enum ConditionError {
         expected: &'static str,
         value: f64,
     },
-    #[error(
-        "the model \"{name}\" with a moved parameter: the name occurs twice; names must differ"
-    )]
+    #[error("physics models with changed parameters: duplicate name \"{name}\"; names must differ")]
     DuplicateMovedModel { name: String },
-    #[error("the model \"{name}\" with a moved parameter: {error}")]
+    #[error("physics model \"{name}\" with changed parameters: {error}")]
     MovedModel { name: String, error: ParameterError },
 }
 

@@ -108,7 +108,7 @@ impl fmt::Display for ConditionPlace {
         let position = self.position;
         match self.id {
             Some(id) => write!(formatter, "condition {id} (number {position} in the file)"),
-            None => write!(formatter, "condition number {position} in the file"),
+            None => write!(formatter, "condition at position {position} in the file"),
         }
     }
 }

@@ -55,12 +55,14 @@ pub struct MovedModel {
 /// Error for a parameter or a change without meaning.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
-    #[error("parameter number {position}: the name is empty")]
+    #[error("parameter number {position}: the name is empty; give it one")]
     EmptyName {
         /// Position in the list, counted from 1.
         position: usize,
     },
-    #[error("parameter \"{name}\": duplicate name (entries {first} and {second})")]
+    #[error(
+        "parameter \"{name}\": duplicate name (entries {first} and {second}); names must differ"
+    )]
     DuplicateName {
         name: String,
         /// First entry, counted from 1.
@@ -79,7 +81,7 @@ pub enum ParameterError {
     )]
     PlausibleSd { name: String, plausible_sd: f64 },
     /// A rerun without any change.
-    #[error("parameters: expected at least one change, found none")]
+    #[error("parameters: expected at least one change, found none; add one")]
     NoChange,
     #[error("both parameter and parameters are given; keep one of them")]
     RunAndRerun,

@@ -94,7 +94,7 @@ impl NamePattern {
         if pattern.len() > LONGEST_PATTERN {
             return Err(PatternError::Syntax {
                 pattern: pattern.to_owned(),
-                reason: format!("it is longer than {LONGEST_PATTERN} bytes"),
+                reason: format!("longer than {LONGEST_PATTERN} bytes"),
             });
         }
         let regex = RegexBuilder::new(pattern)

@@ -127,13 +127,12 @@ pub enum ValidationError {
     /// A model that cannot be discretised, or whose poles cannot be computed.
     #[error("the model cannot be simulated: its poles or its discretisation could not be computed")]
     NotSimulated,
-    #[error("the window length must be positive")]
+    #[error("the window length must be greater than 0 s")]
     NoWindow,
     /// Too few samples to estimate an initial state; window length \[s\].
     #[error(
-        "too short to compare in time: windows of {0:.2} s (limited by the record, or to \
-        {TIME_CONSTANTS} time constants of the model's fastest diverging mode) contain too few \
-        samples to estimate the initial state"
+        "windows of {0:.2} s (limited by the record, or by {TIME_CONSTANTS} time constants of the \
+        model's fastest diverging mode) contain too few samples to estimate the initial state"
     )]
     TooShort(f64),
     #[error("the simulated outputs are not finite")]

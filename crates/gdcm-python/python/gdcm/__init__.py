@@ -61,7 +61,7 @@ __all__ = [
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
-    """Run the program `gdcm`: a command, or without one the window.
+    """Run the program `gdcm`: a command, or the window without one.
 
     Parameters
     ----------

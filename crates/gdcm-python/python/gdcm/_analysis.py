@@ -30,8 +30,8 @@ PathText = Union[str, "os.PathLike[str]"]
 class ChannelTable(Mapping[str, T], Generic[T]):
     """A value for each channel, by name: ``gains["LON"]``.
 
-    `inputs` and `outputs` are the two halves; where an input and an output have the same name, only
-    they tell them apart.
+    `inputs` and `outputs` hold the two sides separately. Use them if an input and an output have the
+    same name.
     """
 
     inputs: Dict[str, T]
@@ -150,7 +150,7 @@ class Schedule:
 
     @property
     def cautions(self) -> List[Message]:
-        """What to look at in the schedule."""
+        """Points to check in the schedule."""
         found = []
         for note in self.contents.get("caution_notes", []):
             condition = note.get("condition")
@@ -167,8 +167,9 @@ class Schedule:
     ) -> ScheduledCorrection:
         """Return the correction at an airspeed [kt].
 
-        Beyond the conditions' airspeeds, that of the nearest end applies. A schedule with a second
-        variable takes its value, `altitude_ft` or `mass_kg`; by default the middle of its range.
+        Outside the range of the conditions' airspeeds, the correction at the nearest end applies. If
+        the schedule has a second variable, give its value as `altitude_ft` or `mass_kg`; the default
+        is the middle of its range.
         """
         second = self._second(altitude_ft, mass_kg)
         values = json.loads(self._analysis.schedule_at(float(airspeed_kt), second))
@@ -185,7 +186,7 @@ class Schedule:
         name = None if variable is None else variable["variable"]
         for other, value in given.items():
             if value is not None and other != name:
-                raise ValueError(f"the schedule does not depend on {other}")
+                raise ValueError(f"the schedule does not depend on {other}; leave it out")
         return None if name is None else given[name]
 
     def to_frame(self) -> Any:
@@ -260,7 +261,7 @@ class ConditionResult:
 
     @property
     def suggested_outliers(self) -> List[str]:
-        """Names of the physics models that are suggested as outliers."""
+        """Names of the physics models suggested as outliers."""
         return list(self.contents["suggested_outliers"])
 
     @property
@@ -270,23 +271,25 @@ class ConditionResult:
 
     @property
     def G(self) -> Floats:
-        """Gains that the responses want, shape (p, m); NaN where undefined."""
+        """Delta gain G of each response, shape (p, m): the gain that would match it; NaN if
+        undefined."""
         return np.array(self.contents["G"], dtype=float)
 
     @property
     def D_s(self) -> Floats:
-        """Delays that the responses want [s], shape (p, m); NaN where undefined."""
+        """Delta delay D of each response [s], shape (p, m): the delay that would match it; NaN if
+        undefined."""
         return np.array(self.contents["D_s"], dtype=float)
 
     @property
     def gain_bounds(self) -> Tuple[float, float]:
-        """Least and greatest gain of a channel."""
+        """Lower and upper bound of the channel gains."""
         lower, upper = self.contents["gain_bounds"]
         return (lower, upper)
 
     @property
     def delay_upper_s(self) -> float:
-        """Greatest delay of a channel [s]."""
+        """Upper bound of the channel delays [s]."""
         return float(self.contents["delay_upper_s"])
 
     @property
@@ -392,8 +395,8 @@ class ConditionResult:
         Parameters
         ----------
         pade : int
-            Order, 1 to 8, of the Pade approximants that make states of the delays; `notes` of the
-            model states their error. In discrete time delays are exact.
+            Order, 1 to 8, of the Pade approximants that replace the delays; the model's `notes` state
+            their error. Delays of discrete-time models are exact.
         model, correction
             As for `response`.
         """
@@ -417,9 +420,9 @@ class ConditionResult:
 
 @dataclass(frozen=True)
 class Assessment:
-    """Change of the cost of the nominal model by the schedule, in one condition.
+    """Change in the cost of a condition's nominal model due to the schedule.
 
-    `dJ`, `dJ_mag` and `dJ_phase` have the shape (p, m); negative is better, NaN undefined.
+    `dJ`, `dJ_mag` and `dJ_phase` have the shape (p, m); negative is better, NaN means undefined.
     """
 
     id: int
@@ -430,9 +433,9 @@ class Assessment:
 
 
 class Analysis:
-    """The result of `gdcm.analyze`: ``fix[10]`` is that of condition 10.
+    """The result of `gdcm.analyze`; ``fix[10]`` is the result of condition 10.
 
-    Every number is that of ``corrections.json`` as the command ``gdcm analyze`` writes it.
+    All numbers are the same as in the file ``corrections.json`` of the command ``gdcm analyze``.
     """
 
     def __init__(self, analysis: _gdcm.Analysis) -> None:
@@ -500,7 +503,7 @@ class Analysis:
         Raises
         ------
         Error
-            There is none ("no-schedule").
+            The analysis has no schedule ("no-schedule").
         """
         contents = self._corrections["schedule"]
         if contents is None:
@@ -509,7 +512,7 @@ class Analysis:
 
     @property
     def assessment(self) -> Dict[int, Assessment]:
-        """Change of the cost by the schedule, by condition."""
+        """Change in the cost due to the schedule, by condition."""
         found = {}
         for row in self._corrections["assessment"]["conditions"]:
             changes = {key: np.array(row[key], dtype=float) for key in ("dJ", "dJ_mag", "dJ_phase")}
@@ -523,12 +526,12 @@ class Analysis:
 
     @property
     def notes(self) -> List[Message]:
-        """What was assumed."""
+        """Assumptions made in the analysis."""
         return messages_of(self._analysis.messages).notes
 
     @property
     def cautions(self) -> List[Message]:
-        """What to look at, each with the conditions that it concerns."""
+        """Points to check, each with its conditions."""
         before = messages_of(self._analysis.messages).cautions
         return before + messages_of(self._analysis.summary_messages).cautions
 
@@ -618,7 +621,7 @@ class Analysis:
 
     def save(self, file: PathText) -> None:
         """Save the study with its decisions, ``NAME.gdcm-study.json``, for the window and the
-        commands. A dataset that is in no file is written beside it, ``NAME.dataset.json.gz``.
+        commands. A dataset without a file is written to ``NAME.dataset.json.gz`` in the same folder.
         """
         self._analysis.save_study(path(file))
 
@@ -687,9 +690,9 @@ def analyze(
     data : Dataset
         From `example`, `load`, `assemble`, or made from arrays.
     phase : {"none", "delay", "lead"}
-        How the phase is corrected: not, by delays, or by a delay or a lead filter a channel.
+        Correction of the phase: none, a delay in each channel, or a delay or lead filter in each.
     reject
-        "suggested" for the suggested outliers, or models to reject: ``[(10, "nominal")]``.
+        Models to reject, ``[(10, "nominal")]``, or "suggested" for the suggested outliers.
     on
         Responses to match, ``[("Q", "LON")]``; an empty list for none. By default those of the
         dataset.
@@ -706,7 +709,8 @@ def analyze(
     couplings : {"none", "mixing", "feedback"}
         Correction of couplings.
     physics : {"off", "named", "all", "by-hand"}
-        Physics parameters that move the physics models.
+        Named physics parameters to change in the physics models: none, those that need a change to
+        agree with flight, all, or those in `parameter`.
     parameter : dict
         Changes of parameters set by hand, in their units: ``{"Ixx": "+4%"}``.
     quantile : float
@@ -716,13 +720,14 @@ def analyze(
     delay_bound : float or "auto"
         Greatest delay of a channel [s].
     agreement : float
-        Mismatch [dB] up to which a loop of matched gains counts as consistent.
+        Mismatch [dB] up to which a loop of held gains counts as consistent.
     cost_average : {"median", "mean"}
         Average of squared errors over frequency.
     gain_objective : {"ratio", "dB"}
-        What the gains minimise.
+        Errors that the gains minimise: of the gain ratios, or in dB.
     gain_from : {"representatives", "mean"}
-        Models behind the gains.
+        Models from which G is computed: the two representatives, or the mean over all pairs of kept
+        models.
     level : float
         Confidence level of error bars, 0.5 to 0.999.
     pooling : float
@@ -730,30 +735,31 @@ def analyze(
     coherence : float, "on" or "off"
         Minimum coherence of measured responses that is used.
     averages, averaging_window
-        Number of averages and window length [s] of measured responses whose files do not say it.
+        Number of averages and window length [s] for measured responses whose files do not state
+        them.
     half_overlap : bool
         Whether the windows of measured responses overlap by half.
     degree : {0, 1, 2, 3, "table"}
         Degree of the schedule in airspeed, or a lookup table.
     schedule_of : {"ln-k", "k"}
-        What is regressed on airspeed.
+        Quantity regressed on airspeed: the logarithm of the gains, or the gains.
     schedule_delays : {"automatic", "always", "never"}
         Whether delays are scheduled.
     tau_degree : {0, 1, 2, 3}
-        Degree of signed delays in airspeed.
+        Degree in airspeed of the signed delays, if the phase is corrected by leads.
     airspeed_tolerance : float
-        Airspeeds this close [kt] count as one.
+        Airspeeds closer than this [kt] count as equal.
     second_variable : {"none", "altitude", "mass"}
         Second variable of the schedule.
     hold_out : sequence of int
-        Conditions that the schedule is made without and judged by.
+        Conditions left out of the schedule and used to judge it.
     sign : dict
         Channels with the opposite sign: ``{"NZ": -1}`` (identified models), ``{"NZ":
         "-1:physics"}``, ``{"NZ": "-1:all"}``; 1 restores.
     attitude_command : sequence of str
         Outputs whose attitude the stick commands.
     levels
-        Boundaries of levels for requirements: files, or names such as "ads-33e-prf-yaw-tracking".
+        Level boundaries for the requirements: files, or names such as "ads-33e-prf-yaw-tracking".
     tolerances
         File of the tolerances of time histories.
     progress : callable

@@ -50,8 +50,8 @@ class Condition:
     perturbed : dict
         Further physics models by name, linearised about neighbouring trims.
     identified : dict
-        Models identified from flight by name; the reference of the correction. Without any the
-        condition has no result.
+        Models identified from flight, by name; the reference of the correction. A condition without
+        identified models has no result.
     name : str
         Name for display; "condition ID" if empty.
     altitude, weight : str or None
@@ -148,7 +148,7 @@ class Condition:
 
 
 class Dataset:
-    """A dataset, with the decisions of a study about it if it was loaded from one.
+    """A dataset; if it was loaded from a study, with the decisions of that study.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ class Dataset:
     Raises
     ------
     Error
-        The arrays do not make a dataset; `code` and `fields["place"]` say what is wrong.
+        The arrays do not form a dataset; `code` and `fields["place"]` state the fault and its place.
     """
 
     _data: _gdcm.Data
@@ -259,7 +259,7 @@ class Dataset:
     def conditions(self) -> Dict[int, Condition]:
         """Conditions by id, with their models as arrays.
 
-        Runs of named parameters are left out; they are in `contents`.
+        Physics models with a changed named parameter are left out; they are in `contents`.
         """
         if self._conditions is None:
             conditions = [Condition._from_json(text) for text in self.contents["conditions"]]
@@ -268,17 +268,17 @@ class Dataset:
 
     @property
     def notes(self) -> List[Message]:
-        """What was assumed while the files were read."""
+        """Assumptions made while the files were read."""
         return messages_of(self._data.messages).notes
 
     @property
     def cautions(self) -> List[Message]:
-        """What to look at in the files."""
+        """Points to check in the files."""
         return messages_of(self._data.messages).cautions
 
     @property
     def rules(self) -> Optional[Dict[str, Any]]:
-        """Rules that assembled models were read by; None for another dataset."""
+        """Rules by which the models were assembled; None for a dataset that was not assembled."""
         rules = bytes(self._data.rules)
         return json.loads(rules) if rules else None
 
@@ -301,7 +301,7 @@ class Dataset:
         model : str
             Name of the model; by default the nominal physics model, or the first identified one.
         bundle : {"physics", "identified"}
-            The models among which it is.
+            The bundle that contains the model.
 
         Returns
         -------
@@ -318,8 +318,8 @@ class Dataset:
         return response_array(buffer, len(self.outputs), len(self.inputs), frequencies.size)
 
     def save(self, file: PathText, *, force: bool = False) -> None:
-        """Write the dataset, compressed if the name ends in ".gz"; or with ".gdcm-study.json" the
-        study, and beside it its dataset if that is not in a file yet.
+        """Write the dataset, compressed if the name ends in ".gz". If it ends in ".gdcm-study.json",
+        write the study, and its dataset into the same folder if that has no file yet.
 
         An existing dataset is replaced only with `force`.
         """
@@ -451,7 +451,9 @@ def _channels(texts: Sequence[Dict[str, str]]) -> Tuple[Channel, ...]:
 def _plain(value: Any) -> Any:
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
-    raise TypeError(f"{type(value).__name__} is not a value of a dataset file")
+    raise TypeError(
+        f"expected numbers, texts, lists, dicts or NumPy arrays, found {type(value).__name__}"
+    )
 
 
 __all__ = [

@@ -9,7 +9,7 @@ from ._messages import Message, messages_of
 
 
 class Error(Exception):
-    """A call has no result.
+    """Raised when a call has no result.
 
     Attributes
     ----------
@@ -19,9 +19,9 @@ class Error(Exception):
     status : int
         Exit status of the command: 1 no complete result, 2 the request or a file is wrong.
     fields : dict
-        What the text is about, such as ``option``, ``path``, ``place``, ``line``.
+        Subject of the text, such as ``option``, ``path``, ``place``, ``line``.
     errors, cautions : list of Message
-        What the program reported before: the single faults behind the error, and cautions.
+        Messages reported before the error: the individual faults that caused it, and cautions.
     """
 
     code: str

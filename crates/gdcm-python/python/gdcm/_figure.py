@@ -40,8 +40,8 @@ class Figure:
         return self.svg
 
     def save(self, file: Union[str, "os.PathLike[str]"], *, force: bool = False) -> None:
-        """Write the figure; the ending selects the format: .svg, .png (300 dots per inch), .pdf, or
-        .csv for the numbers. An existing file is replaced only with `force`."""
+        """Write the figure; the file extension selects the format: .svg, .png (300 dots per inch),
+        .pdf, or .csv for the numbers. An existing file is replaced only with `force`."""
         self._figure.save(os.fspath(file), force)
 
     def to_frame(self) -> Any:

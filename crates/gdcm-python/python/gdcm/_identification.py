@@ -74,8 +74,8 @@ class Identification:
 
     @property
     def models(self) -> List[StateSpace]:
-        """All models: the recommended one, the unrefined one, and those of neighbouring orders and
-        without one record each."""
+        """All models: the recommended one, the unrefined one, those of neighbouring orders, and those
+        fitted without one record each."""
         found = []
         for text in self.contents["models"]:
             model = model_from_json(text)
@@ -90,12 +90,12 @@ class Identification:
 
     @property
     def chi2_dof(self) -> float:
-        """Cost of the fit per degree of freedom; 1 if the errors are the noise that was assumed."""
+        """Cost of the fit per degree of freedom; 1 if the residuals agree with the noise."""
         return float(self.contents["validation"]["fit_per_dof"])
 
     @property
     def held_out_chi2_dof(self) -> Optional[float]:
-        """The same of the held-out records; None without any."""
+        """The same for the held-out records; None without held-out records."""
         value = self.contents["validation"]["held_out_per_dof"]
         return None if value is None else float(value)
 
@@ -130,7 +130,7 @@ class Identification:
 
     @property
     def notes(self) -> List[Message]:
-        """What was assumed while the records were read and prepared."""
+        """Assumptions made while the records were read and prepared."""
         return messages_of(self._identification.messages).notes
 
     @property
@@ -286,7 +286,7 @@ def identify(
     unit, factor : dict
         Units and factors of the samples of channels, which override the files.
     reference
-        Recorded references that drove the loop from outside.
+        Recorded reference signals that drove the control loop.
     order, past, pole
         Model orders, past windows and Laguerre poles [rad/s] to search; by default those that the
         records support.

@@ -1,4 +1,4 @@
-"""What the program reports beside a result."""
+"""Messages of the program about a result."""
 
 from __future__ import annotations
 

@@ -144,9 +144,14 @@ class StateSpace:
                 labels["states"] = list(self.states)
             return control.ss(self.A, self.B, self.C, self.D, dt, **labels)
         if self.sample_time_s is not None:
-            raise ValueError("delays of a model in discrete time have no matrices here")
+            raise ValueError(
+                "to_control() does not convert the delays of a discrete-time model; add them to its "
+                "matrices as states"
+            )
         if pade is None:
-            raise ValueError("the model has delays; give the order of their approximants, pade=3")
+            raise ValueError(
+                "the model has delays; give the order of their Pade approximants, for example pade=3"
+            )
         plain = control.ss(self.A, self.B, self.C, self.D, dt)
         outputs, inputs = self.D.shape
         before = _delays(control, self.input_delays_s, inputs, pade)
@@ -342,7 +347,7 @@ def _from_object(model: Any, where: str) -> StateSpace:
     if dt is True:
         raise Error(
             "sample-time",
-            f"{where}: a model in discrete time without a sample time; set its dt in seconds",
+            f"{where}: the discrete-time model has no sample time; set its dt in seconds",
         )
     sample_time_s = None if dt is None or dt == 0 else float(dt)
     states = getattr(model, "state_labels", None)

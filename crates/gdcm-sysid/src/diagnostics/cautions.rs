@@ -66,8 +66,8 @@ pub enum IdentificationCaution {
     },
     /// An output vibrates above the band; a lower cut-off was used before the projections.
     #[error(
-        "{percent:.0} % of the variance of {signal} is vibration above the band: CT-PBSID used \
-        only frequencies below {cut_off:.0} rad/s"
+        "{percent:.0} % of the variance of {signal} is vibration above the band: the subspace \
+        identification (CT-PBSID) used only frequencies below {cut_off:.0} rad/s"
     )]
     Vibration {
         signal: Signal,
@@ -122,7 +122,7 @@ pub enum IdentificationCaution {
     },
     /// The model departs from the measured points.
     #[error(
-        "the model departs from the measured points of {output}/{input} between {:.1} and {:.1} rad/s: trust the points there, and \
+        "the model departs from the measured points of {input} → {output} between {:.1} and {:.1} rad/s: trust the points there, and \
          try another order or band",
         band[0],
         band[1]
@@ -356,11 +356,11 @@ fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
     ends.join(" and ")
 }
 
-/// Lists responses with their verb: `LON to P, LAT to P and LON to Q are`.
+/// Lists responses with their verb: `LON → P, LAT → P and LON → Q are`.
 fn responses_are(pairs: &[[Signal; 2]]) -> String {
     let names: Vec<String> = pairs
         .iter()
-        .map(|[output, input]| format!("{input} to {output}"))
+        .map(|[output, input]| format!("{input} → {output}"))
         .collect();
     let verb = if names.len() == 1 { "is" } else { "are" };
     format!("{} {verb}", listed(&names))

@@ -192,7 +192,7 @@ impl<'r> Ranking<'r> {
         let mut candidates = Vec::new();
         let of_pasts = each(executor, &self.settings.pasts, |&past| {
             self.progress
-                .advance(self.share, &format!("{step}, past {past}"))?;
+                .advance(self.share, &format!("{step}, past window {past}"))?;
             Ok::<_, Cancelled>(self.candidate(&factor, poles[number], past))
         });
         for candidate in of_pasts {

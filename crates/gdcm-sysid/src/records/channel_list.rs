@@ -32,7 +32,7 @@ pub enum ChannelListError {
     )]
     NoChannel(String),
     /// Duplicate channel.
-    #[error("duplicate channel {0}")]
+    #[error("duplicate channel {0}; remove one")]
     Twice(String),
 }
 

@@ -6,7 +6,7 @@ use gdcm_model::units::{number, telling};
 /// Note on a choice in a proposed layout. Columns are given as displayed, in quotation marks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutNote {
-    #[error("time from the stamps of each topic")]
+    #[error("time from the time stamps of each topic")]
     TopicStamps,
     #[error("sample time {} s, as requested", number(*step_s))]
     RequestedStep {
@@ -24,7 +24,9 @@ pub enum LayoutNote {
         unit: &'static str,
         reason: TimeUnitReason,
     },
-    #[error("the file marks {count} columns with other names as {side}s: assigned in order")]
+    #[error(
+        "the file marks {count} columns as {side}s under other names; they are assigned in order"
+    )]
     MarkedInOrder { side: ChannelSide, count: usize },
     /// A column with the conversion to a channel's unit.
     #[error("{channel}: column {column}{conversion}")]

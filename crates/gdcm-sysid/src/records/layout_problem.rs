@@ -43,7 +43,8 @@ pub enum LayoutProblem {
     },
     /// Time steps are too long for a manoeuvre.
     #[error(
-        "the time in column {column} has steps of {} s: its unit is wrong, or it is not a time",
+        "the time in column {column} has steps of {} s: its unit is wrong, or it is not a time; \
+        correct the unit, or choose another column",
         telling(*step_s, 3)
     )]
     TimeStep {
@@ -142,14 +143,14 @@ pub enum LayoutProblem {
         column: String,
     },
     /// The factor is zero or not finite.
-    #[error("{channel}: the factor {} is zero or not finite", number(*factor))]
+    #[error("{channel}: expected a finite factor other than 0, found {}", number(*factor))]
     Factor {
         channel: String,
         /// Zero, infinite or NaN.
         factor: f64,
     },
     /// The delay is not plausible for a sensor or a bus.
-    #[error("{channel}: the delay of {} s exceeds the limit of 10 s", number(*delay_s))]
+    #[error("{channel}: expected a delay of at most 10 s, found {} s", number(*delay_s))]
     Delay { channel: String, delay_s: f64 },
     /// Samples exceed the plausible range for a helicopter in this unit.
     #[error(

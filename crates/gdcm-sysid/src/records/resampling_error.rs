@@ -3,11 +3,11 @@
 /// Why channels cannot be resampled to a common clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResamplingError {
-    #[error("{topic} has {samples} samples with a stamp; at least 3 are needed")]
+    #[error("{topic} has {samples} samples with a time stamp, but at least 3 are needed")]
     TooFew { topic: String, samples: usize },
     /// A topic has fewer than 2.5 samples in a period of the highest line.
     #[error(
-        "{topic} is sampled at {rate_hz:.1} Hz, and a band to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
+        "{topic} is sampled at {rate_hz:.1} Hz, but a band up to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
          the band at {possible:.2} rad/s"
     )]
     TooSlow {
@@ -33,7 +33,7 @@ pub enum ResamplingError {
         second_start_s: f64,
     },
     #[error(
-        "the joined record would have {0:.0} samples: a stamp is wrong, or the requested rate is too high"
+        "the joined record would have {0:.0} samples: a time stamp is wrong, or the requested rate is too high"
     )]
     TooMany(f64),
 }

@@ -84,14 +84,17 @@ impl RecordTable {
                     return vec![self];
                 };
                 parts = parts_by_number(numbers);
-                reason = format!("column {} changes", self.quoted(column));
+                reason = format!(
+                    "a new record begins where column {} changes",
+                    self.quoted(column)
+                );
             }
             Separation::ByTime(column) => {
                 let Some(stamps) = self.columns.get(column) else {
                     return vec![self];
                 };
                 parts = parts_by_time(&stamps.values);
-                reason = "the time restarts".to_owned();
+                reason = "a new record begins where the time restarts".to_owned();
             }
         }
         let note = format!("one of {} records: {reason}", parts.len());

@@ -51,7 +51,7 @@ impl RecordTable {
             self.columns.remove(*column);
         }
         self.notes.push(format!(
-            "{} tables side by side, each preceded by a stamp column",
+            "{} tables side by side, each beginning with its own time column",
             stamp_columns.len()
         ));
         self

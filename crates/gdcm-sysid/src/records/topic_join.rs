@@ -79,13 +79,13 @@ pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
         joined.modes.extend(table.modes.iter().cloned());
     }
     joined.notes.push(format!(
-        "one record of {} topics: {}",
+        "one record from {} topics: {}",
         taken.len(),
         shortened_list(&taken)
     ));
     if !left_out.is_empty() {
         joined.notes.push(format!(
-            "left out, because they have no time: {}",
+            "topics left out, because they have no time: {}",
             shortened_list(&left_out)
         ));
     }

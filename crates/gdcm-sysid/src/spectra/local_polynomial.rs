@@ -71,11 +71,19 @@ pub(crate) fn local_fits(
 
 /// Returns an error for lines and frequencies that do not permit an estimate.
 fn check_lines(spectra: &[Spectrum], omegas: &[f64]) -> Result<(), LocalPolynomialError> {
-    let first = spectra.first().ok_or(LocalPolynomialError::Nothing)?;
+    let first = spectra.first().ok_or(LocalPolynomialError::Nothing {
+        missing: "spectral lines",
+    })?;
     let inputs = first.inputs.nrows();
     let outputs = first.outputs.nrows();
-    if omegas.is_empty() || inputs == 0 || outputs == 0 {
-        return Err(LocalPolynomialError::Nothing);
+    for (count, missing) in [
+        (inputs, "inputs"),
+        (outputs, "outputs"),
+        (omegas.len(), "frequencies in the band"),
+    ] {
+        if count == 0 {
+            return Err(LocalPolynomialError::Nothing { missing });
+        }
     }
     for spectrum in spectra {
         if spectrum.inputs.nrows() != inputs || spectrum.outputs.nrows() != outputs {

@@ -3,17 +3,17 @@
 /// Why the frequency response cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LocalPolynomialError {
-    /// No lines, inputs or outputs.
-    #[error(
-        "a frequency response needs spectral lines, inputs, outputs and frequencies; at least one \
-        of these is missing"
-    )]
-    Nothing,
+    /// No lines, inputs, outputs or frequencies.
+    #[error("the records have no {missing}")]
+    Nothing {
+        /// What is missing: "spectral lines".
+        missing: &'static str,
+    },
     /// A segment has other channel counts than the first; its record index, from 0.
     #[error("record {} differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
-    #[error("the spectra contain values that are not finite")]
+    #[error("the spectra contain values that are not finite; check the samples and the band")]
     NotFinite,
     /// Fewer lines than first-degree polynomials need.
     #[error(
@@ -31,7 +31,7 @@ impl LocalPolynomialError {
     /// Returns the stable code by which scripts and tests distinguish the errors.
     pub fn code(&self) -> &'static str {
         match self {
-            Self::Nothing => "no-spectra",
+            Self::Nothing { .. } => "no-spectra",
             Self::ChannelsDiffer(..) => "channels-differ",
             Self::NotFinite => "not-finite",
             Self::TooFewLines { .. } => "too-few-lines",

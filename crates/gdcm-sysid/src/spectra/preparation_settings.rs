@@ -174,12 +174,12 @@ fn named_channels(names: &[&str]) -> Vec<ChannelPreparation> {
 /// Why flight records cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PreparationError {
-    #[error("there are no flight records")]
+    #[error("there are no flight records; add at least one")]
     NoRecords,
     #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
     /// A record has other channels than the settings.
-    #[error("record {record} has {found} {role}s, not {named}")]
+    #[error("record {record}: expected {named} {role}s, found {found}")]
     ChannelsDiffer {
         record: String,
         role: ChannelSide,
@@ -188,7 +188,8 @@ pub enum PreparationError {
     },
     /// A record's columns differ in length.
     #[error(
-        "record {record} has {stamps} time stamps, {inputs} input samples and {outputs} output samples"
+        "record {record} has {stamps} time stamps, {inputs} input samples and {outputs} output samples; \
+        the numbers must be equal"
     )]
     LengthsDiffer {
         record: String,

@@ -37,15 +37,15 @@ pub enum RecordCaution {
     },
     /// A part between two gaps was left out because it is too short.
     #[error(
-        "{record}: the {length_s:.1} s after {start_s:.2} s were left out, because they are \
-        too short between two gaps"
+        "{record}: the part between two gaps at {start_s:.2} s was left out, because it lasts only \
+        {length_s:.1} s"
     )]
     SegmentDropped {
         record: String,
         start_s: f64,
         length_s: f64,
     },
-    #[error("{0}: no part could be used")]
+    #[error("{0}: no part of the record could be used")]
     RecordUnused(String),
     /// More than half the consecutive samples are equal while the channel moves.
     #[error(
@@ -78,7 +78,8 @@ pub enum RecordCaution {
         correlation: f64,
     },
     #[error(
-        "{signal} is at its limit for {percent:.1} % of {record}{}, which cannot be repaired. Leave the output out, or {}",
+        "{signal} is at its limit for {percent:.1} % of {record}{}; the lost values cannot be \
+        recovered. Leave out the output, or {}",
         if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
         if *records > 1 { "these records" } else { "the record" }
     )]

@@ -74,7 +74,9 @@ impl Instrument {
         let longest = lines
             .iter()
             .max_by(|a, b| a.duration_s.total_cmp(&b.duration_s))
-            .ok_or(LocalPolynomialError::Nothing)?;
+            .ok_or(LocalPolynomialError::Nothing {
+                missing: "spectral lines",
+            })?;
         let omegas: Vec<f64> = longest
             .omega
             .iter()

@@ -112,7 +112,10 @@ fn bandwidth_rows(finding: &BandwidthFinding, levels: &LevelBoundaries) -> Vec<V
     if let Some(level) = finding.level(levels) {
         let remark = match level {
             AssessedLevel::Level(_) => "",
-            AssessedLevel::AboveBoundaries => "above the end of a level boundary",
+            AssessedLevel::AboveBoundaries => {
+                "level not determined: phase delay above the last point of a level boundary; \
+                extend the boundary"
+            }
         };
         let value = level.number().map(f64::from);
         rows.push(subject.row("level", value, None, remark.to_owned()));
@@ -144,8 +147,8 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
     }
     if let Some(count) = finding.swaps_left_out.get(name) {
         remarks.push(match count {
-            1 => "1 exchange of models gives no value".to_owned(),
-            _ => format!("{count} exchanges of models give no value"),
+            1 => "interval without 1 other model, which gives no value".to_owned(),
+            _ => format!("interval without {count} other models, which give no value"),
         });
     }
     remarks.join("; ")
@@ -226,7 +229,7 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
             "J_rms needs an output that is an angle, a rate, a speed or an acceleration".to_owned()
         }
         (Some(_), []) => String::new(),
-        (Some(_), left_out) => format!("without {}", left_out.join(", ")),
+        (Some(_), left_out) => format!("J_rms does not include {}", left_out.join(", ")),
     };
     let mut rows = vec![subject.row("j_rms", finding.j_rms, None, remark)];
     for (output, theil) in &finding.theil {

@@ -159,6 +159,10 @@ impl Flight {
                 damaged: 0,
                 header,
             }),
+            None if version == "2" => Err(VariableFault::unsupported(
+                name,
+                UnsupportedContent::BlackboxFields,
+            )),
             _ => {
                 let version: String = version.chars().take(9).collect();
                 Err(VariableFault::unsupported(

@@ -76,7 +76,7 @@ impl MatrixHeader {
     fn read(file: &mut Cursor<'_>) -> Result<Self, VariableFault> {
         let start = *file;
         let Some(order) = detect_order(start.rest()) else {
-            return Err(no_matrix(start, "no matrix type"));
+            return Err(no_matrix(start, "an unknown byte order"));
         };
         file.order = order;
         let type_digits = file.read_u32()?;
@@ -97,7 +97,7 @@ impl MatrixHeader {
             _ => return Err(no_matrix(start, "an unknown matrix type")),
         };
         if complex > 1 || name_length == 0 {
-            return Err(no_matrix(start, "no matrix"));
+            return Err(no_matrix(start, "an invalid header"));
         }
         Ok(Self {
             number_type,

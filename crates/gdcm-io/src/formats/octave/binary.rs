@@ -185,7 +185,7 @@ impl Parts for BinaryReader<'_> {
             }
         };
         if shape.len() < 2 {
-            return Err(self.fault(variable, OctaveFault::FewDimensions));
+            return Err(self.fault(variable, OctaveFault::Dimensions { found: shape.len() }));
         }
         Ok(Sides {
             shape,

@@ -232,7 +232,7 @@ mod tests {
                 fault: VariableFault::Line {
                     variable,
                     line: 5,
-                    fault: LineFault::Octave(OctaveFault::NotANumber),
+                    fault: LineFault::Octave(OctaveFault::NotANumber { .. }),
                 },
                 ..
             }) if variable == "A"

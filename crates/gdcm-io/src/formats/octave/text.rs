@@ -12,6 +12,8 @@
 //! Matrices are written row by row; arrays with other dimensions have `# ndims: 3`, a line with the
 //! dimensions, and their numbers in column-major order.
 
+use gdcm_model::message_text::shortened;
+
 use crate::file_error::FileError;
 use crate::formats::octave::assembly::{Parts, Sides, ValueHeading, read_value, texts_in_pages};
 use crate::formats::octave::form::{Element, Form, NumberParts};
@@ -146,6 +148,7 @@ impl<'t> TextReader<'t> {
                 variable,
                 OctaveFault::KeyNotWhole {
                     key: key.to_owned(),
+                    found: shortened(text),
                 },
             )
         })
@@ -174,8 +177,10 @@ impl<'t> TextReader<'t> {
     /// Reads the next word as a non-negative integer.
     fn read_index(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let word = self.read_word(variable)?;
-        word.parse()
-            .map_err(|_| self.fault(variable, OctaveFault::NotWhole))
+        word.parse().map_err(|_| {
+            let found = shortened(word);
+            self.fault(variable, OctaveFault::NotWhole { found })
+        })
     }
 
     /// Parses a word as a number.
@@ -184,8 +189,10 @@ impl<'t> TextReader<'t> {
         if word == "NA" {
             return Ok(f64::NAN);
         }
-        word.parse()
-            .map_err(|_| self.fault(variable, OctaveFault::NotANumber))
+        word.parse().map_err(|_| {
+            let found = shortened(word);
+            self.fault(variable, OctaveFault::NotANumber { found })
+        })
     }
 
     /// Returns the next `length` bytes, which may contain line breaks. If no line ends after them,
@@ -250,7 +257,7 @@ impl Parts for TextReader<'_> {
             shape.push(self.read_index(variable)?);
         }
         if shape.len() < 2 {
-            return Err(self.fault(variable, OctaveFault::Dimensions));
+            return Err(self.fault(variable, OctaveFault::Dimensions { found: shape.len() }));
         }
         Ok(Sides {
             shape,
@@ -273,7 +280,8 @@ impl Parts for TextReader<'_> {
             let word = self.read_word(variable)?;
             if element.is_complex {
                 let Some((re, im)) = complex_parts(word) else {
-                    return Err(self.fault(variable, OctaveFault::NotComplex));
+                    let found = shortened(word);
+                    return Err(self.fault(variable, OctaveFault::NotComplex { found }));
                 };
                 numbers.extend([
                     self.parse_number(re, variable)?,

@@ -237,6 +237,7 @@ impl ResponseLayout {
             return Err(RecognitionFault::ResponseNotFinite {
                 name,
                 frequency: at % self.count + 1,
+                value: ordered[at],
             });
         }
         Ok(ResponseArray {

@@ -63,10 +63,10 @@ impl Display for FoundFault {
 /// names the affected model field, such as "B".
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum RecognitionFault {
-    #[error("matrix {name} is missing")]
+    #[error("matrix {name} is missing; a model needs A, B and C")]
     MissingMatrix { name: &'static str },
     /// Matrices in separate files do not form a model.
-    #[error("a model needs A, B and C")]
+    #[error("matrices are missing; a model needs A, B and C")]
     MissingMatrices,
     #[error("{name}: expected {expected}, found {found}")]
     Kind {
@@ -92,13 +92,25 @@ pub(crate) enum RecognitionFault {
         entry: usize,
         value: f64,
     },
-    #[error("{name}: expected finite numbers")]
-    ImaginaryNotFinite { name: String },
-    #[error("{name}, frequency {frequency}: expected a finite number")]
+    #[error(
+        "{name}, entry {entry}: expected a finite imaginary part, found {}",
+        number(*value)
+    )]
+    ImaginaryNotFinite {
+        name: String,
+        /// Entry, from 1.
+        entry: usize,
+        value: f64,
+    },
+    #[error(
+        "{name}, frequency {frequency}: expected a finite number, found {}",
+        number(*value)
+    )]
     ResponseNotFinite {
         name: &'static str,
         /// Frequency index, from 1.
         frequency: usize,
+        value: f64,
     },
     #[error("{name}: expected {expected} matrices as in A, found {found}")]
     PageCount {
@@ -107,7 +119,7 @@ pub(crate) enum RecognitionFault {
         /// Description of the found value.
         found: String,
     },
-    #[error("{place}: {count} {counted}; at most {MOST_STATES} are read")]
+    #[error("{place}: expected at most {MOST_STATES} {counted}, found {count}")]
     TooMany {
         place: String,
         count: usize,
@@ -134,37 +146,38 @@ pub(crate) enum RecognitionFault {
         found: [usize; 2],
     },
     #[error(
-        "E is singular{}: the model has no state-space form; export it without E",
+        "E is singular{}; export the model without algebraic states (in MATLAB: sys = \
+        ss(sys,'explicit'))",
         condition_words(*condition)
     )]
     SingularDescriptor {
         /// Condition number; infinite for a singular matrix, `None` if the factorisation failed.
         condition: Option<f64>,
     },
-    #[error("no transfer function")]
+    #[error("expected numerators and denominators, or zeros, poles and gains; found neither")]
     NoTransferFunction,
-    #[error("response {response}: no {part}")]
+    #[error("response {response}: {part} missing; give numbers for each response")]
     ResponseWithout {
         /// Response number, from 1.
         response: usize,
         /// "denominator", "poles" or "gain".
         part: &'static str,
     },
-    #[error("{place}: the denominator is zero")]
+    #[error("{place}: the denominator is zero; correct it")]
     ZeroDenominator { place: String },
     #[error(
-        "{place}: the numerator is of higher degree than the denominator; such a response has no \
-        state-space form"
+        "{place}: the numerator is of higher degree than the denominator, so that the response has \
+        no state-space form; add poles above the band, or save a frequency response instead"
     )]
     Improper { place: String },
-    #[error("real and imaginary parts have different dimensions")]
+    #[error("real and imaginary parts have different dimensions; save both with the same")]
     PartsDiffer,
     #[error(
         "coherence: {found} numbers for the {expected} of the response; write one for each output, \
         input and frequency, or leave it out"
     )]
     CoherenceCount { found: usize, expected: usize },
-    #[error("{name}: may be γ or γ²; call γ² gamma2 or coherence, and square γ first")]
+    #[error("{name}: can mean γ or γ²; save γ² under the name gamma2 or coherence")]
     Gamma { name: String },
     #[error(
         "the response: expected outputs x inputs x {frequencies} frequencies, found {}",
@@ -175,16 +188,16 @@ pub(crate) enum RecognitionFault {
         /// Length along each dimension.
         found: Vec<usize>,
     },
-    #[error("frequencies are missing")]
+    #[error("frequencies are missing; save them as omega_rad_s or f_hz")]
     NoFrequencies,
     #[error(
-        "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" \
-        or \"Hz\" beside them as frequency_unit"
+        "the frequencies have no unit; call them omega_rad_s or f_hz, or save \"rad/s\" or \"Hz\" as \
+        frequency_unit"
     )]
     NoFrequencyUnit,
     #[error("frequencies are in \"{unit}\"; expected rad/s or Hz")]
     FrequencyUnit { unit: String },
-    #[error("{name}: delay without a model; put it beside A, B, C and D, as input_delays_s")]
+    #[error("{name}: delay without a model; save it with A, B, C and D, as input_delays_s")]
     DelayWithoutModel { name: String },
     #[error(
         "{name}: a measured response must contain its delays; include them in it (in MATLAB: sys = \
@@ -245,7 +258,7 @@ pub(crate) enum RecognitionFault {
         unit: UnclearDelayUnit,
     },
     #[error(
-        "the sample time is {}: a discrete-time model without a known sample time cannot be \
+        "the sample time is {} s: a discrete-time model without a known sample time cannot be \
         compared; set Ts",
         number(*.value)
     )]
@@ -296,12 +309,16 @@ pub(crate) enum RecognitionFault {
     /// Identification data in the frequency domain.
     #[error("frequency-domain data are not a record; save time-domain data")]
     FrequencyDomain,
-    #[error("its output data cannot be read; save t, u and y as matrices")]
+    #[error(
+        "its output data cannot be read; save time, inputs and outputs as the matrices t, u and y"
+    )]
     NoOutputData,
-    #[error("its inputs and outputs have different numbers of samples")]
+    #[error(
+        "its inputs and outputs have different numbers of samples; save the same samples of both"
+    )]
     SampleCounts,
     /// There are more models than the search reads, or values are nested more deeply.
-    #[error("too many values, or values nested too deeply")]
+    #[error("too many values, or values nested too deeply; save the models as separate variables")]
     SearchLimit,
     /// A value that its format reader could not read.
     #[error("{0}")]
@@ -333,9 +350,9 @@ pub(crate) enum UnclearDelayUnit {
 fn condition_words(condition: Option<f64>) -> String {
     match condition {
         Some(condition) if condition.is_finite() => {
-            format!(" (condition {})", number(condition))
+            format!(" (condition number {})", number(condition))
         }
-        Some(_) => " (condition infinite)".to_owned(),
+        Some(_) => " (infinite condition number)".to_owned(),
         None => String::new(),
     }
 }

@@ -178,9 +178,11 @@ pub(super) fn complex_list_of(
         Some(Array { im: Some(im), .. }) => im.clone(),
         _ => vec![0.0; re.len()],
     };
-    if im.iter().any(|part| !part.is_finite()) {
+    if let Some(at) = im.iter().position(|part| !part.is_finite()) {
         return Err(RecognitionFault::ImaginaryNotFinite {
             name: name.to_owned(),
+            entry: at + 1,
+            value: im[at],
         });
     }
     let parts = re.into_iter().zip(im);

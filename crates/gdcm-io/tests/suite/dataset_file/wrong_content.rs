@@ -21,7 +21,7 @@ fn a_key_that_is_missing_is_named_with_its_place() {
             "airspeed_kt",
             "condition 10 (number 2 in the file)",
         ),
-        ("/conditions/1", "id", "condition number 2 in the file"),
+        ("/conditions/1", "id", "condition at position 2 in the file"),
         (
             "/conditions/0/physics_models/1",
             "role",

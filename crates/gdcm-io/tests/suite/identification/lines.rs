@@ -447,12 +447,16 @@ fn records_cut_into_pieces_of_twenty_seconds_still_have_a_response() {
 fn hostile_lines_are_refused() {
     assert_eq!(
         local_polynomial(&[], &[1.0], &Sequential),
-        Err(LocalPolynomialError::Nothing)
+        Err(LocalPolynomialError::Nothing {
+            missing: "spectral lines"
+        })
     );
     let good = noisy_spectra();
     assert_eq!(
         local_polynomial(&good, &[], &Sequential),
-        Err(LocalPolynomialError::Nothing)
+        Err(LocalPolynomialError::Nothing {
+            missing: "frequencies in the band"
+        })
     );
     for omega in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         assert_eq!(

@@ -1,4 +1,4 @@
-//! `gdcm plan`: the intervals that further frequency sweeps would bring.
+//! `gdcm plan`: confidence intervals predicted after further frequency sweeps.
 
 use std::path::Path;
 

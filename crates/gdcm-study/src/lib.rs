@@ -5,8 +5,9 @@
 //!
 //! A [`Study`] contains a dataset and all decisions ([`decisions`]); an [`Engine`] computes its
 //! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are
-//! typed facts with numbers; [`jobs`] are longer computations beside the interactive analysis.
-//! Pieces of work run through an [`execution`]; large values are passed to jobs as [`shared`].
+//! typed facts with numbers; [`jobs`] are longer computations in parallel to the interactive
+//! analysis. Pieces of work run through an [`execution`]; large values are passed to jobs as
+//! [`shared`].
 //!
 //! # Example
 //!

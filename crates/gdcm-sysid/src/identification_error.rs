@@ -25,7 +25,7 @@ pub enum IdentificationError {
     /// The response cannot be measured.
     #[error(transparent)]
     Measurement(#[from] LocalPolynomialError),
-    /// The records are too short for the lower band end.
+    /// The records are too short for the lower end of the band.
     #[error(
         "the longest record lasts {longest_s:.0} s: a lower band end of {lowest:.2} rad/s needs \
         at least {needed_s:.1} s, preferably {better_s:.0} s. Raise the lower band end to \
@@ -35,7 +35,7 @@ pub enum IdentificationError {
         longest_s: f64,
         /// Lower band end \[rad/s\].
         lowest: f64,
-        /// Required length for the longest record: 1.5 periods at the lower band end \[s\].
+        /// Required length for the longest record: 1.5 periods at the lower end of the band \[s\].
         needed_s: f64,
         /// Recommended length: 5 periods, or 3 for each input if several are moved in the same
         /// record \[s\].
@@ -72,7 +72,7 @@ pub enum IdentificationError {
         highest: f64,
         /// Longest sample time \[s\].
         sample_time_s: f64,
-        /// Maximum possible upper band end \[rad/s\].
+        /// Maximum possible upper end of the band \[rad/s\].
         limit: f64,
     },
     /// Orders, past windows or poles are missing or invalid.

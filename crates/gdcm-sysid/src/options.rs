@@ -6,9 +6,9 @@ use gdcm_model::simulation::{FlightRecord, Signal};
 use crate::identification_error::{HIGHEST_ORDER, IdentificationError, LONGEST_PAST};
 use crate::spectra::preparation_settings::Preparation;
 
-/// Ratio of the lowest line used to the lower band end.
+/// Lowest spectral line used, relative to the lower end of the band.
 const LOWEST_LINE: f64 = 0.5;
-/// Ratio of the highest line used to the upper band end.
+/// Highest spectral line used, relative to the upper end of the band.
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
@@ -17,7 +17,7 @@ const HIGHEST_LINE: f64 = 4.0 / 3.0;
 /// the other six, on fresh noise and on half the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Lower and upper band end \[rad/s\].
+    /// Lower and upper end of the band \[rad/s\].
     pub band: [f64; 2],
     /// The channels and their preparation.
     pub preparation: Preparation,
@@ -28,7 +28,7 @@ pub struct Options {
     pub held_out: Vec<usize>,
     /// Orders to try; `None` for all that the amount of data allows (M14.13).
     pub orders: Option<Vec<usize>>,
-    /// Laguerre poles to try, relative to the upper band end.
+    /// Laguerre poles to try, relative to the upper end of the band.
     pub poles: Vec<f64>,
     /// Past windows to try, in Laguerre projections; `None` for the windows that the amount of data
     /// allows (M14.13).
@@ -105,12 +105,12 @@ impl Options {
         }
     }
 
-    /// Returns the lowest line used, half the lower band end \[rad/s\].
+    /// Returns the lowest line used, half the lower end of the band \[rad/s\].
     pub(crate) fn lowest(&self) -> f64 {
         LOWEST_LINE * self.band[0]
     }
 
-    /// Returns the highest line used, 4/3 times the upper band end \[rad/s\].
+    /// Returns the highest line used, 4/3 times the upper end of the band \[rad/s\].
     pub(crate) fn highest(&self) -> f64 {
         HIGHEST_LINE * self.band[1]
     }

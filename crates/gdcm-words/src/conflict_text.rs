@@ -57,7 +57,7 @@ pub fn remedy_text(remedy: &Remedy, inputs: &[String], outputs: &[String]) -> St
 
 /// Describes a constrained response's deviation: in a gain; in a signed delay that should be a
 /// lead; else in a delay. The latter two with the phase error that remains at `omega_top`
-/// \[rad/s\], the upper band end.
+/// \[rad/s\], the upper end of the band.
 pub fn miss_text(
     miss: &Unmatched,
     omega_top: f64,

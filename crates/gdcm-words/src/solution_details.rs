@@ -8,10 +8,10 @@ use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 use crate::conflict_text::miss_text;
 use crate::sensitivity::sensitivity_text;
 
-/// Lists details about the solution: other minima, the phase error at the upper band end due to
-/// each missed delay, and the sensitivity to constraints and active bounds.
+/// Lists details about the solution: other minima, the phase error at the upper end of the band due
+/// to each missed delay, and the sensitivity to constraints and active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    /// The objective's sensitivity is not listed up to this relative value.
+    /// Sensitivities up to this value, relative to the objective, are not listed.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut details = vec![proof_text(result.gains.proof.outcome)];

@@ -221,8 +221,8 @@ pub struct Assembled {
     pub rules: Vec<u8>,
 }
 
-/// Assembles a dataset from model files. The option `--out` names it in messages; nothing is
-/// written.
+/// Assembles a dataset from model files. The option `--out` is required but has no effect: nothing
+/// is written.
 ///
 /// # Errors
 /// The files cannot be read, or the rules are incomplete; the errors among the messages then list

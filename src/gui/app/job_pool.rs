@@ -104,7 +104,7 @@ impl JobPool {
         Self::with_shared_threads(cores)
     }
 
-    /// Starts a pool with `shared` threads beside the two reserved ones.
+    /// Starts a pool with `shared` threads in addition to the two reserved for the live analysis.
     pub(super) fn with_shared_threads(shared: usize) -> io::Result<Self> {
         let pool = Self {
             schedule: Arc::default(),

@@ -141,7 +141,8 @@ fn record_name(records: &ConditionRecords, index: usize) -> String {
     }
 }
 
-/// Applies an edit to a condition's records; returns false if the command is no such edit.
+/// Applies an edit to a condition's records; returns false if nothing was applied: the command is
+/// not an edit of records, or its record or part does not exist.
 ///
 /// # Errors
 /// A message, if the edit is impossible.

@@ -26,7 +26,8 @@ const TEXT_GAP: f32 = 8.0;
 /// Width of the key with its texts \[pt\].
 const KEY_ROOM: f32 = 270.0;
 
-/// Draws the chips and the colour key at the top of `area`; returns the line height \[pt\].
+/// Draws the chips and the colour key at the top of `area`; returns the total height of the lines
+/// of chips \[pt\].
 pub(super) fn across_chips_ui(
     ui: &Ui,
     area: Rect,

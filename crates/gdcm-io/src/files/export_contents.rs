@@ -135,8 +135,8 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of an exported schedule; without a schedule, only couplings can be
-    /// present.
+    /// Returns the contents of an exported schedule; without a schedule, couplings and physics
+    /// parameters can still be present.
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),

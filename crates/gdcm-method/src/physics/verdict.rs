@@ -69,7 +69,8 @@ pub enum WhyNotNamed {
     FewConditions { found: usize },
     /// All parameters together explain less than a tenth.
     NothingExplained { explained: f64 },
-    /// It would have to change beyond what is plausible.
+    /// Its fitted change is at the bound, three plausible standard deviations; `z` is the change in
+    /// these units.
     AtBound { z: f64 },
     /// The data say nothing about it.
     DataSilent { learned: f64 },

@@ -25,8 +25,8 @@ use gdcm_model::units::{number, ratio_to_db};
 
 /// Number of frequencies on which crossings are searched.
 const SEARCH_POINTS: usize = 400;
-/// A model is searched from the lower band end divided by this factor to the upper band end times
-/// this factor.
+/// A model is searched from the lower end of the band divided by this factor to the upper end of
+/// the band times this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
 /// Phases \[deg\] at the lowest band frequency that do not indicate a reversed sign: all but 45 to
 /// 135 deg, which on the branch (-270, 90] are -270 to -225 deg and 45 to 90 deg.
@@ -100,7 +100,7 @@ impl AttitudeOutput {
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
 /// Returns the frequencies \[rad/s\] on which a model's crossings are searched: 400, spaced
-/// logarithmically, from a quarter of the lower band end to four times the upper.
+/// logarithmically, from a quarter of the lower end of the band to four times the upper.
 pub fn search_frequencies(band: Band) -> Vec<f64> {
     log_spaced(
         band.min() / SEARCH_BEYOND_BAND,

@@ -13,10 +13,10 @@
 //!
 //! `r_k` are mode k's residues in the outputs, with `v_k` and `w_k` the right and the left
 //! eigenvector for its pole `lambda_k`, and `C` and `B` the output and the input matrix; primes
-//! mark the other model. `omega_min` is the lower band end: below it flight resolves poles only by
-//! their absolute difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for
-//! orthogonal shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis",
-//! Proc. 1st International Modal Analysis Conference, 1982. Assignment: see
+//! mark the other model. `omega_min` is the lower end of the band: below it flight resolves poles
+//! only by their absolute difference. `c` is the modal assurance criterion, 1 for equal shapes and
+//! 0 for orthogonal shapes: Allemang & Brown, "A correlation coefficient for modal vector
+//! analysis", Proc. 1st International Modal Analysis Conference, 1982. Assignment: see
 //! `fidelity/assignment.rs`.
 
 use nalgebra::Complex;

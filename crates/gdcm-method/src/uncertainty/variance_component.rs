@@ -74,7 +74,7 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     Some(sum * sum / spread)
 }
 
-/// Computes each condition's pooled identification part (M13.2).
+/// Pools each condition's identification variance with that of the other conditions (M13.2).
 ///
 /// ```text
 /// s_id^2 = (n s_own^2 + d_0 s_pooled^2) / (n + d_0),
@@ -82,8 +82,9 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
 /// ```
 ///
 /// `own` holds `s_own^2`, each condition's mean square, with its degrees of freedom n. A condition
-/// with a single identified model has `None`, n = 0, and takes the pooled variance. `None` if no
-/// condition has two identified models, or if `d_0` is 0 for such a condition.
+/// with a single identified model has `None`, n = 0, and takes the pooled variance. An entry is
+/// `None` if no condition has two identified models; for a condition with a single one, also if
+/// `prior_degrees` is 0.
 pub fn pooled(
     own: &[Option<VarianceComponent>],
     prior_degrees: f64,

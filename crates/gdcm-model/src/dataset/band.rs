@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::number_format::number;
 
-/// Minimum lower band end \[rad/s\]: a period of 17 hours.
+/// Minimum lower end of a band \[rad/s\]: a period of 17 hours.
 pub const LEAST_OMEGA: f64 = 1e-4;
-/// Maximum upper band end \[rad/s\]: 16 kHz.
+/// Maximum upper end of a band \[rad/s\]: 16 kHz.
 pub const GREATEST_OMEGA: f64 = 1e5;
 
 /// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.

@@ -1,5 +1,5 @@
 //! A response's curves for every model in a condition, and the range that fits them. Cached from
-//! one window frame to the next.
+//! one drawn frame to the next.
 
 use std::sync::Arc;
 

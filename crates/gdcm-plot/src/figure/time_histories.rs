@@ -18,7 +18,7 @@ use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
 const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
-/// Line styles for the flight data and for the corridor about them.
+/// Line style for the flight data, and fill colour for the tolerance corridor around them.
 const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
 const CORRIDOR: Color = Color::new(Hue::Text).tint(10);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.

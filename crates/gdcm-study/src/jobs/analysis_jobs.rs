@@ -111,7 +111,7 @@ impl Toggles {
     }
 }
 
-/// Job that analyses a variant ([`Study::of_variant`]), beside the interactive analysis.
+/// Job that analyses a variant ([`Study::of_variant`]), in parallel to the interactive analysis.
 #[derive(Clone, Debug)]
 pub struct VariantJob {
     pub study: Study,
@@ -157,7 +157,8 @@ impl Job for UncertaintyJob {
     }
 }
 
-/// Job that assesses all conditions; with hundreds, this may take longer than a window frame.
+/// Job that assesses all conditions; with hundreds of conditions, this takes longer than one drawn
+/// frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentJob {
     pub analysis: Shared<Analysis>,
@@ -178,7 +179,7 @@ impl Job for AssessmentJob {
     }
 }
 
-/// Job that assesses couplings for a study, beside the interactive analysis.
+/// Job that assesses couplings for a study, in parallel to the interactive analysis.
 #[derive(Clone, Debug)]
 pub struct CouplingsJob {
     /// The study; its own coupling setting is ignored.
@@ -210,7 +211,8 @@ impl Job for CouplingsJob {
     }
 }
 
-/// Job that diagnoses and assesses a study's physics parameters, beside the interactive analysis.
+/// Job that diagnoses and assesses a study's physics parameters, in parallel to the interactive
+/// analysis.
 #[derive(Clone, Debug)]
 pub struct PhysicsJob {
     /// The study; its own choice of applied parameters is ignored.

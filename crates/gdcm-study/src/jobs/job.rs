@@ -1,8 +1,8 @@
-//! Long computations beside the interactive analysis.
+//! Long computations in parallel to the interactive analysis.
 
 use gdcm_model::progress::{Cancelled, Progress};
 
-/// A long computation with progress and cancellation, run beside the interactive analysis.
+/// A long computation with progress and cancellation, run in parallel to the interactive analysis.
 ///
 /// Two jobs are equal if they have the same output: a running job is cancelled only when no equal
 /// job is requested any more.

@@ -1,4 +1,4 @@
-//! Long computations that run beside the interactive analysis.
+//! Long computations that run in parallel to the interactive analysis.
 
 pub mod analysis_jobs;
 #[cfg(test)]

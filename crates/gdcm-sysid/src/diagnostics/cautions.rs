@@ -11,7 +11,7 @@ use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::response_estimate::TRUSTED_COHERENCE;
 use crate::spectra::signal_names::listed;
 
-/// Recommended record length, in periods at the lower band end (M14.12).
+/// Recommended record length, in periods at the lower end of the band (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
 
 /// A doubt about the identified model, with its code and a text.
@@ -20,7 +20,7 @@ pub enum IdentificationCaution {
     /// A doubt about the records themselves.
     #[error(transparent)]
     Records(#[from] RecordCaution),
-    /// The longest record is shorter than recommended for the lower band end.
+    /// The longest record is shorter than recommended for the lower end of the band.
     #[error(
         "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: \
         the models are less certain at the lower end of the band; at least {better_s:.0} s are \

@@ -39,7 +39,7 @@ use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::{ResponseEstimate, TRUSTED_COHERENCE};
 use crate::spectra::spectrum::{LineRange, Spectrum};
 
-/// The predictor's sample time times the upper band end \[rad\].
+/// The predictor's sample time times the upper end of the band \[rad\].
 const STEP: f64 = 0.25;
 /// Minimum number of past samples in the predictor.
 const LEAST_PAST: usize = 6;
@@ -117,7 +117,7 @@ pub(crate) struct FeedbackRecords<'a> {
     /// Scaled segments, not filtered.
     pub(crate) segments: &'a [Segment],
     pub(crate) lines: LineRange,
-    /// Lower and upper band end \[rad/s\].
+    /// Lower and upper end of the band \[rad/s\].
     pub(crate) band: [f64; 2],
     /// Median partial coherence of the most coherent input.
     pub(crate) coherence: f64,

@@ -15,7 +15,6 @@ pub struct RecordFit {
     pub cost: f64,
     /// Number of real values in the lines, less the unknowns in the transients.
     pub freedom: usize,
-    /// Whether the record was held out.
     pub held_out: bool,
 }
 

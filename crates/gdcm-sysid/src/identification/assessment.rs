@@ -25,8 +25,8 @@ use crate::options::Options;
 
 /// Number of frequencies at which the bands are computed.
 const BAND_POINTS: usize = 60;
-/// Ratio of the suggested upper band end to the present one; a narrower band is suggested if even
-/// the highest order is too low.
+/// Suggested upper end of the band, relative to the present one; a narrower band is suggested if
+/// even the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 pub(super) const NOT_IDENTIFIED_DB: f64 = 3.0;

@@ -22,7 +22,8 @@ use crate::subspace::tried_orders::SPACING;
 const RANKING_ORDER: usize = 18;
 /// Number of pairs (pole, past window) that propose models of all orders.
 const KEPT: usize = 2;
-/// Modes faster than this many times the upper band end are artefacts of discrete poles near -1.
+/// Modes faster than this many times the upper end of the band are artefacts of discrete poles near
+/// -1.
 const FASTEST: f64 = 8.0;
 /// The candidates' share of the total progress.
 const SHARE: f64 = 0.2;

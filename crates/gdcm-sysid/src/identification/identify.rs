@@ -52,7 +52,7 @@ pub struct Identification {
     pub stabilisation: Vec<StabilisationPoint>,
     /// Best Laguerre pole \[rad/s\].
     pub laguerre_pole: f64,
-    /// Best past window.
+    /// Past window of the model with the lowest cost \[Laguerre projections\].
     pub past: usize,
     /// BIC at each refined order, ascending by order.
     pub criteria: Vec<(usize, f64)>,

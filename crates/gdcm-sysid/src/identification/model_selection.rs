@@ -18,7 +18,7 @@ use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 pub(crate) struct Proposal {
     /// Best Laguerre pole \[rad/s\].
     pub(crate) laguerre_pole: f64,
-    /// Best past window.
+    /// Past window of the model with the lowest cost \[Laguerre projections\].
     pub(crate) past: usize,
     /// Model with the lowest cost at each order.
     pub(crate) starts: BTreeMap<usize, Fit>,

@@ -41,11 +41,11 @@ const COPY: f64 = 1e9;
 /// An input is involved in a dependence if its entry in the eigenvector exceeds this share of the
 /// largest.
 const INVOLVED: f64 = 0.1;
-/// Ratio of the upper band end to the highest line used.
+/// Upper end of the band, relative to the highest spectral line used.
 const BAND_END: f64 = 0.75;
-/// Minimum length of the longest record, in periods at the lower band end (M14.12).
+/// Minimum length of the longest record, in periods at the lower end of the band (M14.12).
 const LEAST_PERIODS: f64 = 1.5;
-/// Recommended length of the longest record, in periods at the lower band end (M14.12).
+/// Recommended length of the longest record, in periods at the lower end of the band (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
 /// Recommended periods for each input if several are moved in a single record.
 const PERIODS_AN_INPUT: f64 = 3.0;
@@ -502,8 +502,8 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
 
 /// Returns a caution for records that are shorter than recommended (M14.12).
 ///
-/// Returns an error for records that are too short for the lower band end or for a first-order
-/// model.
+/// Returns an error for records that are too short for the lower end of the band or for a
+/// first-order model.
 fn check_length(
     filled: &[FilledSegment],
     lines: &[Spectrum],

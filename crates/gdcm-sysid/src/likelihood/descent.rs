@@ -31,8 +31,8 @@ use super::schur_model::SchurModel;
 /// Limit on `delta^2 / (k phi)` at a minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
 /// Limit on `delta^2 / (k phi)` for comparing orders: the cost may still fall by about 10 % of the
-/// noise that k parameters explain, which is little beside what BIC charges for a state, `(m + l)
-/// phi ln N`.
+/// noise that k parameters explain, which is little compared with what BIC charges for a state, `(m
+/// + l) phi ln N`.
 pub(crate) const COMPARABLE: f64 = 0.1;
 /// Limit on `delta^2 / (k phi)` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;

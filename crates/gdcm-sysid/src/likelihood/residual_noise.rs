@@ -14,7 +14,7 @@
 //! ```
 //!
 //! The noise that the local polynomial method measures has too few degrees of freedom in short
-//! pieces, and is too small beside lightly damped modes; a wrong model that follows the noise then
+//! pieces, and is too small near lightly damped modes; a wrong model that follows the noise then
 //! costs less than the right one.
 
 use std::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! Tables of the intervals that further sweeps bring.
+//! Tables of the confidence intervals predicted after further sweeps.
 
 use gdcm_model::dataset::Pair;
 
@@ -8,7 +8,7 @@ use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval};
 /// Numbers of sweeps in a table.
 pub const TABLE_REPEATS: [usize; 3] = [1, 2, 4];
 
-/// The intervals that further sweeps bring, for each input.
+/// Confidence intervals predicted after further sweeps, for each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightPlan {
     pub sweeps: Vec<SweepPlan>,

@@ -1,4 +1,4 @@
-//! Planning the next flight: the intervals that further frequency sweeps will bring.
+//! Planning the next flight: confidence intervals predicted after further frequency sweeps.
 //!
 //! The Fisher information from the flown records, kept at the end of the identification, plus that
 //! from planned sweeps, gives the standard deviations after a flight that has not been flown.

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use super::resampling_error::ResamplingError;
 use super::stamped_channel::StampedChannel;
 
-/// Ratio of the highest spectral line used to the upper band end (M14.2).
+/// Ratio of the highest spectral line used to the upper end of the band (M14.2).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 /// Minimum number of samples per period of the highest line, in a channel.
 const NEEDED: f64 = 2.5;
@@ -38,8 +38,8 @@ pub struct CommonClock {
 impl CommonClock {
     /// Chooses the common clock (M14.11).
     ///
-    /// `band_end` is the upper band end \[rad/s\], by default the end for which the slowest rate
-    /// gives 20 samples in a period of the highest line; `rate_hz` is a requested rate \[Hz\].
+    /// `band_end` is the upper end of the band \[rad/s\], by default the end for which the slowest
+    /// rate gives 20 samples in a period of the highest line; `rate_hz` is a requested rate \[Hz\].
     ///
     /// ```text
     /// ω2  the upper band end, whi the highest spectral line used, wc the cut-off
@@ -193,7 +193,7 @@ mod tests {
         assert!(clock.start_s == 1.0 && clock.times_s().last().unwrap() <= &20.0);
         let part = clock.within([5.0, 10.0]);
         assert_eq!((part.samples, part.start_s), (251, 5.0));
-        // At most 20 times the highest line, 4/3 of the upper band end of 3 rad/s: 12.73 Hz.
+        // At most 20 times the highest line, 4/3 of the upper end of the band of 3 rad/s: 12.73 Hz.
         assert!(
             (CommonClock::choose(&fast, Some(3.0), None).unwrap().rate_hz - 12.73).abs() < 0.01
         );

@@ -15,9 +15,9 @@ pub enum ResamplingError {
         rate_hz: f64,
         /// Lowest sample rate for the band \[Hz\].
         needed_hz: f64,
-        /// Requested upper band end \[rad/s\].
+        /// Requested upper end of the band \[rad/s\].
         band_end: f64,
-        /// Highest upper band end at the sample rate \[rad/s\].
+        /// Highest upper end of the band that the sample rate permits \[rad/s\].
         possible: f64,
     },
     #[error(

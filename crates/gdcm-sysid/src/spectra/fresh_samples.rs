@@ -21,7 +21,8 @@ pub(super) struct FreshSamples {
 }
 
 impl FreshSamples {
-    /// Reduces stairs to their first samples; without stairs, all samples remain.
+    /// Reduces stairs of at most 0.1 s to their first samples; without such stairs, all samples
+    /// remain.
     pub(super) fn new(samples: Vec<Sample>) -> Self {
         let stairs = Stairs::find(std::iter::once(samples.clone()));
         let samples = match stairs {

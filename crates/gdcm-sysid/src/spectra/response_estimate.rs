@@ -95,7 +95,8 @@ impl EstimatePoint {
 /// How far each input was excited independently.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// Each input's largest partial coherence over the outputs, as a median over frequency, 0 to 1.
+    /// For each input: largest partial coherence with any output, less the share explained by
+    /// chance; median over frequency, 0 to 1.
     pub partial_coherence: Vec<f64>,
     /// Condition number of the inputs' spectral matrix, as a median over frequency.
     pub condition: f64,

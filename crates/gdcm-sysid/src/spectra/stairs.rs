@@ -29,8 +29,8 @@ pub(crate) struct Stairs {
 }
 
 impl Stairs {
-    /// Finds stairs in a channel's samples, record by record; `None` if at most half the
-    /// consecutive samples are equal.
+    /// Finds stairs in a channel over all its records; `None` if the channel has fewer than 50
+    /// moving samples, or if at most half of them repeat the previous sample.
     pub(crate) fn find(records: impl Iterator<Item = Vec<Sample>>) -> Option<Self> {
         let mut samples = 0;
         let mut steps_s = Vec::new();

@@ -31,7 +31,7 @@ const ROWS_PER_COLUMN_SHORT: f64 = 1.5;
 const FUTURE_STATES: usize = 30;
 /// Minimum of [`Extent::longest_future`].
 const LEAST_FUTURE: usize = 12;
-/// Time between instants (rows of the data matrix) times the upper band end \[rad\].
+/// Time between instants (rows of the data matrix) times the upper end of the band \[rad\].
 pub(crate) const SPACING: f64 = 1.2;
 /// Minimum number of real values ("figures") in the spectral lines per model parameter ("unknown")
 /// (M14.13).
@@ -50,7 +50,7 @@ pub(crate) struct Extent {
     pub(crate) outputs: usize,
     /// Number of real values in all lines, less the unknowns in the transients.
     pub(crate) figures: usize,
-    /// Total record length times the upper band end \[rad\].
+    /// Total record length times the upper end of the band \[rad\].
     pub(crate) radians: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Tables of the intervals that additional sweeps on each input would bring.
+//! Tables of the confidence intervals predicted after further sweeps of each input.
 
 use egui::{Grid, RichText, Ui};
 

@@ -1,5 +1,5 @@
-//! Page Order: fit over the model order, stabilisation diagram, poles, and the intervals that
-//! additional sweeps would bring.
+//! Page Order: fit over the model order, stabilisation diagram, poles, and the 95 % confidence
+//! intervals predicted after further sweeps.
 
 use egui::{Rect, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 

@@ -160,7 +160,8 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     }))
 }
 
-/// Returns the drawn identification's band \[rad/s\].
+/// Returns the band \[rad/s\] of the running or waiting identification, otherwise of the finished
+/// one; `UNKNOWN_BAND` without either.
 fn job_band(page: Page<'_>) -> [f64; 2] {
     let Page { state, records, .. } = page;
     if let Some(job) = state.records.job_of(state.condition().id()) {

@@ -67,7 +67,8 @@ pub(super) fn unassigned_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comm
     ui.separator();
 }
 
-/// Lists all conditions, the displayed one first: "10: 60 kt, low altitude, high weight".
+/// Lists all conditions for a [`DropDown`], the displayed one first and none marked as current:
+/// "10: 60 kt, low altitude, high weight".
 fn condition_choices(state: &State) -> Vec<(ConditionId, bool, String)> {
     let shown = state.condition().id();
     let mut choices = Vec::new();

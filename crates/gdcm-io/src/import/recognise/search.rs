@@ -28,7 +28,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const MOST_LISTED: usize = 20;
 /// Memory for a complex number \[bytes\].
 const COMPLEX_BYTES: u64 = 16;
-/// Memory charged for a listed path and for a fault, beside their characters \[bytes\].
+/// Memory charged for a listed path and for a fault, in addition to their characters \[bytes\].
 const PATH_BYTES: u64 = 64;
 const FAULT_BYTES: u64 = 128;
 

@@ -11,7 +11,8 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// Adds a function of `-u`, evaluated at its own argument, to this function of `u`.
+    /// Adds `f(-u)` to this function of `u`. `mirrored` holds `f` and its derivatives with respect
+    /// to its own argument `-u`, so that its slope changes sign.
     pub(super) fn plus_mirrored(self, mirrored: Self) -> Self {
         let mut value = self.value;
         value.add(mirrored.value);

@@ -58,9 +58,10 @@ impl GdcmApp {
             return;
         }
         let read_from = self.state.records.read_from.clone();
+        let channels = self.record_channels(condition);
         let records = self.records_of(condition);
         for row in rows {
-            records.add_row(row, &read_from);
+            records.add_row(row, &read_from, &channels);
         }
         leave_out_copies(&mut records.rows);
         records.changed = true;

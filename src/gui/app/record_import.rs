@@ -252,12 +252,13 @@ impl GdcmApp {
         let mut counts = AddedCounts::default();
         let read_from = self.state.records.read_from.clone();
         for (id, rows) in added {
+            let channels = self.record_channels(id);
             let records = self.records_of(id);
             let has_this_clock =
                 records.rows.is_empty() || records.clock_band_end == start.clock_band_end;
             let mut is_changed = false;
             for row in rows {
-                let outcome = records.add_row(row, &read_from);
+                let outcome = records.add_row(row, &read_from, &channels);
                 is_changed |= outcome != AddedRecord::KnownAlready;
                 counts.count(outcome);
             }

@@ -204,7 +204,10 @@ fn rows_ui(
 ) {
     let models = state.condition().bundle(kind);
     if models.is_empty() {
-        let words = "No identified models yet; identify them from flight records";
+        let words = match kind {
+            BundleKind::Physics => "No physics models in this condition",
+            BundleKind::Identified => "No identified models yet; identify them from flight records",
+        };
         ui.add(Label::new(palette.small(words)).wrap());
         return;
     }

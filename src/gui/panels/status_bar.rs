@@ -65,7 +65,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         small_button_ui(ui, "Stop", stop, commands);
     }
     ui.label(palette.small(format!(
-        "{} responses · {} frequencies",
+        "{} models · {} frequencies",
         count_models(state),
         state.study.settings.points
     )));

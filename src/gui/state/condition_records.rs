@@ -88,15 +88,24 @@ impl ConditionRecords {
         }
     }
 
-    /// Uses a record, or leaves it out; returns whether the record exists.
+    /// Uses a record, or leaves it out; returns whether the record exists. A used whole record
+    /// replaces its parts, and a used part its whole record, so that no sample counts twice.
     pub fn set_used(&mut self, index: usize, used: bool) -> bool {
         let Some(row) = self.rows.get_mut(index) else {
             return false;
         };
         row.used = used;
-        self.left_out.retain(|source| *source != row.table.source);
-        if !used && row.table.part_s.is_none() {
-            self.left_out.push(row.table.source.clone());
+        let source = row.table.source.clone();
+        let is_whole = row.table.part_s.is_none();
+        self.left_out.retain(|left_out| *left_out != source);
+        if used {
+            for other in &mut self.rows {
+                if other.table.source == source && other.table.part_s.is_none() != is_whole {
+                    other.used = false;
+                }
+            }
+        } else if is_whole {
+            self.left_out.push(source);
         }
         true
     }
@@ -193,13 +202,14 @@ impl ConditionRecords {
     /// Adds a record; `read_from` gives the file paths by SHA-256:
     ///
     /// 1. already loaded: nothing changes;
-    /// 2. read again from a changed file: replaces the earlier record, and takes over its use and
-    ///    manoeuvre;
+    /// 2. read again from a changed file: replaces the earlier record, takes over its use and
+    ///    manoeuvre, and its parts are cut anew;
     /// 3. otherwise: added at the end, with a number after its name if another record has the name.
     pub fn add_row(
         &mut self,
         mut row: LaidOutRecord,
         read_from: &BTreeMap<String, PathBuf>,
+        channels: &RecordChannels,
     ) -> AddedRecord {
         if self
             .rows
@@ -215,12 +225,47 @@ impl ConditionRecords {
         {
             row.used = old.used;
             row.guess = old.guess.clone();
-            *old = row;
+            let old = std::mem::replace(old, row.clone());
+            self.cut_parts_anew(&old.table.source, &row, channels);
             return AddedRecord::ReadAgain;
         }
         self.give_free_name(&mut row);
         self.rows.push(row);
         AddedRecord::New
+    }
+
+    /// Cuts the parts of the record `old` from `whole`, which has replaced it; a part whose time span
+    /// has no samples any more is removed.
+    fn cut_parts_anew(
+        &mut self,
+        old: &RecordSource,
+        whole: &LaidOutRecord,
+        channels: &RecordChannels,
+    ) {
+        for source in &mut self.left_out {
+            if source == old {
+                *source = whole.table.source.clone();
+            }
+        }
+        for index in (0..self.rows.len()).rev() {
+            let row = &self.rows[index];
+            let Some(part_s) = row.table.part_s else {
+                continue;
+            };
+            if row.table.source != *old {
+                continue;
+            }
+            match part_of(whole, part_s, channels) {
+                Ok(mut part) => {
+                    part.used = row.used;
+                    part.guess = row.guess.clone();
+                    self.rows[index] = part;
+                }
+                Err(_) => {
+                    self.rows.remove(index);
+                }
+            }
+        }
     }
 
     /// Appends a number to the record's name if another record has the same name.

@@ -842,6 +842,23 @@ fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless
 }
 
 #[test]
+fn a_whole_record_and_its_parts_are_never_used_together() {
+    fn used(window: &Window) -> Vec<bool> {
+        let rows = &state(window).records.conditions[&CONDITION_10_ID].rows;
+        rows[..3].iter().map(|row| row.used).collect()
+    }
+
+    let mut window = records_window();
+    give(&mut window, RecordsCommand::AddPart(0, [5.0, 25.0]));
+    give(&mut window, RecordsCommand::AddPart(0, [30.0, 50.0]));
+    assert_eq!(used(&window), [false, true, true]);
+    give(&mut window, RecordsCommand::SetUsed(0, true));
+    assert_eq!(used(&window), [true, false, false]);
+    give(&mut window, RecordsCommand::SetUsed(2, true));
+    assert_eq!(used(&window), [false, false, true]);
+}
+
+#[test]
 fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_refused_with_the_span()
 {
     fn row(k: u32) -> String {
@@ -1151,6 +1168,20 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
     assert_ne!(sha256(&window, 9), before);
     step(&mut window, UNDO);
     assert_eq!(sha256(&window, 9), before);
+
+    // A part comes from the changed file too.
+    give(&mut window, RecordsCommand::AddPart(9, [1.0, 4.0]));
+    std::fs::write(&first, without_units(1.3)).unwrap();
+    assert_eq!(add(&mut window, &first).len(), 3);
+    let changed = sha256(&window, 9);
+    assert_ne!(changed, before);
+    assert_eq!(sha256(&window, 10), changed);
+    let records = &state(&window).records.conditions[&CONDITION_10_ID];
+    assert_eq!(records.rows[10].table.part_s, Some([1.0, 4.0]));
+    assert!(records.rows[10].used && !records.rows[9].used);
+    step(&mut window, UNDO);
+    assert_eq!(sha256(&window, 10), before);
+    step(&mut window, UNDO);
     step(&mut window, UNDO);
     step(&mut window, UNDO);
     assert_eq!(rows(&window), 9);

@@ -102,7 +102,7 @@ pub(super) fn correction_words(correction: AssessedCorrection) -> &'static str {
     match correction {
         AssessedCorrection::Scheduled => "scheduled",
         AssessedCorrection::ScheduledWithoutLeads => "scheduled, without leads,",
-        AssessedCorrection::ScheduleOfOthers => "of the other conditions",
+        AssessedCorrection::ScheduleOfOthers => "the other conditions'",
         AssessedCorrection::Own => "own",
     }
 }

@@ -10,7 +10,7 @@ use gdcm_model::names::standard_patterns;
 use gdcm_model::simulation::FlightRecord;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};
-use super::layout_proposal::{LayoutProposal, TimeWish};
+use super::layout_proposal::{LayoutProposal, TimeWish, has_sign_mark};
 use super::record_channels::RecordChannels;
 use super::record_guess::RecordGuess;
 use super::record_layout::RecordLayout;
@@ -86,7 +86,7 @@ impl LaidOutRecord {
 
     /// Creates a record with its channels. A record named by the dataset is read with the factors
     /// and delays stored there, and in the dataset's units if the file gives none. A user-defined
-    /// conversion replaces the stored factor.
+    /// conversion replaces the stored factor, and an alias with a sign mark its sign.
     pub fn as_dataset_says(
         table: RecordTable,
         channels: &RecordChannels,
@@ -100,10 +100,7 @@ impl LaidOutRecord {
         let (record, mut notes) = Self::proposed(table, &channels, time);
         let mut remedies = BTreeMap::new();
         for (name, stored) in &entry.remedies {
-            let mut remedy = *stored;
-            if channels.said.contains_key(name) {
-                remedy.factor = 1.0;
-            }
+            let remedy = remaining_remedy(*stored, name, &channels);
             if remedy != ChannelRemedy::NONE {
                 notes.push(format!(
                     "{name}: multiplied by {}, delay of {} s removed, as stored in the dataset",
@@ -174,5 +171,67 @@ impl LaidOutRecord {
             entry.used_s = found.spans(flight);
         }
         entry
+    }
+}
+
+/// Returns what remains of a stored remedy beside the user's decisions about the channel:
+///
+/// 1. with a user-defined factor or unit: the delay
+/// 2. with an alias that has a sign mark, such as "-az": the delay and the factor's magnitude
+/// 3. else: all of it
+fn remaining_remedy(stored: ChannelRemedy, name: &str, channels: &RecordChannels) -> ChannelRemedy {
+    let mut remedy = stored;
+    let is_marked = channels
+        .inputs
+        .iter()
+        .chain(&channels.outputs)
+        .filter(|rule| rule.name == name)
+        .any(|rule| rule.aliases.iter().any(|alias| has_sign_mark(alias)));
+    if channels.said.contains_key(name) {
+        remedy.factor = 1.0;
+    } else if is_marked {
+        remedy.factor = remedy.factor.abs();
+    }
+    remedy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::record_channels::SaidConversion;
+    use gdcm_model::names::ChannelRule;
+
+    /// The sign that an alias gives is not applied a second time from the dataset.
+    #[test]
+    fn user_decisions_replace_the_factor_of_a_stored_remedy_or_its_sign() {
+        let stored = ChannelRemedy {
+            factor: -0.5,
+            delay_s: 0.02,
+        };
+        let mut channels = RecordChannels::default();
+        channels.outputs.push(ChannelRule {
+            name: "NZ".to_owned(),
+            ..ChannelRule::default()
+        });
+        assert_eq!(remaining_remedy(stored, "NZ", &channels), stored);
+
+        channels.outputs[0].aliases = vec!["acc_z".to_owned()];
+        assert_eq!(remaining_remedy(stored, "NZ", &channels), stored);
+
+        channels.outputs[0].aliases = vec!["-acc_z".to_owned()];
+        let expected = ChannelRemedy {
+            factor: 0.5,
+            ..stored
+        };
+        assert_eq!(remaining_remedy(stored, "NZ", &channels), expected);
+
+        channels
+            .said
+            .insert("NZ".to_owned(), SaidConversion::Factor(-2.0));
+        let expected = ChannelRemedy {
+            factor: 1.0,
+            ..stored
+        };
+        assert_eq!(remaining_remedy(stored, "NZ", &channels), expected);
     }
 }

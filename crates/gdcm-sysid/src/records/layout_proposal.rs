@@ -270,19 +270,26 @@ impl Proposer<'_> {
 
     /// Returns the sign by which a column's factor is multiplied (step 4):
     ///
-    /// 1. an alias with a sign mark: by this mark, whether or not the user gives a factor
-    /// 2. a user-defined factor: 1, because it includes the sign
+    /// 1. a user-defined factor includes the sign: 1, or -1 if the user also put a minus before the
+    ///    column's name
+    /// 2. an alias with a sign mark: by this mark
     /// 3. an alias without a sign mark, for a column without one: 1, by the user's decision
     /// 4. else by the column's name; `None` if it leaves the sign open
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
-        if let Some(alias) = marked_alias {
-            return sign_between(alias, &rule.name);
-        }
         let has_factor = matches!(
             self.channels.said.get(&rule.name),
             Some(SaidConversion::Factor(_))
         );
-        if has_factor || (!rule.aliases.is_empty() && !has_sign_mark(column)) {
+        if has_factor {
+            let is_reversed = marked_alias.is_some_and(|alias| {
+                alias.trim_start().starts_with('-') && !column.trim_start().starts_with('-')
+            });
+            return Some(if is_reversed { -1.0 } else { 1.0 });
+        }
+        if let Some(alias) = marked_alias {
+            return sign_between(alias, &rule.name);
+        }
+        if !rule.aliases.is_empty() && !has_sign_mark(column) {
             return Some(1.0);
         }
         sign_between(column, &rule.name)
@@ -381,6 +388,6 @@ impl Proposer<'_> {
 }
 
 /// Returns whether a name has a sign mark: "-az", "az (down)".
-fn has_sign_mark(name: &str) -> bool {
+pub(super) fn has_sign_mark(name: &str) -> bool {
     without_sign_mark(name) != name.trim()
 }

@@ -452,20 +452,29 @@ fn columns_without_names_need_their_numbers() {
     );
 }
 
-/// The proposal of NZ from this column, with an optional alias.
-fn with_acceleration(name: &str, alias: Option<&str>) -> LayoutProposal {
-    let table = table(vec![
+/// A record with a time column and this column.
+fn acceleration_table(name: &str) -> RecordTable {
+    table(vec![
         column("t", "s", |k| 0.02 * k),
         column(name, "", |k| k.sin()),
-    ]);
-    let channels = RecordChannels {
+    ])
+}
+
+/// The output NZ, with an optional alias.
+fn acceleration_channels(alias: Option<&str>) -> RecordChannels {
+    RecordChannels {
         outputs: vec![ChannelRule {
             aliases: alias.into_iter().map(str::to_owned).collect(),
             ..rule("NZ", "m/s²")
         }],
         ..RecordChannels::default()
-    };
-    RecordLayout::proposed(&table, &channels, &TimeWish::default())
+    }
+}
+
+/// The proposal of NZ from this column, with an optional alias.
+fn with_acceleration(name: &str, alias: Option<&str>) -> LayoutProposal {
+    let channels = acceleration_channels(alias);
+    RecordLayout::proposed(&acceleration_table(name), &channels, &TimeWish::default())
 }
 
 #[test]
@@ -691,6 +700,30 @@ fn the_user_s_unit_or_factor_overrides_the_file() {
         conversion: ColumnConversion::RequestedFactor(-9.8),
     };
     assert!(found.notes.contains(&note), "{:?}", found.notes);
+}
+
+/// A factor includes the sign: the mark in a column's name is not applied too, even if the user
+/// selects the column by that name. A minus that the user adds to the name is.
+#[test]
+fn a_user_s_factor_includes_the_sign_of_the_column() {
+    for (name, alias, factor) in [
+        ("az (down)", None, -9.81),
+        ("az (down)", Some("az (down)"), -9.81),
+        ("-normal", Some("-normal"), -9.81),
+        ("az", Some("-az"), 9.81),
+    ] {
+        let mut channels = acceleration_channels(alias);
+        channels
+            .said
+            .insert("NZ".to_owned(), SaidConversion::Factor(-9.81));
+        let table = acceleration_table(name);
+        let found = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        assert_eq!(
+            found.layout.outputs[0].unwrap().factor,
+            factor,
+            "{name} {alias:?}"
+        );
+    }
 }
 
 #[test]

@@ -177,6 +177,9 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
             "not named: {} in the fit, but four are needed",
             counted(count, "condition")
         ),
+        Some(WhyNotNamed::NotPredicted) => {
+            "not named: conditions left out could not be predicted".to_owned()
+        }
         Some(WhyNotNamed::NothingExplained { .. }) => {
             "not named: all parameters together explain less than a tenth of the misfit".to_owned()
         }
@@ -208,6 +211,7 @@ pub fn naming_words(why_not: Option<WhyNotNamed>) -> &'static str {
         None => "change needed",
         Some(WhyNotNamed::Held) => "held by hand",
         Some(WhyNotNamed::FewConditions { .. }) => "too few conditions",
+        Some(WhyNotNamed::NotPredicted) => "not predicted",
         Some(WhyNotNamed::NothingExplained { .. }) => "explains little",
         Some(WhyNotNamed::AtBound { .. }) => "implausibly large",
         Some(WhyNotNamed::DataSilent { .. }) => "not determined",

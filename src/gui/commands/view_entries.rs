@@ -188,7 +188,7 @@ fn fold_entries(state: &State) -> [Entry; 6] {
             } else {
                 "Unfold the settings"
             },
-            "Shown instead of the constraint matrix and the response card",
+            "Shown instead of the models",
             LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),

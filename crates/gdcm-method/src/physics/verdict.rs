@@ -67,6 +67,8 @@ pub enum WhyNotNamed {
     Held,
     /// Fewer than four conditions are in the fit.
     FewConditions { found: usize },
+    /// No condition left out could be predicted from the others, so that there are no scores.
+    NotPredicted,
     /// All parameters together explain less than a tenth.
     NothingExplained { explained: f64 },
     /// Its fitted change is at the bound, three plausible standard deviations; `z` is the change in
@@ -86,6 +88,7 @@ impl WhyNotNamed {
         match self {
             Self::Held => "held",
             Self::FewConditions { .. } => "few-conditions",
+            Self::NotPredicted => "not-predicted",
             Self::NothingExplained { .. } => "nothing-explained",
             Self::AtBound { .. } => "at-bound",
             Self::DataSilent { .. } => "data-silent",
@@ -115,7 +118,8 @@ impl NamingFacts {
     /// applies:
     ///
     /// ```text
-    /// fewer than four conditions, or no intervals or scores      few conditions
+    /// fewer than four conditions                                 few conditions
+    /// no intervals or scores                                     not predicted
     /// |z| at its limit of 3                                      at bound
     /// interval contains 0, and learned below 0.5                 data silent
     /// interval contains 0                                        interval contains zero
@@ -123,18 +127,16 @@ impl NamingFacts {
     /// gain below 0.01                                            little gain
     /// ```
     pub(super) fn why_not_named(&self) -> Option<WhyNotNamed> {
-        let (Some(half_width), Some(explained), Some(gain)) =
-            (self.half_width, self.explained, self.gain)
-        else {
-            return Some(WhyNotNamed::FewConditions {
-                found: self.conditions,
-            });
-        };
         if self.conditions < LEAST_CONDITIONS {
             return Some(WhyNotNamed::FewConditions {
                 found: self.conditions,
             });
         }
+        let (Some(half_width), Some(explained), Some(gain)) =
+            (self.half_width, self.explained, self.gain)
+        else {
+            return Some(WhyNotNamed::NotPredicted);
+        };
         if self.z.abs() >= GREATEST_VALUE {
             return Some(WhyNotNamed::AtBound { z: self.z });
         }
@@ -189,6 +191,14 @@ mod tests {
                     ..NAMED
                 },
                 "nothing-explained",
+            ),
+            (
+                NamingFacts {
+                    explained: None,
+                    gain: None,
+                    ..NAMED
+                },
+                "not-predicted",
             ),
             (NamingFacts { z: 3.0, ..NAMED }, "at-bound"),
             (

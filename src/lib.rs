@@ -1,6 +1,6 @@
 //! Program `gdcm`: applies the gain-delay correction method, in a window or by commands.
 //!
-//! This crate joins the library crates into a program; it computes nothing itself. Begin with
+//! This crate joins the library crates into a program; the numbers come from them. Begin with
 //! [`cli::run`], which parses the command line: each command is a file in [`cli`], and without a
 //! command it opens the window, [`gui::app::open`]. In the window, `gui::panels` and `gui::views`
 //! turn clicks into commands (`gui::commands`), which change the state (`gui::state`) and start

@@ -1,6 +1,7 @@
 //! Thread pool for the window's background work. Each kind of job has its own queue (lane); a free
 //! thread runs the next job in the most urgent lane that has a waiting job and that the thread may
-//! serve.
+//! serve. One thread is reserved for the live analysis and one for short jobs: long jobs never
+//! delay them.
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -104,7 +105,8 @@ impl JobPool {
         Self::with_shared_threads(cores)
     }
 
-    /// Starts a pool with `shared` threads in addition to the two reserved for the live analysis.
+    /// Starts a pool with `shared` threads in addition to the two reserved ones: for the live analysis, and for
+    /// short jobs.
     pub(super) fn with_shared_threads(shared: usize) -> io::Result<Self> {
         let pool = Self {
             schedule: Arc::default(),

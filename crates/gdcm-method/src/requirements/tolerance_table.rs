@@ -1,4 +1,5 @@
-//! User-defined tolerances for time histories, converted to a dataset's units (M17.2).
+//! User-defined tolerances for time histories, converted to a dataset's units; a tolerance for an
+//! angle is converted to the integral of a rate (M17.2).
 //!
 //! The default table follows 14 CFR part 60, appendix C, table C2A, "Full flight simulator (FFS)
 //! objective tests", whose entries also appear in CS-FSTD(H).

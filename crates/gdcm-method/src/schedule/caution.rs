@@ -1,4 +1,5 @@
-//! Cautions about a schedule (M11b, M12, M15.6).
+//! Cautions about a schedule (M11b, M12, M15.6), and when a scheduled correction is so much worse
+//! than the condition's own that a caution says so ([`ScheduledCost::is_notable`]).
 
 use gdcm_model::dataset::ConditionId;
 

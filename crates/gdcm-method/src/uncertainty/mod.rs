@@ -18,7 +18,7 @@
 //! |---|---|
 //! | 1 to 3 | `scalar`, `spread` |
 //! | 4, 5 | `variance_component`, `coherence_error` |
-//! | 6 | `bar`, `condition_bars` |
+//! | 6 | `bar`, `condition_bars` (here `s_id` may come from the identified model's own band) |
 //! | 7 | `difference` |
 //! | 8 | `design`, `variance_decomposition` |
 //! | 9 | `schedule_band` |

@@ -51,10 +51,15 @@ pub(super) struct ChannelMatcher<'a> {
 impl ChannelMatcher<'_> {
     /// Matches the channels on one side.
     ///
-    /// 1. If the file names no channel, match by position; the counts must agree.
-    /// 2. Find the file channel for each dataset channel.
+    /// 1. If the file names no channel, match by position; exit with a problem if the counts
+    ///    differ.
+    /// 2. Otherwise, find the file channel for each dataset channel by name.
     /// 3. Determine its unit factor from declarations and units.
     /// 4. Determine its sign from declarations and names.
+    /// 5. Note the named file channels that no dataset channel uses.
+    /// 6. Report a problem if a measured response has none of the dataset's channels.
+    ///
+    /// Two dataset channels that agree with the same file channel both use it.
     pub(super) fn run(self) -> ChannelMatch {
         let mut found = ChannelMatch {
             by_position: !self.labels.is_empty()
@@ -79,7 +84,9 @@ impl ChannelMatcher<'_> {
             });
             found.uses.push(used);
         }
+        // Step 5.
         self.note_unused(&mut found);
+        // Step 6.
         if self.partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
             found.problems.push(self.unmatched());
         }
@@ -163,11 +170,13 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the channel with its unit factor: the declared factor, or the factor between its
-    /// units.
+    /// Returns the channel with its unit factor.
     ///
-    /// A declared unit overrides the unit in the file; without either, the rule's unit for files
-    /// applies.
+    /// 1. The declared factor, if there is one; no unit is then read.
+    /// 2. Otherwise, the unit: declared, or else in the file (with a note if both exist and
+    ///    differ), or else the rule's unit for files; a problem without any.
+    /// 3. The factor from this unit to the dataset's: the declared conversion for these units, or
+    ///    else the factor between physical units; a problem without any.
     fn converted(&self, index: usize, rule: &ChannelRule, found: &mut ChannelMatch) -> ChannelUse {
         let mut used = ChannelUse {
             index,
@@ -225,8 +234,9 @@ impl ChannelMatcher<'_> {
         used
     }
 
-    /// Returns the channel with its declared sign, or else with the sign implied by its name; adds
-    /// a problem if neither determines the sign.
+    /// Returns the channel with its sign: first the declared sign, or 1 with a declared factor,
+    /// which includes the sign; else the sign implied by the name in the file; else, for an unnamed
+    /// channel, 1. Adds a problem if the name leaves the sign open.
     fn signed(
         &self,
         used: ChannelUse,
@@ -270,7 +280,8 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Adds a note about the named file channels that match no dataset channel.
+    /// Adds a note about the named file channels that no dataset channel uses; none if there are
+    /// problems, since these channels may then be the missing ones.
     fn note_unused(&self, found: &mut ChannelMatch) {
         let mut unused: Vec<String> = Vec::new();
         for (index, label) in self.labels.iter().enumerate() {

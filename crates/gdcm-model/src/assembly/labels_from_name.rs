@@ -62,6 +62,7 @@ pub struct AmbiguousName {
 }
 
 impl NamedLabels {
+    /// Returns whether the only input and the only output have names.
     fn are_complete(&self) -> bool {
         self.labels.iter().all(|labels| labels[0].name.is_some())
     }

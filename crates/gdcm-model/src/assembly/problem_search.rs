@@ -1,4 +1,8 @@
-//! Search for problems in models and conditions.
+//! Search for problems in models and conditions: missing and contradictory facts that keep them
+//! from forming a dataset.
+//!
+//! A *part* is a model found in a file, its *row* the facts about it (condition, role, airspeed),
+//! from its file, its name and the rules, which the engineer enters.
 
 use std::collections::BTreeMap;
 
@@ -103,7 +107,8 @@ fn sample_time_problem(part: &Part) -> Option<ProblemKind> {
     }
 }
 
-/// Finds a condition's problems; `parts` has at least one model.
+/// Finds a condition's problems; `parts` has at least one model. Problems with the condition as a
+/// whole are attributed to its first model.
 pub(super) fn condition_problems(
     condition: i64,
     parts: &[IndexedPart<'_>],
@@ -182,7 +187,7 @@ fn contradictions(condition: i64, parts: &[IndexedPart<'_>]) -> Vec<ProblemKind>
 }
 
 /// Finds models with the same name in a bundle. Measured responses may share a name: they then form
-/// a single model.
+/// a single model, unless they give the same response twice, or have different frequencies.
 fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Vec<Problem> {
     let mut physics: BTreeMap<&str, Vec<&Part>> = BTreeMap::new();
     let mut identified: BTreeMap<&str, Vec<&Part>> = BTreeMap::new();

@@ -13,21 +13,25 @@ use crate::dataset::physics_parameter::MovedParameters;
 use crate::names::RowRole;
 use crate::names::name_pattern::{read_name, unread_offsets};
 
-/// Proposes a row for each model.
+/// Proposes a row for each model. A row contains the model's place in the dataset.
 ///
 /// 1. Read the facts in the file and in its name.
 /// 2. Number the conditions if no name does.
 /// 3. Propose the nominal model of each condition.
 /// 4. Apply the rules for single models.
 pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
+    // Step 1.
     let mut rows: Vec<Row> = models
         .iter()
         .map(|model| proposed_row(model, models, rules))
         .collect();
+    // Step 2.
     if rows.iter().all(|row| row.condition.is_none()) {
         number_conditions(models, &mut rows);
     }
+    // Step 3.
     propose_nominal(&mut rows);
+    // Step 4.
     for (model, row) in models.iter().zip(&mut rows) {
         if let Some(rule) = rules.rows.get(&model.key()) {
             rule.apply(row);
@@ -36,7 +40,12 @@ pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
     rows
 }
 
-/// Proposes a row from a file's contents and name; the contents take precedence.
+/// Proposes a row from a file's contents and from its name, folders and variable.
+///
+/// 1. Condition, airspeed, altitude, mass, trim offsets and moved parameter: from the contents, or
+///    else from the name. Model name and method: from the name, or else from the contents.
+/// 2. Role: as the file states it, or else the name, or else as the model implies; a run with the
+///    nominal role becomes perturbed.
 fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row {
     let facts = &model.facts;
     let offsets = trim_offsets(&model.draft.origin);

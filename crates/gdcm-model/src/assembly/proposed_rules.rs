@@ -87,7 +87,8 @@ impl<'m> LabelledModel<'m> {
 /// 2. Take its channels. If it is a measured response, which may have a single channel, add the
 ///    channels of other measured responses; models with matrices have all channels.
 /// 3. Give each channel the unit that is used by most files.
-/// 4. If no model with matrices names its channels, number the missing channels.
+/// 4. If there are no channels, or no model with matrices names its channels, number the missing
+///    channels, up to the largest number that a model has.
 fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
     // Step 1.
     let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
@@ -127,10 +128,10 @@ fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<Cha
         channel.unit = units.most_used();
     }
     // Step 4.
-    let all_unnamed = models
+    let no_matrices_named = models
         .iter()
         .all(|model| model.is_measured() || model.named_count(side) == 0);
-    if channels.is_empty() || all_unnamed {
+    if channels.is_empty() || no_matrices_named {
         let count = models.iter().map(|model| model.labels(side).len()).max();
         for number in channels.len() + 1..=count.unwrap_or(0) {
             channels.push(ChannelRule::named(format!("{side} {number}")));

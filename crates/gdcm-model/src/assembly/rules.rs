@@ -86,8 +86,10 @@ impl Rules {
     /// Renames a dataset channel.
     ///
     /// 1. The old name becomes an alias.
-    /// 2. On-axis responses, conversions, signs and declarations are renamed.
-    /// 3. The standard on-axis responses of the new name are marked.
+    /// 2. On-axis responses are renamed, and the standard ones of the new name are marked.
+    /// 3. Conversions, values for single models, signs and declarations are renamed.
+    ///
+    /// Does nothing for a missing index or an unchanged name.
     pub fn rename(&mut self, side: ChannelSide, index: usize, name: String) {
         let Some(channel) = self.channels_mut(side).get_mut(index) else {
             return;
@@ -96,10 +98,12 @@ impl Rules {
         if old == name {
             return;
         }
+        // Step 1.
         channel.aliases.retain(|alias| *alias != name);
         if !old.is_empty() && !channel.aliases.contains(&old) {
             channel.aliases.push(old.clone());
         }
+        // Step 2.
         for (output, input) in &mut self.on_axis {
             let on_side = side.pick(input, output);
             if *on_side == old {
@@ -107,6 +111,7 @@ impl Rules {
             }
         }
         self.mark_standard_on_axis(side, &name);
+        // Step 3.
         for unit in &mut self.units {
             if unit.channel == old {
                 unit.channel.clone_from(&name);
@@ -160,7 +165,10 @@ impl Rules {
     }
 
     /// Adds declarations; they override earlier declarations for the same channels and models.
-    /// Signs are stored in [`Self::signs`] for all models, and in [`Self::role_signs`] for a role.
+    ///
+    /// 1. For files or folders: all in [`Self::declarations`].
+    /// 2. Otherwise, signs in [`Self::signs`] for all models, in [`Self::role_signs`] for a role;
+    ///    units and factors in [`Self::declarations`].
     pub fn declare(&mut self, scope: FileScope, declared: &ChannelDeclarations) {
         // `None` if there are no signs for a role, which then needs no entry in `role_signs`.
         let signs = match &scope {

@@ -44,6 +44,9 @@ impl ConditionRecord {
     }
 
     /// Checks the sample time and the time intervals.
+    ///
+    /// # Errors
+    /// The first value out of range.
     pub(super) fn check_times(&self) -> Result<(), TimeFault> {
         if let Some(value) = self.sample_time_s
             && (!value.is_finite() || value <= 0.0)

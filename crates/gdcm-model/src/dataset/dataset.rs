@@ -196,7 +196,8 @@ impl Dataset {
             .find(|condition| condition.id() == id)
     }
 
-    /// Returns a copy in which `condition` replaces the condition with the same identifier.
+    /// Returns a copy in which `condition` replaces the condition with the same identifier; an
+    /// unchanged copy if there is none.
     ///
     /// # Errors
     /// [`DatasetError::ModelShape`].
@@ -262,8 +263,8 @@ impl Dataset {
         })
     }
 
-    /// Returns the responses that enter a model's objective: the on-axis responses, or all
-    /// responses if none is on-axis (M5, M7).
+    /// Returns the responses from which distances and bounds are computed: the on-axis responses,
+    /// or all responses if none is on-axis (M5, M7).
     pub fn measuring_pairs(&self) -> PairTable<bool> {
         if self.header.on_axis.marked().next().is_some() {
             self.header.on_axis.clone()

@@ -83,11 +83,11 @@ pub struct BandsDraft {
     pub sd_deg: ResponseArray,
 }
 
-/// A value for each response and frequency, `[output][input][frequency]`; the last index runs
-/// fastest.
+/// Values for each response, `[output][input][value]`: one for each frequency, or the two ends of a
+/// valid band. The last index runs fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseArray {
-    /// Output count, input count and frequency count.
+    /// Output count, input count and value count.
     pub shape: [usize; 3],
     pub values: Vec<f64>,
 }

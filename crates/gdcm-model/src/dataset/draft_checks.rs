@@ -1,4 +1,10 @@
 //! Checks a dataset draft and collects all faults. Models are checked in `model_draft_checks.rs`.
+//!
+//! 1. List lengths, the band, parameters, and the names of on-axis responses.
+//! 2. Each condition: its models one by one; if all are valid, the condition as a whole.
+//! 3. If there is no fault so far: the dataset as a whole.
+//!
+//! A draft with very many faults is not checked to its end.
 
 use super::band::Band;
 use super::channel::Channel;
@@ -32,7 +38,7 @@ impl DatasetDraft {
         self.check_all().err().unwrap_or_default()
     }
 
-    /// Runs all checks. The fault list is never empty.
+    /// Runs checks 1 to 3. The fault list is never empty.
     fn check_all(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
         let mut checker = Checker::new(self.outputs.len(), self.inputs.len());
         let lists = [
@@ -110,6 +116,7 @@ fn on_axis_table(
     Ok(table)
 }
 
+/// Marks a response by the names of its channels, each response once.
 fn mark_on_axis(
     table: &mut PairTable<bool>,
     outputs: &[Channel],
@@ -192,7 +199,8 @@ impl Checker {
         self.keep_fault(condition)
     }
 
-    /// Checks a bundle's models, and returns the valid ones.
+    /// Checks a bundle's models, and returns the valid ones, those with moved parameters
+    /// separately; none if there are too many.
     fn bundle(
         &mut self,
         condition: &Location,

@@ -111,6 +111,11 @@ impl MeasuredResponseError {
 impl MeasuredResponse {
     /// Creates the response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\],
     /// both p x m tables with `N` values per response.
+    ///
+    /// # Errors
+    /// [`MeasuredResponseError`] for fewer than two frequencies, frequencies that are not positive
+    /// and rising, tables of the wrong length, values that are not finite, or a coherence outside 0
+    /// to 1.
     pub fn new(
         omega: Vec<f64>,
         re: &PairTable<Vec<f64>>,

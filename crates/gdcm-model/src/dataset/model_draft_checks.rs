@@ -1,8 +1,13 @@
 //! Checks a model draft: its matrices or measured response against the dataset's channels.
 //!
-//! 1. A model has either matrices or a measured response; only an identified model can be measured.
-//! 2. Their shapes, and the shapes of the uncertainty bands, agree with the channel counts.
-//! 3. A stated order, or a list of state names, that differs from the state count is a warning.
+//! 1. A model has either matrices or a measured response. Only an identified model can be measured,
+//!    and a measured response has no timing: it includes the delays.
+//! 2. The shapes of matrices and tables agree with the channel counts.
+//! 3. An order stated by the identification, or a list of state names, that differs from the state
+//!    count is a warning.
+//!
+//! *Valid bands* are frequency intervals of a measured response; *bands* alone are the uncertainty
+//! bands of a model's response.
 
 use std::sync::Arc;
 
@@ -36,7 +41,10 @@ impl ModelBuilder {
         }
     }
 
-    /// Checks a model, and builds it from its draft.
+    /// Checks a model, and builds it from its draft: checks 1 and 2, then the warnings of check 3.
+    ///
+    /// # Errors
+    /// The first fault, with its place.
     pub fn build(
         &mut self,
         place: Location,
@@ -70,23 +78,31 @@ impl ModelBuilder {
         response: Option<ResponseDraft>,
     ) -> Result<Dynamics, DraftError> {
         let has_matrices = matrices.iter().any(Option::is_some);
-        let fault = match (has_matrices, response) {
-            (_, Some(_)) if kind == BundleKind::Physics => DraftFault::MeasuredPhysics,
-            (true, Some(_)) => DraftFault::BothDynamics,
-            (false, None) => DraftFault::NoDynamics,
-            (false, Some(_)) if !timing.is_plain() => DraftFault::TimedResponse,
-            (true, None) => {
-                let model = self.state_space(place, matrices, timing)?;
-                return Ok(Dynamics::StateSpace(model));
-            }
-            (false, Some(response)) => {
-                return Ok(Dynamics::Measured(self.measured(place, response)?));
-            }
+        let has_response = response.is_some();
+        let fault = if has_response && kind == BundleKind::Physics {
+            Some(DraftFault::MeasuredPhysics)
+        } else if has_matrices && has_response {
+            Some(DraftFault::BothDynamics)
+        } else if !has_matrices && !has_response {
+            Some(DraftFault::NoDynamics)
+        } else if has_response && !timing.is_plain() {
+            Some(DraftFault::TimedResponse)
+        } else {
+            None
         };
-        Err(DraftError::new(place.clone(), fault))
+        if let Some(fault) = fault {
+            return Err(DraftError::new(place.clone(), fault));
+        }
+        match response {
+            Some(response) => Ok(Dynamics::Measured(self.measured(place, response)?)),
+            None => Ok(Dynamics::StateSpace(
+                self.state_space(place, matrices, timing)?,
+            )),
+        }
     }
 
-    /// Adds a warning if the order stated by the identification differs from the state count.
+    /// Adds a warning if the order stated by the identification differs from the state count of a
+    /// state-space model.
     fn check_order(&mut self, place: &Location, dynamics: &Dynamics, origin: &Origin) {
         if let Dynamics::StateSpace(model) = dynamics
             && let Origin::Identified {
@@ -105,7 +121,9 @@ impl ModelBuilder {
         }
     }
 
-    /// Returns the state names; empty, with a warning, if their count differs from the order.
+    /// Returns the state names if their count equals the order; otherwise no names. A warning is
+    /// added if the model has both names and states; names for a measured response, which has no
+    /// states, are dropped silently.
     fn state_names(
         &mut self,
         place: Location,
@@ -151,7 +169,8 @@ impl ModelBuilder {
             };
             return Err(DraftError::new(place.at("matrix D"), fault));
         }
-        // A file writes B without states as an empty list, which does not give the column count.
+        // Files write B and C without states as empty lists: B then lacks its column count, and C
+        // may have any empty shape.
         if a.nrows() == 0 && b.nrows() == 0 {
             b = DMatrix::zeros(0, m);
         }
@@ -176,17 +195,21 @@ impl ModelBuilder {
             Some(array) => Some(self.table(place, array, "measured response, coherence", depth)?),
             None => None,
         };
-        let bands = draft.valid_bands.as_ref();
         let mut response = MeasuredResponse::new(draft.omega, &re, &im, coherence)
             .map_err(|error| DraftError::new(place.at("measured response"), error))?;
-        if let Some(bands) = bands {
+        if let Some(valid_bands) = &draft.valid_bands {
             let ends = TableDepth {
                 count: 2,
                 meaning: "first and last frequency",
             };
-            let bands = self.table(place, bands, "measured response, valid_band_rad_s", ends)?;
+            let valid_bands = self.table(
+                place,
+                valid_bands,
+                "measured response, valid_band_rad_s",
+                ends,
+            )?;
             response = response
-                .with_valid_bands(bands.map(|_, band| [band[0], band[1]]))
+                .with_valid_bands(valid_bands.map(|_, band| [band[0], band[1]]))
                 .map_err(|error| DraftError::new(place.at("measured response"), error))?;
         }
         response
@@ -208,7 +231,7 @@ impl ModelBuilder {
         &self,
         place: &Location,
         array: &ResponseArray,
-        part: &str,
+        table_name: &str,
         depth: TableDepth,
     ) -> Result<PairTable<Vec<f64>>, DraftError> {
         let count = depth.count;
@@ -222,7 +245,7 @@ impl ModelBuilder {
                 ),
                 found: dimensions(array.shape),
             };
-            return Err(DraftError::new(place.at(part), fault));
+            return Err(DraftError::new(place.at(table_name), fault));
         }
         Ok(PairTable::from_fn(
             self.outputs,
@@ -236,7 +259,7 @@ impl ModelBuilder {
     }
 }
 
-/// Required length along the third index, in a table over frequency.
+/// Required length of a table along its third index: frequencies, or the two ends of valid bands.
 #[derive(Clone, Copy)]
 struct TableDepth {
     count: usize,

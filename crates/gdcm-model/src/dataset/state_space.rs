@@ -59,6 +59,9 @@ impl StateSpaceError {
 impl StateSpace {
     /// Creates the continuous-time model (A, B, C, D). `A` determines the state count; `D`
     /// determines the output and input counts.
+    ///
+    /// # Errors
+    /// [`StateSpaceError`] for a matrix with a wrong shape, or an entry that is not finite.
     pub fn new(
         a: DMatrix<f64>,
         b: DMatrix<f64>,

@@ -87,6 +87,9 @@ impl Timing {
 
     /// Checks the timing for a model with `outputs` and `inputs`. Removes delays that are all zero,
     /// so that the model compares equal to one without delays.
+    ///
+    /// # Errors
+    /// [`TimingError`] for a value out of range, or a wrong number of delays.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
         if let Some(value) = self.sample_time_s
             && (!value.is_finite() || value <= 0.0)

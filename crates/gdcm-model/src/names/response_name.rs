@@ -54,20 +54,25 @@ impl ResponseName {
     /// 4. If both of two names can be input or output, read them as "output input", or as "input to
     ///    output".
     /// 5. Otherwise prefer, for each side, a name that belongs only to this side over a name that
-    ///    may belong to either.
+    ///    may belong to either; reject several different channels, and leave a side open without
+    ///    any.
     ///
     /// # Errors
     /// The text names several outputs or inputs, or a word may change what a channel name means.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
+        // Steps 1 and 2.
         let words = split_words(text);
         let named = named_channels(text, &words, known);
+        // Step 3.
         reject_modifiers(&words, &named)?;
+        // Step 4.
         if let [first, second] = named.as_slice()
             && first.sides.are_both()
             && second.sides.are_both()
         {
             return Ok(Self::from_order(&words, first, second));
         }
+        // Step 5.
         Ok(Self {
             output: only_channel(ChannelSide::Output, &named)?,
             input: only_channel(ChannelSide::Input, &named)?,

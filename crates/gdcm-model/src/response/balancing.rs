@@ -46,8 +46,10 @@ pub fn balance_square(a: &mut DMatrix<f64>) -> Vec<f64> {
 }
 
 /// Returns the power of two that makes a column's norm and its row's norm most nearly equal; `None`
-/// if it reduces the sum of their squares by less than 5 %.
+/// if it reduces the sum of their squares by at most 5 %, or if either is zero.
 fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
+    /// Share of the sum below which the reduction is worth a further sweep.
+    const WORTHWHILE: f64 = 0.95;
     let column = a.column(state).norm_squared();
     let row = a.row(state).norm_squared();
     let whole = column + row;
@@ -67,7 +69,7 @@ fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
         row *= 2.0;
         factor /= 2.0;
     }
-    if column * column + row * row < 0.95 * whole {
+    if column * column + row * row < WORTHWHILE * whole {
         Some(factor)
     } else {
         None

@@ -8,7 +8,8 @@ use crate::dataset::{Pair, PairTable, StateSpace};
 /// any number of times through `A`, and `C` (or directly through `D`) to the output.
 ///
 /// Without such a chain the response is zero at every frequency (a structural zero). Its computed
-/// values are rounding errors, and their ratios are meaningless (M6).
+/// values are rounding errors, and their ratios are meaningless (M6). A numerically zero response
+/// (M6a), by contrast, has a chain, but is negligible.
 pub fn connected(model: &StateSpace) -> PairTable<bool> {
     // `reached[input][state]`.
     let reached: Vec<Vec<bool>> = (0..model.inputs())

@@ -172,7 +172,8 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
 }
 
 /// Returns the eigenvalues of A, computed without balancing: \[rad/s\] in continuous time, but `z`
-/// in discrete time, unlike the poles of [`modes`]. Returns `None` if the Schur iteration does not converge.
+/// in discrete time, unlike the poles of [`modes`]. Returns `None` if the Schur iteration does not
+/// converge.
 #[must_use]
 pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
     let schur =

@@ -43,8 +43,9 @@ fn magnitude_db(value: &Complex<f64>) -> f64 {
 
 /// Magnitude and phase for all responses of a model.
 ///
-/// An entry is `None` for a response that is zero or not finite at some frequency (structural zero,
-/// pole on the imaginary axis, measured data with too short a range): it has no G, D or J (M6).
+/// An entry is `None` for a response that is zero or not finite at some frequency (no connection
+/// from input to output, pole on the imaginary axis, measured data with too short a range): it has
+/// no G, D or J (M6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarResponse {
     curves: PairTable<Option<PolarCurve>>,
@@ -79,6 +80,7 @@ impl PolarResponse {
     /// largest peak for the same input. Numerical differentiation produces such values instead of
     /// exact zeros.
     pub fn numerically_zero(&self) -> PairTable<bool> {
+        /// Level of a numerically zero response, relative to the largest peaks.
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| match curve {
             Some(curve) => largest(curve.magnitude_db.iter()),

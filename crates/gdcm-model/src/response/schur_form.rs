@@ -22,7 +22,7 @@ pub struct SchurForm {
     /// Upper triangular matrix with the eigenvalues on its diagonal.
     pub t: DMatrix<Complex<f64>>,
     /// Minimum magnitude for a difference between eigenvalues used as a divisor: their rounding
-    /// error.
+    /// error. It replaces the zero difference of equal eigenvalues.
     least: f64,
 }
 
@@ -41,6 +41,7 @@ impl SchurForm {
             t: t.map(Complex::from),
             least: 0.0,
         };
+        // Steps 2 and 3.
         for first in blocks {
             let second = first + 1;
             let block = Block {
@@ -228,7 +229,8 @@ impl Block {
 
 /// Computes the real Schur form `A = Q T Q'` (step 1); returns Q and T. The iteration can stall,
 /// since a cyclic permutation is one of its fixed points; it is then repeated for the reflected
-/// matrix, which has the same eigenvalues.
+/// matrix, which has the same eigenvalues, about two different axes. `None` if no attempt
+/// converges.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;
     /// Maximum iteration count per eigenvalue; three or four are typical.

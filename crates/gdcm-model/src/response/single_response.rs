@@ -42,8 +42,8 @@ impl SingleResponse {
     /// zero except for its first entry.
     ///
     /// Reflections align b with the first state, then each column of A with its subdiagonal; the
-    /// chain from the input ends at the first negligible subdiagonal entry (Van Dooren's staircase,
-    /// IEEE Trans. Automatic Control 26(1), 1981, for one input).
+    /// chain from the input ends at the first negligible subdiagonal entry, or at once if b is zero
+    /// (Van Dooren's staircase, IEEE Trans. Automatic Control 26(1), 1981, for one input).
     pub(super) fn controllable(mut self) -> Self {
         let size = self.a.nrows();
         let negligible = NEGLIGIBLE * self.a.norm();
@@ -98,6 +98,7 @@ impl SingleResponse {
         }
     }
 
+    /// Returns the model with its first `count` states alone.
     fn first_states(&self, count: usize) -> Self {
         Self {
             a: self.a.view((0, 0), (count, count)).into_owned(),

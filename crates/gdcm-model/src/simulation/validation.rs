@@ -16,14 +16,19 @@ use crate::executor::{Executor, each};
 /// output offsets.
 ///
 /// ```text
-/// window: 3 / max Re lambda, at most longest_window_s; each segment is divided into equal windows without a remainder
-/// y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples, Phi = e^(A T)
-/// x0, offset: least squares over all outputs, each divided by its standard deviation
+/// 1  window: 3 / max Re lambda, at most longest_window_s; each segment is divided into equal
+///    windows without a remainder; a segment that is too short has none
+/// 2  low-pass filter of all signals, if the settings have one
+/// 3  y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples,
+///    Phi = e^(A T)
+///    x0, offset: least squares over all outputs, each divided by its standard deviation
+/// 4  fit and Theil's coefficient of each output, over all windows
 /// ```
 ///
 /// # Errors
-/// [`ValidationError`] if there are no segments, the channels differ from the model's, the model
-/// cannot be simulated, or the windows are too short.
+/// [`ValidationError`] if there are no segments, the channels differ from the model's, the window
+/// length is not positive, the model cannot be simulated, its outputs are not finite, or all
+/// windows are too short.
 pub fn validate(
     model: &StateSpace,
     segments: &[Segment],
@@ -41,12 +46,15 @@ pub fn validate(
     if settings.longest_window_s.is_nan() || settings.longest_window_s <= 0.0 {
         return Err(ValidationError::NoWindow);
     }
+    // Step 1.
     let window_s =
         window_length_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
+    // Step 2.
     let filtered = each(executor, segments, |segment| match settings.low_pass {
         Some(omega) => LowPass::applied(omega, segment),
         None => segment.clone(),
     });
+    // Step 3.
     let std = column_deviations(filtered.iter().map(|segment| &segment.outputs));
     let windows = each(executor, &filtered, |segment| {
         simulated_windows(model, segment, window_s, &std)
@@ -60,6 +68,7 @@ pub fn validate(
     if windows.is_empty() {
         return Err(ValidationError::TooShort(window_s));
     }
+    // Step 4.
     let Agreement { fit_percent, theil } = agreement(&windows);
     Ok(Validation {
         windows,

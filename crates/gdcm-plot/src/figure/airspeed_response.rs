@@ -218,7 +218,8 @@ pub struct AirspeedCache {
 
 impl AirspeedCache {
     /// Computes a response's shapes. Phases from identified models are aligned with the first
-    /// condition, those from physics models with their condition's identified model.
+    /// condition that has a shape, those from physics models with their condition's identified
+    /// model or, without one, with that first condition.
     fn refresh(&mut self, response: &AirspeedResponse<'_>) {
         if let Some(known) = &self.curves
             && Arc::ptr_eq(known, response.responses)
@@ -286,7 +287,8 @@ impl ShapeSource<'_> {
 }
 
 impl ConditionShapes {
-    /// Returns the shape to which other conditions align their phases.
+    /// Returns the shape to which other conditions align their phases: the identified model's, or
+    /// else the nominal model's.
     fn any(&self) -> &Option<ResponseShape> {
         if self.identified.is_some() {
             &self.identified

@@ -29,15 +29,19 @@ const OPTIMA: Color = Color::new(Hue::Corrected).tint(22);
 const NO_ERROR: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;
-/// Minimum height that the error axes show \[dB\] and \[deg\].
+/// Minimum range of the axis for magnitude errors \[dB\].
 const LEAST_ERROR_DB: f64 = 1.0;
+/// Minimum range of the axis for phase errors \[deg\].
 const LEAST_ERROR_DEG: f64 = 5.0;
 /// Ratio of frame height to width for two plots side by side.
 const ASPECT: f64 = 1.2;
 
 /// Plots the responses `pairs` for models in these roles in the `conditions`, magnitude above
-/// phase; with a single response, also the schedule's error beside it. `None` if no condition has
-/// such a model.
+/// phase.
+///
+/// 1. Curves of each response, from the options only unit and ranges; `None` if there are none.
+/// 2. A single response with the schedule's error: the response, and the error beside it.
+/// 3. Otherwise: the responses side by side.
 pub fn airspeeds_figure(
     analysis: &Analysis,
     pairs: &[Pair],
@@ -56,6 +60,7 @@ pub fn airspeeds_figure(
         values: options.values,
         ..BodeOptions::default()
     };
+    // Step 1.
     let names: Vec<&str> = roles.iter().map(|role| role.name()).collect();
     let mut plots = Vec::new();
     for &pair in pairs {
@@ -83,6 +88,7 @@ pub fn airspeeds_figure(
         settings_words(dataset, settings),
         "Curves are coloured by airspeed, from dark at the lowest to pale at the highest."
     );
+    // Step 2.
     if let ([pair], [plot]) = (pairs, plots.as_slice())
         && !plot.curves.errors.is_empty()
     {
@@ -103,6 +109,7 @@ pub fn airspeeds_figure(
                 .plots([plot.response_plot("Response"), plot.error_plot()]),
         );
     }
+    // Step 3.
     let title = format!("Every condition: {}", names.join(", "));
     let figure = side_by_side(dataset, pairs, title, |pair| {
         match pairs.iter().position(|known| *known == pair) {
@@ -152,6 +159,8 @@ impl AirspeedPlots<'_> {
             ))
     }
 
+    /// Builds a panel of the schedule's error, fitted to the errors within the band; `least` is the
+    /// minimum range of its axis.
     fn error_panel(&self, pane: Pane, axis: Axis, least: f64) -> Panel {
         let band = self.analysis.study.settings.band;
         let shown = Range::new(band.min(), band.max());

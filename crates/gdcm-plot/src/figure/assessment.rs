@@ -18,6 +18,7 @@ use super::drawing::{Color, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, Note, Place, Rule};
 
+/// Line at no change.
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Bar width; neighbouring conditions are 1 apart on the axis.
 const BAR: f64 = 0.27;

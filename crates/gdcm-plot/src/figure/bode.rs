@@ -30,8 +30,9 @@ const CROSSING: Stroke = Stroke::dashed(Color::new(Hue::Text), 0.8, Dash::Short)
 const MAGNITUDE_WEIGHT: f64 = 1.35;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.04;
-/// Minimum height that the magnitude axis \[dB\] and the phase axis \[deg\] show.
+/// Minimum range of the magnitude axis \[dB\].
 const LEAST_DB: f64 = 4.0;
+/// Minimum range of the phase axis \[deg\].
 const LEAST_DEG: f64 = 20.0;
 
 /// Plots the responses `pairs` in a condition, magnitude above phase, for all models and corrected

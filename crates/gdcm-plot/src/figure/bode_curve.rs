@@ -35,8 +35,10 @@ pub enum Pane {
     Phase,
 }
 
-/// A frequency response with its name and role. Also used for the deviation from a reference; the
-/// phase then has the phase-error unit.
+/// A frequency response with its name and role.
+///
+/// Also used for the error, the deviation from a reference: the phase values are then in the
+/// engineer's unit for phase errors (`PhaseErrorUnit`).
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,

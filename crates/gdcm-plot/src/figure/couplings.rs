@@ -13,12 +13,15 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Band, Curve, Rule};
 use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 
-/// Loop curves for the other conditions, and for the condition shown.
+/// Loop curves for the other conditions.
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.7);
+/// Loop curve for the condition shown.
 const SHOWN: Stroke = Stroke::solid(Color::new(Hue::Corrected), 1.6);
 /// Line at the singular value below which the loop is close to ringing.
 const RINGING: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
+/// Background of the comparison band.
 const BAND: Color = Color::new(Hue::Accent).tint(12);
+/// Imaginary axis in plots of poles.
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Magnitude up to which poles are displayed, relative to the band's upper end.
 const SHOWN_POLES: f64 = 1.5;

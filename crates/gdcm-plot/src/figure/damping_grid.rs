@@ -6,11 +6,13 @@ use super::axis::Range;
 use super::marks::Guide;
 use super::ticks::step_above;
 
+/// Damping ratios of the rays.
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
 /// Ray length \[rad/s\]; beyond every displayed pole.
 const FAR: f64 = 1e3;
-/// Maximum number of arcs, and intervals per arc.
+/// Maximum number of arcs.
 const ARCS: u32 = 8;
+/// Intervals between the points of an arc.
 const ARC_POINTS: usize = 60;
 /// Distances, as fractions of plot width and height, below which two labels overlap.
 const BESIDE: [f64; 2] = [0.11, 0.07];
@@ -51,8 +53,8 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     guides.into_iter()
 }
 
-/// Returns rays that extend `2 reach` \[rad/s\] to the left, labelled where they leave the displayed ranges; a
-/// label too close to the previous label is omitted.
+/// Returns rays that extend `2 reach` \[rad/s\] to the left, labelled where they leave the displayed
+/// ranges; a label too close to the previous label is omitted.
 fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     let mut last_label: Option<[f64; 2]> = None;
     let mut rays = Vec::new();

@@ -58,9 +58,9 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 }
 
 impl ConditionSource<'_> {
-    /// Returns the deviations over the band: for every kept physics model, for the reference as the
-    /// line at zero, and for the representative after each correction. `cache` keeps the computed
-    /// deviations until their sources change.
+    /// Returns the deviations over the band: for every kept physics model; if there are any, for
+    /// the reference as the line at zero; and for the representative after each correction. `cache`
+    /// keeps the computed deviations until their sources change.
     pub fn error_curves(
         &self,
         pair: Pair,

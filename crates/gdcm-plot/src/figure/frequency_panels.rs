@@ -19,8 +19,9 @@ use super::role::Role;
 const NOTICED: Color = Color::new(Hue::Warning).tint(20);
 /// Confidence band about an identified model.
 const UNCERTAIN: Color = Color::new(Hue::Identified).tint(22);
-/// Ratio of frame height to width in a figure with a single plot, and in a figure with several.
+/// Ratio of frame height to width in a figure with a single plot.
 const SINGLE_ASPECT: f64 = 0.72;
+/// Ratio of frame height to width in a figure with several plots.
 const SHARED_ASPECT: f64 = 1.9;
 
 /// Contents of a response's panels.

@@ -20,13 +20,15 @@ use super::role::Role;
 
 /// Line at the value without correction.
 const UNCORRECTED: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
-/// Error bar, and its part due to identification alone.
+/// Error bar.
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.6);
+/// Part of the error bar due to identification alone.
 const INNER_BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(50), 2.4);
 /// How far the axis may extend to show error bars, relative to the range of the dots.
 const BARS_EXTENSION: f64 = 0.5;
-/// Brackets between net gains at the same airspeed.
+/// Bracket between net gains at the same airspeed that differ significantly.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::new(Hue::Warning), 0.7);
+/// Bracket between other net gains at the same airspeed.
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
 /// Names for both kinds of bracket, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
@@ -47,7 +49,8 @@ pub(super) struct GainPanel<'a> {
 }
 
 impl GainPanel<'_> {
-    /// Builds the panel, with `label` on the vertical axis.
+    /// Builds the panel, with `label` on the vertical axis. From the lowest mark to the topmost:
+    /// bounds, line without correction, schedule with its bands, error bars, brackets, optima.
     pub(super) fn panel(&self, label: &str) -> Panel {
         let measure = self.quantity.measure();
         let bars = self.bars();

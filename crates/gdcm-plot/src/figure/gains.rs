@@ -17,13 +17,15 @@ use super::gain_quantity::placed_results;
 use super::marks::{Along, Curve, DotShape, Dots, Mark, MarkId};
 use super::role::Role;
 
-/// Ratio of plot height to width, without and with error bars.
+/// Ratio of plot height to width without error bars.
 const ASPECT: f64 = 0.95;
+/// Ratio of plot height to width with error bars, which need more height.
 const ASPECT_WITH_BARS: f64 = 1.3;
 /// Dot size for an overlaid variant, relative to the usual dot.
 const VARIANT_DOT: f64 = 0.7;
-/// Optima and schedule from before the settings changed.
+/// Colour of optima and schedule from before the settings changed.
 const PREVIOUS: Color = Color::new(Hue::Rejected);
+/// Size of these optima, relative to the usual dot.
 const PREVIOUS_DOT: f64 = 0.5;
 
 /// Plots each pair's net gain at every condition's optimum, and the schedule (Figures 6 and 7);

@@ -1,6 +1,7 @@
 //! Places labels around dots, clear of other dots, bars and labels.
 //!
 //! ```text
+//! more than 300 labels: place none
 //! three times, for each dot:
 //!     try 8 directions at 6 distances; keep the cheapest place. Cost, given the other labels:
 //!         area over other labels, dots, bars, and outside the bounds
@@ -10,6 +11,8 @@
 //!         rank of the direction, and distance
 //! remove labels that cover too much, the worst first
 //! ```
+//!
+//! A *leader* is the line from a dot to a label that does not touch it.
 //!
 //! The screen and paper use the same method, in points; y runs downwards.
 
@@ -68,11 +71,13 @@ const SWEEPS: usize = 3;
 /// place.
 const MOST_LABELS: usize = 300;
 
-/// Costs per square point that a label covers on another label, on a dot, on a bar, or outside the
-/// bounds.
+/// Cost per square point that a label covers on another label.
 const ON_LABEL: f64 = 40.0;
+/// Cost per square point that a label covers on a dot.
 const ON_DOT: f64 = 40.0;
+/// Cost per square point that a label covers on a bar.
 const ON_BAR: f64 = 8.0;
+/// Cost per square point of a label outside the bounds.
 const OUTSIDE: f64 = 30.0;
 /// Cost per point of a path's length under a label.
 const ON_PATH: f64 = 1.0;
@@ -80,9 +85,9 @@ const ON_PATH: f64 = 1.0;
 const LEADER_ON_LABEL: f64 = 20.0;
 /// Cost of each other dot that is nearer to a label than the labelled dot.
 const AMBIGUOUS: f64 = 6.0;
-/// Cost of each direction that precedes the chosen direction in [`DIRECTIONS`], and cost per point
-/// of distance from the dot.
+/// Cost of each direction that precedes the chosen direction in [`DIRECTIONS`].
 const LATER_DIRECTION: f64 = 0.2;
+/// Cost per point of distance from the dot.
 const FARTHER: f64 = 0.6;
 /// Maximum fraction of a label's area over other labels, over dots, or outside the bounds. A label
 /// that covers more is removed as unreadable.
@@ -317,7 +322,7 @@ fn is_better(cost: f64, best: &Option<Candidate>) -> bool {
 fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (ring, gap) in GAPS.into_iter().enumerate() {
-        for (at, direction) in DIRECTIONS.into_iter().enumerate() {
+        for (rank, direction) in DIRECTIONS.into_iter().enumerate() {
             let distance = dot.radius + gap;
             let anchor = [0, 1].map(|axis| dot.center[axis] + direction.offset[axis] * distance);
             let [left, top] =
@@ -326,7 +331,7 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
                 area: Area::new(left, top, dot.size[0], dot.size[1]),
                 leader: if ring > 0 { Some(anchor) } else { None },
             };
-            let cost = at as f64 * LATER_DIRECTION + gap * FARTHER;
+            let cost = rank as f64 * LATER_DIRECTION + gap * FARTHER;
             candidates.push(Candidate { place, cost });
         }
     }
@@ -338,15 +343,15 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
 fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
     let mut length = 0.0;
     for other in others {
-        let own = match place.leader {
+        let own_leader = match place.leader {
             Some(end) => length_inside(&other.place.area, center, end),
             None => 0.0,
         };
-        let others = match other.place.leader {
+        let other_leader = match other.place.leader {
             Some(end) => length_inside(&place.area, other.center, end),
             None => 0.0,
         };
-        length += own + others;
+        length += own_leader + other_leader;
     }
     LEADER_ON_LABEL * length
 }

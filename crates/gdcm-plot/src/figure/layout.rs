@@ -42,6 +42,12 @@ const VERTICAL_GAP: f64 = 11.0;
 const HORIZONTAL_GAP: f64 = 12.0;
 /// Minimum space between neighbouring tick labels on a horizontal axis \[pt\].
 const NUMBER_SPACE: f64 = 5.0;
+/// Space between a row's titles and its frames \[pt\].
+const TITLE_SPACE: f64 = 2.0;
+/// Space above a row of frames without titles, for half a tick label \[pt\].
+const UNTITLED_SPACE: f64 = 3.0;
+/// Space between a tick and its label on a vertical axis \[pt\].
+const TICK_LABEL_SPACE: f64 = 2.0;
 /// Share of the paper width assumed for the frames before the room beside them is known.
 const FIRST_GUESS: f64 = 0.8;
 /// Axis range used if a figure has no panels.
@@ -59,13 +65,14 @@ impl<'f> Layout<'f> {
     /// Places the panels in `figure` on paper `width_pt` wide, from `top` down.
     ///
     /// ```text
+    /// rows and columns: as many columns as requested, if the paper is wide enough
     /// guess the frame width
     /// twice:
-    ///     frame heights, from the width
+    ///     frame heights, from the width                                                 (gutters)
     ///     vertical ticks, from the heights
-    ///     room for numbers and labels beside each column, from the ticks
+    ///     room for numbers and labels beside each column, the gutters, from the ticks
     ///     frame width, from the remaining room
-    /// place the panels row by row
+    /// place the panels row by row                                                         (place)
     /// ```
     pub(super) fn new(figure: &'f Figure, width_pt: f64, top: f64) -> Self {
         let table = PlotTable::new(figure, width_pt, top);
@@ -125,7 +132,11 @@ impl<'f> PlotTable<'f> {
         let has_title = self
             .row(row)
             .any(|index| !self.figure.plots[index].title.is_empty());
-        if has_title { LABEL_LINE + 2.0 } else { 3.0 }
+        if has_title {
+            LABEL_LINE + TITLE_SPACE
+        } else {
+            UNTITLED_SPACE
+        }
     }
 
     /// Returns the height \[pt\] that tick labels and axis labels below a row's frames need.
@@ -208,13 +219,14 @@ impl<'f> PlotTable<'f> {
             .collect()
     }
 
+    /// Returns a panel's vertical axis, with its ticks and the room that they need.
     fn y_side(&self, index: usize, panel: usize, height: f64) -> Side {
         let range = self.y_range(index, panel);
         let axis = &self.figure.plots[index].panels[panel].y;
         let ticks = axis.ticks(range, height, VERTICAL_GAP);
         let has_numbers = self.has_y_numbers(index);
         let depth = if has_numbers {
-            TICK + 2.0 + SMALL_PT * widest(&ticks)
+            TICK + TICK_LABEL_SPACE + SMALL_PT * widest(&ticks)
         } else {
             TICK
         };
@@ -227,6 +239,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
+    /// Returns a panel's horizontal axis; only the lowest panel of a plot shows tick labels.
     fn x_side(&self, index: usize, panel: usize, frame_width: f64) -> Side {
         let plot = &self.figure.plots[index];
         let axis = &plot.panels[panel].x;
@@ -252,6 +265,7 @@ impl<'f> PlotTable<'f> {
             .collect()
     }
 
+    /// Returns the width \[pt\] to the left of a column: the largest that any of its panels needs.
     fn gutter(&self, column: usize, plot_height: f64) -> f64 {
         let mut most = 0.0;
         for index in (column..self.figure.plots.len()).step_by(self.columns) {
@@ -265,6 +279,7 @@ impl<'f> PlotTable<'f> {
         most
     }
 
+    /// Places all panels, row by row from the top.
     fn place(&self, frame_width: f64) -> Layout<'f> {
         let plot_height = self.plot_height(frame_width);
         let gutters = self.gutters(frame_width);
@@ -293,13 +308,13 @@ impl<'f> PlotTable<'f> {
         let heights = self.heights(index, frames.height);
         let mut placed = Vec::new();
         let mut top = frames.top;
-        for (at, (panel, height)) in plot.panels.iter().zip(heights).enumerate() {
+        for (number, (panel, height)) in plot.panels.iter().zip(heights).enumerate() {
             placed.push(Placed {
                 panel,
-                title: if at == 0 { &plot.title } else { "" },
+                title: if number == 0 { &plot.title } else { "" },
                 frame: Area::new(frames.left, top, frames.width, height),
-                x: self.x_side(index, at, frames.width),
-                y: self.y_side(index, at, height),
+                x: self.x_side(index, number, frames.width),
+                y: self.y_side(index, number, height),
                 letters_pt: SMALL_PT,
             });
             top += height + PANEL_GAP;

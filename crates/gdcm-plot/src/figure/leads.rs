@@ -17,11 +17,15 @@ use super::role::Role;
 
 /// Points in each curve.
 const POINTS: usize = 240;
+/// Channels outside the response.
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.8);
+/// Output channel of the response.
 const OUTPUT: Stroke = Stroke::dashed(Color::new(Hue::Accent), 1.6, Dash::Long);
+/// Input channel of the response.
 const INPUT: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.6, Dash::DashDot);
-/// Line and background at the validity limit.
+/// Line at the validity limit, the frequency above which a model with leads is invalid (M15.6).
 const LIMIT: Stroke = Stroke::solid(Color::new(Hue::Warning), 1.2);
+/// Background above the validity limit.
 const BEYOND: Color = Color::new(Hue::Warning).tint(14);
 
 /// Plots gain and phase of the delay or lead in each channel, without the channel gains k, up to

@@ -13,11 +13,13 @@ use super::bode_options::BodeOptions;
 use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::role::Role;
 
-/// Indices of the lower and the upper envelope in [`Muad`].
+/// Index of the lower envelope in [`Muad`].
 const LOWER: usize = 0;
+/// Index of the upper envelope in [`Muad`].
 const UPPER: usize = 1;
-/// Labels for the envelopes that limit the unnoticeable deviations from below, and from above.
+/// Label for the envelope that limits the unnoticeable deviations from below.
 const ABOVE: &str = "unnoticeable above (MUAD)";
+/// Label for the envelope that limits the unnoticeable deviations from above.
 const BELOW: &str = "unnoticeable below (MUAD)";
 
 /// Returns the envelopes about the identified representative in `drawn`, whether its curve is
@@ -49,8 +51,8 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
 }
 
 /// Returns the envelopes for an error plot at the frequencies `omega` \[rad/s\]. Magnitude errors
-/// are drawn as reference over model, so that the magnitude envelopes are mirrored; phase errors
-/// are drawn as model minus reference.
+/// are drawn as reference over model, so that the magnitude envelopes are mirrored and exchange
+/// their labels; phase errors are drawn as model minus reference.
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
     for (end, magnitude_label, phase_label) in [(LOWER, BELOW, ABOVE), (UPPER, ABOVE, BELOW)] {

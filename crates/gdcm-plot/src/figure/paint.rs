@@ -19,19 +19,24 @@ use super::placed::{Placed, Side};
 
 /// Margin around the whole figure \[pt\].
 const MARGIN: f64 = 3.0;
-/// Space above the legend and above the caption \[pt\].
+/// Space above the legend \[pt\].
 const LEGEND_GAP: f64 = 3.0;
+/// Space above the caption \[pt\].
 const CAPTION_GAP: f64 = 1.0;
 /// Line around a panel's frame.
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Widths of a line sample and of other samples in the legend \[pt\].
+/// Width of a line sample in the legend \[pt\].
 const LINE_SAMPLE: f64 = 22.0;
+/// Width of a dot sample or a shaded sample in the legend \[pt\].
 const SAMPLE: f64 = 9.0;
 /// Height of a shaded sample in the legend \[pt\].
 const PATCH: f64 = 6.0;
-/// Space between a sample and its text, and between entries \[pt\].
+/// Space between a sample and its text in the legend \[pt\].
 const SAMPLE_GAP: f64 = 4.0;
+/// Space between legend entries in a line \[pt\].
 const ENTRY_GAP: f64 = 10.0;
+/// Space between a panel's frame and its title \[pt\].
+const TITLE_GAP: f64 = 4.0;
 
 const TITLE: TextStyle = TextStyle {
     size_pt: 8.5,
@@ -60,17 +65,17 @@ impl Figure {
         let mut page = Page {
             shapes: Vec::new(),
             inner_pt: width_pt - 2.0 * MARGIN,
-            bottom: MARGIN,
+            cursor_y: MARGIN,
         };
         page.write(&self.title, TITLE);
         let labels_left_out = page.paint_panels(self);
-        page.bottom += LEGEND_GAP;
+        page.cursor_y += LEGEND_GAP;
         page.paint_legend(&self.legend());
-        page.bottom += CAPTION_GAP;
+        page.cursor_y += CAPTION_GAP;
         page.write(&self.printed_caption(labels_left_out), CAPTION);
         Drawing {
             title: self.title.clone(),
-            size: [width_pt, page.bottom + MARGIN],
+            size: [width_pt, page.cursor_y + MARGIN],
             shapes: page.shapes,
         }
     }
@@ -84,23 +89,24 @@ impl Figure {
     }
 }
 
-/// A page under construction; content is added from the top down.
+/// A page under construction; content is added from the top down, and y grows downwards.
 struct Page {
     shapes: Vec<Shape>,
     /// Width between the margins \[pt\].
     inner_pt: f64,
-    /// Lower end of the content so far \[pt\].
-    bottom: f64,
+    /// Lower end of the content so far, where the next block starts \[pt\].
+    cursor_y: f64,
 }
 
 impl Page {
     /// Writes a text, broken into lines as wide as the page.
     fn write(&mut self, words: &str, style: TextStyle) {
         let lines = wrapped(words, self.inner_pt / style.size_pt);
-        let top = self.bottom;
-        self.bottom = top + style.line_pt * lines.len() as f64;
-        for (at, words) in lines.into_iter().enumerate() {
-            let middle = top + style.line_pt * (at as f64 + 0.5);
+        let top = self.cursor_y;
+        self.cursor_y = top + style.line_pt * lines.len() as f64;
+        for (line, words) in lines.into_iter().enumerate() {
+            let middle = top + style.line_pt * (line as f64 + 0.5);
+            // A text is placed at its base line.
             let place = [MARGIN, middle + HALF_HEIGHT * style.size_pt];
             let text = Text::new(place, words, style.size_pt).colored(style.color);
             self.shapes.push(Shape::Text(text));
@@ -109,7 +115,7 @@ impl Page {
 
     /// Paints a figure's panels; returns how many labels were omitted for lack of room.
     fn paint_panels(&mut self, figure: &Figure) -> usize {
-        let layout = Layout::new(figure, self.inner_pt, self.bottom);
+        let layout = Layout::new(figure, self.inner_pt, self.cursor_y);
         let mut labels_left_out = 0;
         for mut placed in layout.panels {
             placed.frame.left += MARGIN;
@@ -117,7 +123,7 @@ impl Page {
             self.shapes.extend(painted.shapes);
             labels_left_out += painted.labels_left_out;
         }
-        self.bottom = layout.bottom;
+        self.cursor_y = layout.bottom;
         labels_left_out
     }
 
@@ -127,7 +133,7 @@ impl Page {
             return;
         }
         let mut x = 0.0;
-        let mut y = self.bottom + 0.5 * LABEL_LINE;
+        let mut y = self.cursor_y + 0.5 * LABEL_LINE;
         for entry in entries {
             let sample_width = match entry.sample {
                 Sample::Line(_) => LINE_SAMPLE,
@@ -149,7 +155,7 @@ impl Page {
             self.shapes.push(Shape::Text(text));
             x += entry_width + ENTRY_GAP;
         }
-        self.bottom = y + 0.5 * LABEL_LINE;
+        self.cursor_y = y + 0.5 * LABEL_LINE;
     }
 }
 
@@ -187,13 +193,11 @@ pub struct PaintedPanel {
     pub labels_left_out: usize,
 }
 
-/// Paints a panel with its frame, axes and title.
+/// Paints a panel with its frame, axes and title, from the lowest layer to the topmost:
 ///
-/// ```text
-/// clipped to the frame: backgrounds, grid, lines
-/// frame, axes, title
-/// dots, labels and texts, which may cross the frame
-/// ```
+/// 1. clipped to the frame: backgrounds (shaded bands, spans and envelopes), grid, lines;
+/// 2. frame, axes, title;
+/// 3. dots, labels and texts, which may cross the frame.
 fn paint_with_axes(placed: &Placed<'_>) -> PaintedPanel {
     let panel = placed.panel;
     let frame = placed.frame;
@@ -211,13 +215,13 @@ fn paint_with_axes(placed: &Placed<'_>) -> PaintedPanel {
     shapes.extend(vertical_axis(&placed.y, &panel.y, frame));
     if !placed.title.is_empty() {
         let [x, y] = frame.at(0.5, 1.0);
-        let title = Text::new([x, y - 4.0], placed.title, LABEL_PT).anchored(Anchor::Middle);
+        let title = Text::new([x, y - TITLE_GAP], placed.title, LABEL_PT).anchored(Anchor::Middle);
         shapes.push(Shape::Text(title));
     }
     paint_over_lines(placed, shapes)
 }
 
-/// Adds dots, labels and texts to a panel's lines.
+/// Adds dots, labels and texts (layer 3 of [`paint_with_axes`]) to a panel's lower layers.
 fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel {
     let dots = dots_and_labels(placed);
     shapes.extend(dots.shapes);
@@ -236,8 +240,12 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 }
 
 impl Panel {
-    /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\].
-    /// Intended for a canvas that draws frame, axes and grid itself and shades areas with edges.
+    /// Paints the marks in `frame` \[pt\] with these x and y ranges; `letters_pt` is the font size
+    /// \[pt\].
+    ///
+    /// For a canvas that draws frame, axes, grid and title itself (the window). The other
+    /// difference from a panel on paper: an envelope with edges is a shaded area instead of two
+    /// lines.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> PaintedPanel {
         let placed = Placed {
             panel: self,

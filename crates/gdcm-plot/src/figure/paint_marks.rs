@@ -8,12 +8,14 @@ use super::thinning::{Pixel, thinned};
 /// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the thinnest
 /// line's width.
 const TOLERANCE: f64 = 0.04;
+/// Print resolution to which curves are thinned.
 const FINEST: Pixel = Pixel {
     width: TOLERANCE,
     tolerance: TOLERANCE,
 };
 /// Maximum absolute coordinate \[pt\]; points beyond it leave a gap.
 const FAR_OUT: f64 = 1e6;
+/// Style of guides, the labelled grid lines.
 const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Line around a bar.
 const BAR_EDGE: Stroke = Stroke::solid(Color::DIM, 0.3);
@@ -100,7 +102,7 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
     }
 }
 
-/// Paints a mark's lines, which lie above the grid.
+/// Paints a mark's lines and bars, which lie above the grid.
 pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),
@@ -117,6 +119,7 @@ pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
             .iter()
             .flat_map(|edge| curve_lines(placed, edge))
             .collect(),
+        // Bands and spans are backgrounds; dots and notes are painted over the lines.
         Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
     }
 }

@@ -63,6 +63,8 @@ fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
     Some(Text::new([x + 1.5, y + size_pt], &guide.label, size_pt))
 }
 
+/// Returns a note's text; `None` at a value that an axis cannot show, or for a horizontal text that
+/// is wider than the distance between two names.
 fn note_text(placed: &Placed<'_>, note: &Note) -> Option<Text> {
     let size_pt = placed.letters_pt;
     match note.at {

@@ -21,8 +21,11 @@ const JOINT: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.4);
 const JOINT_INTERVAL: Color = Color::new(Hue::Perturbed).tint(22);
 /// One plausible standard deviation on both sides of the nominal value.
 const PLAUSIBLE: Color = Color::DIM.tint(12);
+/// Nominal value of the parameter.
 const NOMINAL: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
+/// Error bar about a value from a single condition.
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.7);
+/// Misfit in the conditions left out.
 const LEFT_OUT: Stroke = Stroke::solid(Color::INK, 1.4);
 /// Background at steps that hardly lower the misfit in conditions left out.
 const NO_IMPROVEMENT: Color = Color::DIM.tint(10);
@@ -76,6 +79,9 @@ struct ShownParameter<'a> {
 }
 
 impl ShownParameter<'_> {
+    /// Plots the parameter's change over airspeed: the plausible range, the value found for all
+    /// conditions together with its interval, and on top the values from single conditions with
+    /// their error bars.
     fn plot(&self) -> Plot {
         let sd = self.parameter.plausible_sd;
         let change = self.diagnosis.z * sd;
@@ -121,7 +127,7 @@ impl ShownParameter<'_> {
         let degrees = self.conditions.len().saturating_sub(1).max(1) as f64;
         let quantile = student_quantile(self.level, degrees);
         for diagnosed in self.conditions {
-            let (Some(Some(here)), Some(condition)) = (
+            let (Some(Some(single)), Some(condition)) = (
                 diagnosed.z_here.get(self.index),
                 self.dataset.condition(diagnosed.id),
             ) else {
@@ -129,8 +135,8 @@ impl ShownParameter<'_> {
             };
             values.push(PlacedValue {
                 condition,
-                change: here.z * self.parameter.plausible_sd,
-                half_width: quantile * here.sd * self.parameter.plausible_sd,
+                change: single.z * self.parameter.plausible_sd,
+                half_width: quantile * single.sd * self.parameter.plausible_sd,
             });
         }
         values
@@ -232,8 +238,9 @@ fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
     Plot::new("Remaining misfit").panel(panel.with(curve).with(dots))
 }
 
-/// Returns the first step from which the ratio falls, at every step, by less than a parameter must
-/// bring to be named; `None` if the last step brings more.
+/// Returns the first of the idle steps at the end, each of which lowers the misfit by less than
+/// [`LEAST_GAIN`], the least benefit for which a parameter is named; `None` if the last step is not
+/// idle. Step 0, without parameters, is never idle.
 fn first_idle_step(scores: &Scores) -> Option<usize> {
     let steps = &scores.stepwise;
     let mut first_idle = steps.len();

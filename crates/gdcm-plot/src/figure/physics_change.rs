@@ -16,13 +16,17 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Rule};
 use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 
+/// Identified representative.
 const IDENTIFIED: Stroke = Stroke::solid(Color::new(Hue::Identified), 2.4);
+/// Physics representative without the parameters.
 const BEFORE: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.2, Dash::Short);
+/// Physics representative with the parameters.
 const AFTER: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.6);
 /// Magnitude up to which poles are displayed, relative to the band's upper end.
 const SHOWN_POLES: f64 = 1.5;
-/// Minimum height that the magnitude axis \[dB\] and the phase axis \[deg\] show.
+/// Minimum range of the magnitude axis \[dB\].
 const LEAST_DB: f64 = 4.0;
+/// Minimum range of the phase axis \[deg\].
 const LEAST_DEG: f64 = 20.0;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;

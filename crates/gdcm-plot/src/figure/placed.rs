@@ -7,6 +7,10 @@ use super::marks::{Along, Bracket};
 
 /// Distance between a bracket and its values \[pt\].
 const BRACKET: f64 = 5.0;
+/// Minimum distance between a bracket and the left edge of the frame \[pt\].
+const LEAST_ROOM: f64 = 1.0;
+/// Tolerance by which a position in the frame may lie beyond its edge \[pt\].
+const EDGE_TOLERANCE: f64 = 0.5;
 /// Length of the hooks at both ends of a bracket \[pt\].
 pub(super) const HOOK: f64 = 1.8;
 
@@ -90,7 +94,7 @@ impl Placed<'_> {
         let [from, to] = bracket.ends;
         let from = self.at([bracket.x, from])?;
         let to = self.at([bracket.x, to])?;
-        let side = if from[0] - BRACKET < self.frame.left + 1.0 {
+        let side = if from[0] - BRACKET < self.frame.left + LEAST_ROOM {
             1.0
         } else {
             -1.0
@@ -104,6 +108,6 @@ impl Placed<'_> {
 
     /// Returns whether a position is in the frame, edge included, with a tolerance of half a point.
     pub(super) fn shows(&self, position: [f64; 2]) -> bool {
-        self.frame.expanded(0.5).contains(position)
+        self.frame.expanded(EDGE_TOLERANCE).contains(position)
     }
 }

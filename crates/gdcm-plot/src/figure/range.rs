@@ -1,6 +1,6 @@
-//! The part of an axis that a panel displays.
+//! A range on an axis, with the operations for margins, panning and zooming.
 
-/// The part of an axis that a panel displays: finite ends, `min < max`.
+/// The part of an axis that a panel displays: `min <= max`, both finite except in [`Self::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     pub min: f64,

@@ -19,13 +19,15 @@ use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId
 
 /// Arrow from a condition's physics model to its corrected model.
 const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
+/// Interval of a bandwidth or a phase delay.
 const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
+/// Boundary between levels.
 const LEVEL: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
-/// Strength \[%\] in the widest shaded area, by which each narrower area is stronger, and the
-/// maximum strength.
+/// Strength \[%\] in the widest shaded area; each narrower area is stronger by as much.
 const BEYOND_TINT: usize = 12;
+/// Maximum strength \[%\] in a shaded area.
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] for a dot whose bandwidth or phase delay depends on the model above the band.
 const DEPENDENT_TINT: u8 = 45;
@@ -33,9 +35,13 @@ const DEPENDENT_TINT: u8 = 45;
 const OTHER_TINT: u8 = 60;
 /// Strength \[%\] in a shaded tolerance.
 const TOLERANCE_TINT: u8 = 9;
+/// Size of dots in the selected condition, and in the others, relative to the usual dot.
+const SELECTED_SIZE: f64 = 1.2;
+const OTHER_SIZE: f64 = 0.8;
 
-/// Keys for bandwidth and phase delay in a finding.
+/// Key for the bandwidth in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
+/// Key for the phase delay in a finding.
 const PHASE_DELAY: &str = "phase_delay_s";
 
 /// Returns a response's position in the plot: bandwidth \[rad/s\] and phase delay \[ms\]; `None`
@@ -127,10 +133,10 @@ impl BandwidthDetail<'_> {
     /// Shades the bandwidths within the tolerance, and more strongly the part in which the phase
     /// delay is within its tolerance too.
     fn tolerances(&self) -> Vec<Envelope> {
-        let flown =
+        let identified =
             self.requirements
                 .bandwidth_of(self.condition, self.pair, RequirementRole::Identified);
-        let Some([omega, delay_ms]) = flown.and_then(bandwidth_place) else {
+        let Some([omega, delay_ms]) = identified.and_then(bandwidth_place) else {
             return Vec::new();
         };
         let tolerance_ms = s_to_ms(self.phase_delay_s);
@@ -150,10 +156,11 @@ impl BandwidthDetail<'_> {
         ]
     }
 
+    /// Draws arrows, then dots in the other conditions, and dots in the selected condition on top.
     fn marks(&self) -> Vec<Mark> {
         let mut marks: Vec<Mark> = Vec::new();
         marks.extend(self.arrows().into_iter().map(Mark::from));
-        let of_pair = PairFindings {
+        let findings = PairFindings {
             requirements: self.requirements,
             pair: self.pair,
         };
@@ -170,8 +177,12 @@ impl BandwidthDetail<'_> {
                 } else {
                     Dots::new(role.name(), shape, color.tint(OTHER_TINT))
                 };
-                dots.size = if is_selected { 1.2 } else { 0.8 };
-                for finding in of_pair.with_role(role) {
+                dots.size = if is_selected {
+                    SELECTED_SIZE
+                } else {
+                    OTHER_SIZE
+                };
+                for finding in findings.with_role(role) {
                     if (finding.condition == self.condition) == is_selected
                         && let Some([x, y]) = bandwidth_place(finding)
                     {
@@ -228,7 +239,8 @@ fn tolerance_area(name: &str, omega: [f64; 2], delay_ms: [f64; 2]) -> Envelope {
 }
 
 /// Shades the areas beyond the boundaries (lower bandwidth, higher phase delay), wide areas first
-/// and narrow areas darker. A boundary whose bandwidths do not ascend is not shaded.
+/// and narrow areas darker; an area is wider if its boundary starts at a higher bandwidth. A
+/// boundary whose bandwidths do not ascend is not shaded.
 fn areas_beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
     let mut rising: Vec<&LevelBoundary> = levels
         .of_axis(axis)

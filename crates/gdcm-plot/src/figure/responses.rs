@@ -23,9 +23,10 @@ use super::condition_source::ConditionSource;
 const OUTSIDE_PART: f64 = 0.4;
 
 impl ConditionSource<'_> {
-    /// Returns every curve for a response, including hidden curves; phases are aligned with the
-    /// reference. `cache` keeps the computed slices, at the same address, until their sources
-    /// change.
+    /// Returns every curve for a response, including hidden curves: all models, then the
+    /// representative physics model after each correction. Phases are aligned with the reference,
+    /// the representative identified model. `cache` keeps the computed slices, at the same address,
+    /// until their sources change.
     pub fn response_curves(
         &self,
         pair: Pair,

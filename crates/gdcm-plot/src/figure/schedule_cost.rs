@@ -18,12 +18,17 @@ use super::role::Role;
 
 /// Line from J before the correction to J under the schedule.
 const CHANGE: Stroke = Stroke::solid(Color::DIM, 0.6);
+/// J before the correction.
 const BEFORE: Color = Color::DIM;
+/// J at a condition's own optimum.
 const OPTIMUM: Color = Color::new(Hue::Corrected);
 /// Distance between conditions at the same airspeed, as a share of the airspeed range.
 const APART: f64 = 0.034;
+/// Minimum airspeed range that the axis shows \[kt\].
+const LEAST_RANGE_KT: f64 = 10.0;
 /// Size of the marks at J before the correction, relative to the usual dot.
 const BEFORE_SIZE: f64 = 0.55;
+/// Ratio of plot height to width.
 const ASPECT: f64 = 0.62;
 
 /// Plots a response's net gain and J over airspeed; both are coloured by airspeed. `None` if the
@@ -115,7 +120,7 @@ fn cost_panel(analysis: &Analysis, costs: &[ResponseCosts]) -> Panel {
         }
     }
     let mut panel = Panel::new(
-        Axis::linear("Airspeed [kt]").at_least(10.0),
+        Axis::linear("Airspeed [kt]").at_least(LEAST_RANGE_KT),
         Axis::linear("J [-]").including(0.0).at_least(5.0),
     );
     if !changes.is_empty() {
@@ -141,9 +146,10 @@ fn cost_dot(costs: &ResponseCosts, x: f64, cost: Cost) -> Dot {
 /// Returns each condition's horizontal place \[kt\]: its airspeed, with conditions at the same
 /// airspeed beside one another.
 fn places(costs: &[ResponseCosts], range_kt: (f64, f64)) -> Vec<f64> {
-    let apart_kt = APART * (range_kt.1 - range_kt.0).max(10.0);
+    let apart_kt = APART * (range_kt.1 - range_kt.0).max(LEAST_RANGE_KT);
     let mut places = Vec::new();
     for (index, cost) in costs.iter().enumerate() {
+        // The conditions at an airspeed lie symmetrically about it, in the order of the list.
         let before = count_at(&costs[..index], cost.airspeed_kt);
         let count = count_at(costs, cost.airspeed_kt);
         places.push(cost.airspeed_kt + apart_kt * (before - 0.5 * (count - 1.0)));

@@ -244,11 +244,13 @@ fn rows_of_points(
 /// The tables for one panel.
 struct PanelTables {
     main: Table,
-    /// Areas that are sampled at other x than the first curve; `None` if there are none.
+    /// Areas that are sampled at other x than the first series; `None` if there are none.
     areas: Option<Table>,
 }
 
 impl PanelTables {
+    /// Builds the main table from all marks; areas without lines that are sampled at other x than
+    /// the first series have a table of their own.
     fn new(panel: &Panel, plot_title: &str) -> Self {
         let mut main = Vec::new();
         let mut areas = Vec::new();
@@ -344,8 +346,10 @@ fn unit_of(label: &str) -> &str {
 
 /// Formats an x value: on an axis with names the nearest name, otherwise the value.
 fn x_cell(axis: &Axis, value: f64) -> String {
+    /// Maximum distance between a value and its name; names are 1 apart.
+    const NEAREST: f64 = 0.5;
     let mut names = axis.names.iter().flatten();
-    match names.find(|(at, _)| (at - value).abs() < 0.5) {
+    match names.find(|(at, _)| (at - value).abs() < NEAREST) {
         Some((_, name)) => name.clone(),
         None => number_cell(value),
     }

@@ -81,7 +81,9 @@ fn equal_steps(range: Range, step: f64) -> Vec<Tick> {
     ticks
 }
 
-/// Returns the smallest round angle step \[deg\] not below `least`.
+/// Returns the smallest round angle step \[deg\] not below `least`: a fraction or a multiple of a
+/// turn, or a decimal number if `least` is at most [`DECIMAL_DEGREES`], or beyond all
+/// [`DEGREE_STEPS`].
 fn degree_step(least: f64) -> f64 {
     match DEGREE_STEPS.into_iter().find(|step| *step >= least) {
         Some(step) if least > DECIMAL_DEGREES => step,
@@ -176,6 +178,7 @@ impl DecadeLabels {
         ticks
     }
 
+    /// Returns whether there is room for a label at `mantissa * 10^exponent`.
     fn is_labelled(&self, mantissa: u8, exponent: i64) -> bool {
         match mantissa {
             1 => exponent.rem_euclid(self.every) == 0,

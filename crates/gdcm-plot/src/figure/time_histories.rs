@@ -17,17 +17,20 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
+/// Line style for inputs.
 const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
-/// Line style for the flight data, and fill colour for the tolerance corridor around them.
+/// Line style for the flight data.
 const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
+/// Fill colour of the corridor around the flight data: the tolerance on either side.
 const CORRIDOR: Color = Color::new(Hue::Text).tint(10);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
 /// Height of the panel with the input, above a single quantity.
 const INPUT_WEIGHT: f64 = 0.36;
-/// Line width for a model's curve, and for its parts outside the corridor \[pt\]: thin, so that all
-/// models and the flight data can be told apart.
+/// Line width for a model's curve \[pt\]: thin, so that all models and the flight data can be told
+/// apart.
 const MODEL_PT: f64 = 1.2;
+/// Line width for the parts of a model's curve outside the corridor \[pt\].
 const OUTSIDE_PT: f64 = 1.8;
 /// Ratio of plot height to width.
 const ASPECT: f64 = 0.4;
@@ -183,9 +186,10 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
-    let error = format!("error [{}]", history.unit);
+    let difference_label = format!("error [{}]", history.unit);
     let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
-    let difference = empty_panel(&error).with_all(history_marks(history, Shown::LessFlight));
+    let difference =
+        empty_panel(&difference_label).with_all(history_marks(history, Shown::LessFlight));
     let title = format!("{}, {}", tolerance.quantity, tolerance_text(tolerance));
     Plot::new(title)
         .panel(record)
@@ -279,17 +283,18 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
     values
 }
 
-/// Draws the corridor, each model with its parts outside the corridor, and the flight data. The
-/// corridor is taken from the corrected model or, without it, from the first model.
+/// Draws the corridor, each model with its parts outside the corridor, and the flight data.
+/// Corridor and flight data are taken from the check of the corrected model or, without it, of the
+/// first model.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
         .models
         .iter()
         .find(|(role, _)| *role == RequirementRole::Corrected);
-    let Some((_, about)) = corrected.or(history.models.first()) else {
+    let Some((_, flown_check)) = corrected.or(history.models.first()) else {
         return Vec::new();
     };
-    let mut marks = vec![Mark::from(corridor(about, shown))];
+    let mut marks = vec![Mark::from(corridor(flown_check, shown))];
     for (role, check) in history.models.iter().rev() {
         let line = model_line(*role);
         let simulated = values(check, |sample| sample.simulated(shown));
@@ -304,7 +309,7 @@ fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     }
     // The flight data lie on top.
     if shown == Shown::Recorded {
-        let flown = values(about, |sample| sample.flown(shown));
+        let flown = values(flown_check, |sample| sample.flown(shown));
         marks.push(Curve::through("flown", FLOWN, flown).key("flown").into());
     }
     marks

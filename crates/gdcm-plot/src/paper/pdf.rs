@@ -23,7 +23,9 @@ use crate::figure::letters::{FONTS, Letter, letters, width};
 /// radius.
 const QUARTER: f64 = 0.552_284_749_830_793_4;
 
-/// Returns the bytes of a PDF file.
+/// Returns the bytes of a PDF file with these objects: catalog, page tree, page, content stream,
+/// document information; then five objects for each font (`FontObjects`), reduced to the letters
+/// that the page uses.
 ///
 /// # Errors
 /// Fails if a font cannot be reduced to the used letters, or if a stream cannot be compressed.
@@ -93,7 +95,7 @@ impl Page {
                 fill,
                 stroke,
             } => {
-                self.take_paint(*fill, *stroke);
+                self.set_style(*fill, *stroke);
                 for (index, point) in points.iter().enumerate() {
                     let [x, y] = self.at(*point);
                     if index == 0 {
@@ -113,7 +115,7 @@ impl Page {
                 fill,
                 stroke,
             } => {
-                self.take_paint(*fill, *stroke);
+                self.set_style(*fill, *stroke);
                 self.circle(*center, *radius);
                 self.draw(*fill, *stroke);
             }
@@ -139,6 +141,7 @@ impl Page {
         }
     }
 
+    /// Adds a circle to the current path, as four cubic curves.
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64) {
         let [start_x, start_y] = self.at([x + radius, y]);
         self.content.move_to(start_x, start_y);
@@ -158,7 +161,7 @@ impl Page {
     }
 
     /// Sets fill colour and line style for the next path.
-    fn take_paint(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
+    fn set_style(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         if let Some(color) = fill {
             let [red, green, blue] = parts(color);
             self.content.set_fill_rgb(red, green, blue);
@@ -188,14 +191,16 @@ impl Page {
         };
     }
 
+    /// Writes a text in its colour, anchored and rotated, one run of letters for each font.
     fn text(&mut self, text: &Text) {
         let [red, green, blue] = parts(text.color);
-        let before = text.anchor.before() * width(&text.words) * text.size_pt;
+        let before_anchor = text.anchor.before() * width(&text.words) * text.size_pt;
         let [x, y] = text.at;
+        // The matrix rotates an upright text by a quarter turn; otherwise it is the identity.
         let (matrix, [x, y]) = if text.upright {
-            ([0.0, 1.0, -1.0, 0.0], self.at([x, y + before]))
+            ([0.0, 1.0, -1.0, 0.0], self.at([x, y + before_anchor]))
         } else {
-            ([1.0, 0.0, 0.0, 1.0], self.at([x - before, y]))
+            ([1.0, 0.0, 0.0, 1.0], self.at([x - before_anchor, y]))
         };
         let [a, b, c, d] = matrix;
         self.content
@@ -306,17 +311,17 @@ impl Used {
         let subset = subsetter::subset(bytes, 0, &self.numbers).map_err(io::Error::other)?;
         let face = FontRef::new(bytes).map_err(io::Error::other)?;
         // Readers expect six letters and a plus before the name of a font subset.
-        let part = format!("GDCMFG+{name}");
-        let part = Name(part.as_bytes());
+        let subset_name = format!("GDCMFG+{name}");
+        let subset_name = Name(subset_name.as_bytes());
         pdf.type0_font(objects.font)
-            .base_font(part)
+            .base_font(subset_name)
             .encoding_predefined(Name(b"Identity-H"))
             .descendant_font(objects.descendant)
             .to_unicode(objects.characters);
         let mut cid_font = pdf.cid_font(objects.descendant);
         cid_font
             .subtype(CidFontType::Type2)
-            .base_font(part)
+            .base_font(subset_name)
             .system_info(IDENTITY)
             .font_descriptor(objects.descriptor);
         cid_font
@@ -328,7 +333,7 @@ impl Used {
             .map(|letter| (UNITS * letter.advance) as f32);
         cid_font.widths().consecutive(1, advances).finish();
         cid_font.finish();
-        describe(pdf, &objects, part, &face);
+        describe(pdf, &objects, subset_name, &face);
         pdf.stream(objects.characters, &packed(&self.characters())?)
             .filter(Filter::FlateDecode);
         let length = i32::try_from(subset.len()).map_err(io::Error::other)?;

@@ -138,9 +138,10 @@ fn path(points: &[[f64; 2]], closed: bool) -> BezPath {
     path
 }
 
+/// Fills a path and draws its line, as far as given.
 fn draw(context: &mut RenderContext, path: &BezPath, fill: Option<Color>, stroke: Option<Stroke>) {
     if let Some(color) = fill {
-        take_color(context, color);
+        set_color(context, color);
         context.fill_path(path);
     }
     if let Some(Stroke {
@@ -149,7 +150,7 @@ fn draw(context: &mut RenderContext, path: &BezPath, fill: Option<Color>, stroke
         dash,
     }) = stroke
     {
-        take_color(context, color);
+        set_color(context, color);
         let line = PathStroke::new(width_pt)
             .with_caps(Cap::Butt)
             .with_join(Join::Round);
@@ -158,7 +159,7 @@ fn draw(context: &mut RenderContext, path: &BezPath, fill: Option<Color>, stroke
     }
 }
 
-fn take_color(context: &mut RenderContext, color: Color) {
+fn set_color(context: &mut RenderContext, color: Color) {
     let [red, green, blue] = color.rgb();
     context.set_paint(AlphaColor::from_rgb8(red, green, blue));
 }
@@ -190,7 +191,7 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
         }
         pen.x += letter.advance;
     }
-    take_color(context, text.color);
+    set_color(context, text.color);
     context.fill_path(&(place * pen.path));
 }
 
@@ -202,6 +203,7 @@ struct Pen {
 }
 
 impl Pen {
+    /// Converts a point of the present letter, whose y runs upwards.
     fn at(&self, x: f32, y: f32) -> Point {
         Point::new(self.x + f64::from(x), -f64::from(y))
     }

@@ -133,6 +133,9 @@ impl Edit {
 
 impl Study {
     /// Applies one decision, or refuses it and leaves the study unchanged.
+    ///
+    /// # Errors
+    /// Why the decision is refused.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
             Edit::Reject(id) => self.reject(id)?,
@@ -196,6 +199,8 @@ impl Study {
         Ok(self.choice_mut(id.condition)?.bundle_mut(id.bundle))
     }
 
+    /// Rejects a model, and releases it if it was pinned; refuses to reject a bundle's last kept
+    /// model.
     fn reject(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
         let condition = self.dataset.condition(id.condition);
         let models = condition.map_or(0, |condition| condition.bundle(id.bundle).len());
@@ -275,6 +280,7 @@ impl Study {
     }
 }
 
+/// Marks or unmarks a response; refuses a response that does not exist.
 fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), EditRefusal> {
     if pair.output >= table.outputs() || pair.input >= table.inputs() {
         return Err(EditRefusal::NoResponse { pair });

@@ -155,6 +155,7 @@ impl<B: Default, C> History<B, C> {
         self.open = None;
     }
 
+    /// Adds an undo step, and removes the oldest steps beyond the limits on number and memory.
     fn push(&mut self, step: Step<B, C>) {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
@@ -182,12 +183,12 @@ impl<B: Default, C> History<B, C> {
         }
         while self.past.len() > 1 && self.model_bytes() > most_bytes {
             let oldest = Arc::clone(&self.past[0].study.dataset);
-            let of_oldest = self
+            let steps_of_oldest = self
                 .past
                 .iter()
                 .take_while(|step| Arc::ptr_eq(&step.study.dataset, &oldest))
                 .count();
-            self.past.drain(..of_oldest.min(self.past.len() - 1));
+            self.past.drain(..steps_of_oldest.min(self.past.len() - 1));
         }
     }
 
@@ -220,8 +221,12 @@ impl<B: Default, C> History<B, C> {
         self.session = Some(self.sessions);
     }
 
-    /// Ends the session: its consecutive changes to settings become a single step, or none if they
-    /// cancel out. `now` is the present study. Other decisions keep their own steps.
+    /// Ends the session. `now` is the present study.
+    ///
+    /// 1. Consecutive steps of the session are merged into the first of them.
+    /// 2. A merged step is dropped if the study after it equals the study before.
+    ///
+    /// Other decisions keep their own steps.
     pub fn end_session(&mut self, now: &Study) {
         let Some(session) = self.session.take() else {
             return;
@@ -229,9 +234,9 @@ impl<B: Default, C> History<B, C> {
         self.seal();
         let mut merged: Vec<Step<B, C>> = Vec::with_capacity(self.past.len());
         for step in std::mem::take(&mut self.past) {
-            let is_of_session = step.session == Some(session);
+            let is_in_session = step.session == Some(session);
             if let Some(last) = merged.last_mut()
-                && is_of_session
+                && is_in_session
                 && last.session == Some(session)
             {
                 last.change.append(step.change);

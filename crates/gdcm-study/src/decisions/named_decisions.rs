@@ -54,6 +54,9 @@ impl Decisions {
 
     /// Returns a study of `dataset` with every decision that applies to it, and those that do not
     /// apply.
+    ///
+    /// Each decision is applied after those that it refers to: settings and requirements; adopted
+    /// models and signs, which change the dataset; choices, which name its models; variants.
     pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut carried = CarriedDecisions {
             study: Study::new(dataset),
@@ -151,7 +154,8 @@ impl CarriedDecisions {
         }
     }
 
-    /// Applies every choice as an edit, so that invalid choices are refused.
+    /// Applies every choice that departs from the default (scheduled, not held out, no model
+    /// rejected or pinned) as an edit, so that invalid choices are refused.
     fn take_choice(&mut self, condition: ConditionId, choice: &ConditionChoice) {
         if !choice.scheduled {
             self.apply(&Edit::SetScheduled {
@@ -190,6 +194,8 @@ impl CarriedDecisions {
         }
     }
 
+    /// Adds a variant with the decisions that apply to the dataset; a name that exists already is
+    /// not replaced.
     fn take_variant(&mut self, name: &str, decisions: &Decisions) {
         let (variant, mut not_applied) = decisions.applied_to(Arc::clone(&self.study.dataset));
         for difference in &mut not_applied {

@@ -264,6 +264,9 @@ impl Setting {
     }
 
     /// Sets a value, or refuses a value outside its range and leaves the settings unchanged.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
     pub(crate) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
         self.check(value)?;
         match (self.kind, value) {
@@ -274,12 +277,16 @@ impl Setting {
             (Kind::Range { set, .. }, _) => set(settings, None)?,
             (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
             (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
+            // `check` refuses a value of another type.
             _ => {}
         }
         Ok(())
     }
 
-    /// Checks a value, and refuses one that the setting does not allow.
+    /// Checks a value's type and range.
+    ///
+    /// # Errors
+    /// [`EditRefusal`] for a value that the setting does not allow.
     pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
         match (self.kind, value) {
             (Kind::Number { range, whole, .. }, Value::Number(found)) => {
@@ -396,12 +403,13 @@ impl Setting {
             }
             Kind::Range { .. } => "LO HI".to_owned(),
             Kind::Flag { .. } => String::new(),
-            Kind::Choice { words, .. } => option_words(words).join("|"),
+            Kind::Choice { words, .. } => command_line_words(words).join("|"),
         }
     }
 
     /// Returns the option with its arguments for a value, such that [`Self::read`] returns the value;
-    /// `None` for a flag that is not set, which no option expresses.
+    /// `None` for a flag that is not set, which no option expresses, and for a value that the
+    /// setting does not allow.
     pub fn option_words(&self, value: Value) -> Option<Vec<String>> {
         let arguments = match (self.kind, value) {
             (Kind::Flag { .. }, Value::Flag(true)) => Vec::new(),
@@ -494,7 +502,7 @@ fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, St
 }
 
 fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
-    let words = option_words(words);
+    let words = command_line_words(words);
     if let Some(index) = words.iter().position(|word| *word == text) {
         return Ok(Value::Choice(index));
     }
@@ -504,6 +512,6 @@ fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
 }
 
 /// Returns the words for the choices on the command line.
-fn option_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
+fn command_line_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
     words.iter().map(|[option, _]| *option).collect()
 }

@@ -686,7 +686,8 @@ pub static SECOND_VARIABLE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Every setting except the constrained and ignored responses, in display order.
+/// Every setting except the constrained and ignored responses, in display order: a control placed
+/// [`Place::Beside`] joins the line of the control before it.
 pub static SETTINGS: [&Setting; 30] = [
     &ALPHA_GAIN,
     &ALPHA_DELAY,

@@ -204,17 +204,17 @@ pub enum ResponseMark {
 }
 
 impl<R> Settings<R> {
-    /// Returns the same settings with another type for sets of responses. `of` converts a set; its
-    /// first argument says how the responses in the set are marked.
-    pub fn with_responses<Q>(&self, mut of: impl FnMut(ResponseMark, &R) -> Q) -> Settings<Q> {
+    /// Returns the same settings with another type for sets of responses. `convert` converts a set;
+    /// its first argument says how the responses in the set are marked.
+    pub fn with_responses<Q>(&self, mut convert: impl FnMut(ResponseMark, &R) -> Q) -> Settings<Q> {
         Settings {
             band: self.band,
             points: self.points,
             alpha_gain: self.alpha_gain,
             alpha_delay: self.alpha_delay,
             quantile: self.quantile,
-            constrained: of(ResponseMark::Held, &self.constrained),
-            ignored: of(ResponseMark::Ignored, &self.ignored),
+            constrained: convert(ResponseMark::Held, &self.constrained),
+            ignored: convert(ResponseMark::Ignored, &self.ignored),
             cost_average: self.cost_average,
             coherence_threshold: self.coherence_threshold,
             gain_objective: self.gain_objective,
@@ -242,7 +242,8 @@ impl<R> Settings<R> {
     }
 
     /// Adopts `schedule.delays` from a file that lacks the newer setting: `true` becomes always,
-    /// `false` becomes never.
+    /// `false` becomes never. A file that has the newer setting is unaffected, because
+    /// [`Self::set_delay_scheduling`] keeps both consistent.
     pub fn complete_delay_scheduling(&mut self) {
         if self.schedule_delays == DelayScheduling::Never {
             self.set_delay_scheduling(self.schedule.delays.into());

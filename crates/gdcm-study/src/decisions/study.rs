@@ -35,8 +35,8 @@ pub struct Study {
 }
 
 impl PartialEq for Study {
-    /// Compares the decisions first. The datasets' contents are only compared if they are not the
-    /// same object.
+    /// Compares the decisions first. The datasets' contents, which include adopted models, are only
+    /// compared if they are not the same object.
     fn eq(&self, other: &Self) -> bool {
         let decisions = (
             &self.settings,

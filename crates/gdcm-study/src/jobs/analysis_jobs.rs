@@ -41,7 +41,8 @@ impl Job for ProofJob {
     }
 }
 
-/// Job that computes the cost of constraining or releasing each response in a condition.
+/// Job that computes the cost of each toggle in a condition: constraining a response, or releasing
+/// a constrained response.
 #[derive(Clone, Debug)]
 pub struct TogglesJob {
     pub condition: ConditionAnalysis,

@@ -3,6 +3,8 @@
 //!
 //! ```text
 //! A(z) = A + sum_k (z_k L_k + z_k^2 Q_k);   B, C and D likewise
+//! z_k        change of parameter k in plausible standard deviations
+//! L_k, Q_k   linear and quadratic increments of the matrix, from the runs of parameter k
 //! ```
 
 use std::collections::BTreeMap;
@@ -23,8 +25,8 @@ pub struct AppliedPhysics {
     pub correction: PhysicsCorrection,
     /// Diagnosis with all parameters that are on; `None` for values set by hand.
     pub findings: Option<Arc<PhysicsFindings>>,
-    /// Fit with the named parameters only, the others off; `None` if all are applied, or none is
-    /// named.
+    /// Fit with the named parameters only, the others off; `None` if all are applied, if none is
+    /// named, and for values set by hand.
     pub refit: Option<Arc<PhysicsDiagnosis>>,
     /// The moved parameters, in dataset order; empty if none is moved.
     pub values: Vec<AppliedValue>,

@@ -139,14 +139,14 @@ pub struct AssessmentTable {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Assessment summary: the number of responses with a lower J, and the largest increase in J.
+/// Assessment summary: the number of responses with a lower J, and the largest change in J.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
     /// Number of responses with a lower J.
     pub better: usize,
     /// Number of compared responses, summed over the conditions.
     pub compared: usize,
-    /// The response whose J rises most, and by how much.
+    /// The response whose J rises most, or falls least if no J rises, and its change.
     pub worst: Option<(ConditionId, Pair, f64)>,
 }
 
@@ -215,7 +215,8 @@ impl AssessmentTable {
 /// Assesses a condition.
 ///
 /// # Errors
-/// [`NotAssessed`] where the condition is left out.
+/// [`NotAssessed`] where the condition is left out: the first that applies of not in the dataset,
+/// nominal model rejected (if that is assessed), not analysed, no result, no schedule.
 pub fn assessed(
     analysis: &Analysis,
     id: ConditionId,
@@ -288,7 +289,8 @@ fn changes(
     })
 }
 
-/// Returns why a response has no J.
+/// Returns why a response has no J: with a mismatch, the correction's net gain; without one, why
+/// the representatives cannot be compared; else the nominal model's response.
 fn missing_cost(result: &ConditionAnalysis, models: &ModelMismatch, pair: Pair) -> MissingCost {
     if models.mismatch[pair].is_some() {
         return MissingCost::NetGainNotPositive;

@@ -1,4 +1,6 @@
-//! Cautions about results that are nevertheless available.
+//! Cautions about results that are nevertheless available, and the typed reasons in them: why a
+//! response has no G and D ([`Undefined`]), why it is not finite ([`NotFinite`]), and gains out of
+//! range ([`GainOutOfRange`]).
 
 use std::fmt;
 
@@ -18,24 +20,27 @@ pub const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 /// A caution attached to a result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Caution {
-    /// A constrained response without G and D in this condition; there it is not constrained.
+    /// A held response is not constrained in this condition, because it has no G and D.
     HeldButUndefined { pair: Pair, why: Undefined },
     /// No outliers can be suggested.
     NoSuggestions(DiscontinuityError),
-    /// A model is excluded from distances, suggestions and representatives (M5b).
+    /// A model is excluded from distances, suggestions and representatives (M5b), because it lacks
+    /// responses. Each of them is zero wherever it has values, or not finite somewhere in the band,
+    /// or zero somewhere in the band.
     SetAside {
         model: BundleModel,
         /// On-axis responses (any responses if none is on-axis) that the model lacks and another
         /// model of its bundle has.
         lacks: Vec<Pair>,
-        /// The missing responses that are zero wherever they have values.
+        /// Those in `lacks` that are zero wherever they have values.
         zero: Vec<Pair>,
-        /// Why some missing responses are not finite, if any; the others are zero somewhere in the
+        /// Why others in `lacks` are not finite; `None` if all others are zero somewhere in the
         /// band.
         why: Option<NotFinite>,
         /// Whether the model was pinned; the pin has no effect.
         pinned: bool,
     },
+    /// A model that is not set aside has responses that are not finite somewhere in the band.
     NotFinite {
         model: BundleModel,
         responses: Vec<Pair>,
@@ -54,7 +59,7 @@ pub enum Caution {
         identified: String,
         responses: Vec<GainOutOfRange>,
     },
-    /// Some responses of a representative are treated as structurally zero (M6a).
+    /// Some responses of a representative are numerically zero, and count as zero (M6a).
     NumericallyNothing {
         model: BundleModel,
         responses: Vec<Pair>,
@@ -221,9 +226,9 @@ impl fmt::Display for BundleModel {
 /// Why a response has no G and no D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undefined {
-    /// Zero over the whole band in this bundle's representative.
+    /// Zero in this bundle's representative, wherever it has values in the band.
     Zero(BundleKind),
-    /// Zero at some frequency in the band, in this bundle's representative.
+    /// Zero somewhere in the band in this bundle's representative, and finite everywhere.
     ZeroSomewhere(BundleKind),
     /// Not finite somewhere in the band in this bundle's representative.
     NotFinite(BundleKind),
@@ -272,13 +277,14 @@ pub enum NotFinite {
         /// Nyquist frequency `pi / T`, up to which the model has a response \[rad/s\].
         nyquist_rad_s: f64,
     },
-    /// A pole on the imaginary axis, or an overflow.
+    /// Nothing else explains it: a pole on the imaginary axis, or an overflow.
     Pole,
 }
 
 impl NotFinite {
     /// Returns why a model with these dynamics has a response that is not finite in a band that
-    /// ends at `band_top` \[rad/s\].
+    /// ends at `band_top` \[rad/s\]: `Measured` for a measured response; else `Entry` if a matrix
+    /// has a large entry; else `Sampled` if the band reaches the Nyquist frequency; else `Pole`.
     pub(crate) fn new(dynamics: &Dynamics, band_top: f64) -> Self {
         let model = match dynamics {
             Dynamics::StateSpace(model) => model,

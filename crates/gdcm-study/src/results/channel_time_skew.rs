@@ -5,14 +5,17 @@
 //! responses do not.
 //!
 //! ```text
+//! 0  exit without a finding: no frequencies in the band, or not logarithmically spaced
 //! 1  each response that is coherent over half the band:   phi = arg(measured / physics), unwrapped
 //!       d = -sum W omega phi / sum W omega^2,   W = 1 / (var phi + (3 deg)^2)
-//! 2  each output (a row of responses) and input (a column):
+//! 2  each output (a row of responses) and input (a column) with two or more such responses of its
+//!    own, which are more than half of them, and two or more others:
 //!       common = median d of all other responses,   s = 1.48 median |d - common| over them
 //!       delay = median d of its own responses - common
 //! 3  late where |delay| > t and |d - common - delay| <= t for each own response, where
 //!    t = max(5 ms, 2.5 s), and the delay explains four fifths of sum W (phi + omega common)^2
-//! 4  of the late channels that explain at least half as much as the best: the smallest |common|
+//! 4  of the late channels that explain at least half as much as the best: the smallest |common|.
+//!    Of an input the delay is reversed: responses to an input that is logged late appear early
 //! ```
 //!
 //! `common`, the delay that all channels share, cannot be assigned to a channel; it is reported
@@ -54,7 +57,7 @@ pub struct ChannelTimeSkew {
 
 impl ChannelTimeSkew {
     /// Finds the channel whose delay explains why the measured responses lag behind a physics model
-    /// in a band \[rad/s\]; `None` where no delay is significant.
+    /// in a band \[rad/s\] (steps 1 to 4); `None` where no delay is significant.
     pub fn find(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = response_lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
@@ -120,7 +123,7 @@ struct Lag {
 }
 
 impl Lag {
-    /// Fits a response's delay; `None` where it is coherent at too few frequencies.
+    /// Fits a response's delay d (step 1); `None` where it is coherent at too few frequencies.
     fn fit(points: &[&EstimatePoint], physics: &FrequencyResponse, pair: Pair) -> Option<Self> {
         let at = (pair.output, pair.input);
         let mut angles = Vec::new();
@@ -132,6 +135,7 @@ impl Lag {
                 continue;
             }
             angles.push((measured / modelled).arg());
+            // Variance of the phase, to first order.
             let variance = 0.5 * point.variance[at] / measured.norm_sqr();
             weighted.push((point.omega, 1.0 / (variance + PHYSICS_SD * PHYSICS_SD)));
         }
@@ -176,8 +180,8 @@ impl Lag {
     }
 }
 
-/// Computes the lags for the responses that are coherent over half the band; `None` where the
-/// physics model has no response at these frequencies.
+/// Computes the lags for the responses that are coherent over half the band (step 1); `None`
+/// without frequencies in the band, or if they are not logarithmically spaced (step 0).
 fn response_lags(
     measured: &ResponseEstimate,
     band: [f64; 2],
@@ -221,7 +225,8 @@ struct Suspect {
 }
 
 impl Suspect {
-    /// Tests whether a channel with this number of responses has a significant delay.
+    /// Tests whether a channel with this number of responses has a significant delay (steps 2 and
+    /// 3).
     fn test(lags: &[Lag], role: ChannelSide, index: usize, responses: usize) -> Option<Self> {
         let (own, others): (Vec<&Lag>, Vec<&Lag>) = lags.iter().partition(|lag| match role {
             ChannelSide::Output => lag.pair.output == index,

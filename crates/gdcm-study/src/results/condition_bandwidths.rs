@@ -1,5 +1,8 @@
 //! Computes bandwidth and phase delay for a condition's models, with intervals (M17.1).
 //!
+//! Source of the intervals, by role; the scheduled model has none, because no schedule is fitted to
+//! the swaps:
+//!
 //! ```text
 //! physics     each other kept physics model instead of the representative, uncorrected   (M13.1)
 //! corrected   each swap of a physics or identified model, with the resulting correction  (M13.1)
@@ -278,7 +281,7 @@ impl<'a> ConditionBandwidths<'a> {
         })
     }
 
-    /// Adds the metrics' intervals, or why there are none.
+    /// Adds the metrics' intervals; if there are none although a metric is defined, adds why.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let why = match finding.role {
@@ -301,7 +304,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
     }
 
-    /// Adds the intervals from swapped models.
+    /// Adds the intervals from swaps, in which another model replaces a representative (M13.1).
     fn add_swap_intervals(
         &self,
         finding: &mut BandwidthFinding,
@@ -315,10 +318,10 @@ impl<'a> ConditionBandwidths<'a> {
         };
         for (index, value) in metric_values(bandwidth).into_iter().enumerate() {
             let Some(value) = value else { continue };
-            let of_physics: Vec<Option<f64>> = physics.iter().map(|swap| swap[index]).collect();
-            let of_identified: Vec<Option<f64>> =
+            let physics_values: Vec<Option<f64>> = physics.iter().map(|swap| swap[index]).collect();
+            let identified_values: Vec<Option<f64>> =
                 identified.iter().map(|swap| swap[index]).collect();
-            let bar = substitution_bar(value, &of_physics, &of_identified);
+            let bar = substitution_bar(value, &physics_values, &identified_values);
             if let Some(interval) = bar.interval(level) {
                 finding.interval.insert(METRICS[index], interval);
             }
@@ -328,7 +331,8 @@ impl<'a> ConditionBandwidths<'a> {
         }
     }
 
-    /// Computes a response's metrics after each swap in a bundle.
+    /// Computes a response's metrics after each swap in a bundle; no values where that is
+    /// impossible.
     fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
         let mut values = Vec::new();
         for swap in self.swaps {

@@ -13,8 +13,9 @@ use crate::decisions::study::Study;
 /// increase is reported (M15.6).
 const NEGLIGIBLE_INCREASE: f64 = 0.5;
 
-/// Collects the remarks on a result: which constrained gains and delays were matched; which were
-/// not, and why; and the cautions about the condition and the schedule.
+/// Collects the remarks on a result in this order: suspected and reversed signs; gains and delays
+/// matched, or not and why; leads; agreeing loops; coherence; responses farther from flight;
+/// absence from the schedule; the cautions about the condition and the schedule.
 pub fn condition_remarks(
     study: &Study,
     result: &ConditionAnalysis,
@@ -66,6 +67,8 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
+/// Returns that all constrained gains are matched; otherwise the missed responses, the conflicts
+/// that cause this, and changes that would remove them.
 fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     if result.gains.matched {
         let tolerance_db = if result.gains.agreeing.is_empty() {
@@ -167,6 +170,8 @@ fn free_farther_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
     Some(Remark::FreeFarther { farther, compared })
 }
 
+/// Returns that all constrained delays are matched (nothing without constrained responses);
+/// otherwise the responses that need lead, and then each other missed response.
 fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let held = result.held().marked().count();
     if result.delays.unmatched.is_empty() {

@@ -1,4 +1,9 @@
 //! Finds the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
+//!
+//! 1. Diagnosis: the largest entries of mixing and feedback that exceed their error bars.
+//! 2. Benefit: J without and with couplings, and whether they are worthwhile.
+//! 3. Cost: the largest change above the band, and the pole that moves farthest.
+//! 4. Cautions: poles, loops, and entries that the data do not determine.
 
 use gdcm_method::couplings::coupling_shares::{
     FeedbackShare, cyclic_inputs, feedback_shares, mixing_shares,
@@ -14,8 +19,8 @@ use crate::decisions::settings::CouplingCorrection;
 
 /// Maximum number of entries reported per matrix; the largest come first.
 const MOST_REPORTED: usize = 3;
-/// Smaller shares \[-\] are not reported.
-const NOTHING: f64 = 0.005;
+/// Minimum share \[-\] that is reported.
+const LEAST_SHARE: f64 = 0.005;
 
 /// Returns the remarks on an analysis's couplings: the reason why requested couplings are
 /// unavailable, or the remarks from [`coupling_remarks`]; empty if none were requested.
@@ -61,7 +66,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Couplin
     let mixed = mixing_shares(&matrices.normalised_mixing(airspeed_kt), cyclic)
         .into_iter()
         .filter(|share| {
-            !mixing[(share.to, share.from)].is_within_bar && share.share.abs() >= NOTHING
+            !mixing[(share.to, share.from)].is_within_bar && share.share.abs() >= LEAST_SHARE
         })
         .take(MOST_REPORTED);
     let mut remarks: Vec<CouplingRemark> = mixed.map(CouplingRemark::Mixing).collect();
@@ -69,7 +74,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Couplin
     let fed = feedback_shares(&assessment.fitted.problem, matrices)
         .into_iter()
         .filter(|share| {
-            !feedback[(share.input, share.output)].is_within_bar && share.share >= NOTHING
+            !feedback[(share.input, share.output)].is_within_bar && share.share >= LEAST_SHARE
         })
         .take(MOST_REPORTED);
     for share in fed {
@@ -81,7 +86,9 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Couplin
     remarks
 }
 
-/// Derives a feedback entry's physical meaning from its output's unit.
+/// Derives a feedback entry's physical meaning from its output's unit: for an on-axis output, an
+/// acceleration is a directional stiffness if the input also commands a rate, and a rate is a
+/// damping; anything else is a coupling.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMeaning {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -198,8 +205,10 @@ fn farthest_pole(assessment: &CouplingsAssessment) -> Option<CouplingRemark> {
     if farthest_rad_s > 0.0 { farthest } else { None }
 }
 
-/// Returns the cautions to consider before couplings are used, such as newly unstable poles, a loop
-/// that is close to ringing, and entries that the data do not determine.
+/// Returns the cautions to consider before couplings are used, in this order: newly unstable poles;
+/// a loop close to ringing; feedback that stands in for leads; too few conditions; outputs that are
+/// not fed back; entries that the data do not determine; poles and models without a result;
+/// incomplete fits for left-out conditions.
 pub fn coupling_cautions(assessment: &CouplingsAssessment) -> Vec<CouplingRemark> {
     let mut remarks = newly_unstable(assessment);
     remarks.extend(close_to_ringing(assessment));

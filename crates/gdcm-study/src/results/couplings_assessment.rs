@@ -1,5 +1,8 @@
 //! Benefit and cost of couplings: error bars on their entries, J without and with them and for
 //! conditions left out, pole shifts, the loop's stability margin, effect above the band (M16.4).
+//!
+//! `M~` is the normalised mixing between the inputs, `K` the feedback from outputs to inputs, `H`
+//! and `H~` the physics model's response without and with them (M16).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -131,6 +134,7 @@ impl CouplingsAssessment {
             half_widths: &bars.mixing,
             quantile: bars.quantile,
         });
+        // The diagonal is 1 by the normalisation, not fitted.
         entries(&values, bars, |to, from| to == from)
     }
 

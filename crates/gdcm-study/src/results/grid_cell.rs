@@ -73,7 +73,8 @@ impl NotDetermined {
 /// A model's value and its verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoleCell {
-    /// Fraction, seconds, cost or level ([`unit`](super::grid_requirement::Requirement::unit)); `None` where it is not determined.
+    /// Fraction, seconds, cost or level
+    /// ([`unit`](super::grid_requirement::Requirement::unit)); `None` where it is not determined.
     pub value: Option<f64>,
     pub verdict: CellVerdict,
 }
@@ -86,6 +87,7 @@ impl RoleCell {
         }
     }
 
+    /// Compares a value with a row's limit.
     pub(super) fn judged(value: f64, limit: &RequirementLimit) -> Self {
         Self {
             value: Some(value),

@@ -1,4 +1,11 @@
 //! Builds the requirement grid from a study's results, and judges its cells (M17.5).
+//!
+//! 1. Columns: every condition with a result.
+//! 2. Rows: the requirements that the dataset, the records and the tolerances allow.
+//! 3. Cells: for the corrected and the uncorrected physics model, the value, compared with the
+//!    row's limit; or why it is not determined.
+//!
+//! `flown` denotes values of the identified model, the reference.
 
 use std::collections::BTreeSet;
 
@@ -78,7 +85,7 @@ impl GridSource<'_> {
         &self.settings.overview
     }
 
-    /// Returns the conditions with a result.
+    /// Returns the conditions with a result, which are those with a summary of the physics model.
     fn conditions(&self) -> Vec<GridCondition> {
         let mut conditions: Vec<GridCondition> = Vec::new();
         for finding in &self.requirements.summary {
@@ -141,7 +148,8 @@ impl GridSource<'_> {
         rows
     }
 
-    /// Returns the modes that any condition shows in flight.
+    /// Returns a row for each mode that any condition shows in flight: those in [`SHOWN_MODES`],
+    /// then others that have a tolerance.
     fn mode_rows(&self) -> Vec<RowSource> {
         let tolerances = self.settings.mode_tolerances.rows();
         let mut flown: BTreeSet<ModeName> = BTreeSet::new();
@@ -191,6 +199,8 @@ impl GridSource<'_> {
         ]
     }
 
+    /// Judges a model by a requirement. Levels and modes have their own verdicts; every other value
+    /// is compared with `limit`.
     fn cell(
         &self,
         requirement: Requirement,
@@ -242,7 +252,7 @@ impl GridSource<'_> {
         Ok(model_s - flown_s)
     }
 
-    /// Compares a model's level with the identified model's.
+    /// Compares a model's level with the identified model's: met if they are equal.
     fn level_cell(&self, condition: ConditionId, pair: Pair, role: RequirementRole) -> RoleCell {
         let level = match self.level(condition, pair, role) {
             Ok(level) => level,
@@ -286,7 +296,9 @@ impl GridSource<'_> {
             .ok_or(NotDetermined::NoModel(role))
     }
 
-    /// Returns the largest error over the held-out records, as a multiple of the tolerance.
+    /// Returns the largest error over the condition's held-out records, as a multiple of the
+    /// tolerance; otherwise the first reason that applies: no held-out record, no simulation of
+    /// this model, no comparison with this tolerance.
     fn peak_error(
         &self,
         condition: ConditionId,
@@ -323,6 +335,8 @@ impl GridSource<'_> {
     }
 
     /// Judges a mode by its tolerance; the value is its natural frequency's relative change.
+    /// Without a value, the first reason that applies: the condition has no modes, not this mode,
+    /// the model has no paired mode, the verdict is uncertain.
     fn mode_cell(&self, condition: ConditionId, name: ModeName, role: RequirementRole) -> RoleCell {
         if self.requirements.no_modes(condition).is_some() {
             return RoleCell::absent(NotDetermined::NoModes);

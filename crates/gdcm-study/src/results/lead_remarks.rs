@@ -13,9 +13,11 @@ use crate::decisions::study::Study;
 /// be due to a delay.
 const APART_S: f64 = 0.02;
 /// Minimum absolute signed delay \[s\] that needs a correction.
-const NOTHING_S: f64 = 2e-3;
+const LEAST_DELAY_S: f64 = 2e-3;
 /// Minimum gain increase \[dB\] that is reported.
-const NOTHING_DB: f64 = 0.05;
+const LEAST_RISE_DB: f64 = 0.05;
+/// Maximum range of leads with a common cause, relative to their median.
+const COMMON_RANGE: f64 = 0.5;
 
 /// Returns the remarks on leads, including the checks to make before they are used. For a study
 /// without leads, they only report whether leads would help.
@@ -43,23 +45,23 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let middle = median(&mut wanted_s);
     let is_common = wanted_s.len() > 1
         && most < 0.0
-        && most - least <= 0.5 * middle.abs()
-        && -middle >= NOTHING_S;
+        && most - least <= COMMON_RANGE * middle.abs()
+        && -middle >= LEAST_DELAY_S;
     if !is_common {
         return None;
     }
     Some(Remark::CommonLead { lead_s: -middle })
 }
 
-/// Reports whether every constrained response gets the lead that it needs; otherwise the responses
-/// that do not, with the reason.
+/// Reports first that every channel's delay or lead is negligible; else that every constrained
+/// response gets the delay or lead that it needs; else the responses that do not, with the reason.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let delays = &result.delays;
     let is_negligible = delays
         .inputs
         .iter()
         .chain(&delays.outputs)
-        .all(|tau_s| tau_s.abs() < NOTHING_S);
+        .all(|tau_s| tau_s.abs() < LEAST_DELAY_S);
     if is_negligible {
         return vec![Remark::LeadsNegligible];
     }
@@ -83,7 +85,7 @@ fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
         Some((pair, ratio_to_db(rise)))
     });
     let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    if rise_db.abs() < NOTHING_DB || rise_db.is_nan() {
+    if rise_db.abs() < LEAST_RISE_DB || rise_db.is_nan() {
         return None;
     }
     Some(Remark::GainRaised { rise_db, pair })

@@ -120,7 +120,8 @@ fn errors_by_coherence(
 }
 
 /// Returns the identified representative's standard errors from its model's standard deviations:
-/// medians over the comparison band. The standard deviations are treated as exact.
+/// medians over the comparison band; no response has any if the deviations have no frequency in the
+/// band. The standard deviations are treated as exact.
 fn errors_by_bands(
     analysis: &Analysis,
     result: &ConditionAnalysis,

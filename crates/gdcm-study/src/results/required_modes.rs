@@ -19,6 +19,10 @@ use super::asked_condition::AskedCondition;
 use super::missing_finding::NoModes;
 use super::requirement_role::RequirementRole;
 
+/// Indices of the physics model without and with couplings among the compared models.
+const WITHOUT_COUPLINGS: usize = 0;
+const WITH_COUPLINGS: usize = 1;
+
 /// Identified models' poles with their uncertainty, by condition; a dataset does not store them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
@@ -189,15 +193,15 @@ pub(crate) fn mode_findings(
             number: findings.len() + 1,
             name: row.name,
             named_by: row.named_by,
-            verdict: match row.verdicts.first() {
+            verdict: match row.verdicts.get(WITHOUT_COUPLINGS) {
                 Some(verdict) => *verdict,
                 None => ModeVerdict::NotPaired,
             },
             identified: ModeNumbers::new(&row.flown, &identified.name),
             identified_deviation: row.deviation,
-            physics: numbers(0),
-            corrected_verdict: row.verdicts.get(1).copied(),
-            corrected: numbers(1),
+            physics: numbers(WITHOUT_COUPLINGS),
+            corrected_verdict: row.verdicts.get(WITH_COUPLINGS).copied(),
+            corrected: numbers(WITH_COUPLINGS),
             tolerance: row.tolerance,
         });
     }

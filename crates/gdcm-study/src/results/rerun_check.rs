@@ -57,7 +57,9 @@ impl RerunVerdict {
 }
 
 impl RerunCost {
-    /// Returns the worse of the verdicts on the on-axis and the off-axis mean.
+    /// Returns the worse of the verdicts on the on-axis and the off-axis mean. Each is good below
+    /// [`GOOD_PREDICTION`]; else not linear above [`POOR_PREDICTION`], or above [`POOR_SHARE`] of
+    /// the base's J; else fair.
     pub fn verdict(&self) -> RerunVerdict {
         let mut verdict = RerunVerdict::Good;
         for (prediction, base) in [

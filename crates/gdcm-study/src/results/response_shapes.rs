@@ -56,6 +56,8 @@ impl ShapeSources<'_> {
         responses
     }
 
+    /// Returns a response without and with the parameters; `None` where G and D are undefined in
+    /// either.
     fn response(&self, pair: Pair) -> Option<ResponseShapes> {
         let identified = ResponseShape::new(self.identified.curve(pair));
         let without = self.shaped(self.without, pair, &identified)?;
@@ -93,7 +95,8 @@ impl ShapeSources<'_> {
         })
     }
 
-    /// Adds the difference that remains after `removed` to the identified response.
+    /// Adds the difference that remains after `removed` to the identified response, which gives the
+    /// physics response after G and D.
     fn shape(
         &self,
         mismatch: &Mismatch,

@@ -60,8 +60,8 @@ impl Analysis {
     }
 }
 
-/// Returns a caution about each condition in which J under the schedule is more than twice J under
-/// its own correction (M12).
+/// Returns a caution about each condition in which the mean on-axis J under the schedule is above 1
+/// and more than twice that under its own correction (M11).
 pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
     let mut cautions = Vec::new();
     for result in analysis

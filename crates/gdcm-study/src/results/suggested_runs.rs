@@ -10,7 +10,8 @@
 //! | pitch gain that changes with airspeed | tail lift, wake on the tail |
 //!
 //! A pattern only says what is worth trying: parameters with similar effects produce the same
-//! pattern.
+//! pattern. The cyclic inputs are those commanded by the longitudinal and lateral stick; a coupling
+//! `is_within_bar` if its error bar includes zero (M16).
 
 use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares};
 use gdcm_method::physics::OfferedParameter;
@@ -27,7 +28,8 @@ const NOTABLE_SHARE: f64 = 0.01;
 const NOTABLE_LEAD_S: f64 = 0.005;
 /// Maximum ratio of standard deviation to mean at which leads count as equal.
 const EQUAL_LEADS: f64 = 0.5;
-/// Minimum mean `|ln G|` for the rate commanded by the pedals.
+/// Minimum `|ln G|`, as mean over the conditions or as half the range over them, for the rate
+/// commanded by the pedals.
 const NOTABLE_LN_GAIN: f64 = 0.1;
 /// Minimum difference in ln G between fast and slow conditions.
 const NOTABLE_LN_CHANGE: f64 = 0.08;
@@ -134,6 +136,7 @@ pub struct RunParameter {
     pub unit: &'static str,
 }
 
+/// Creates a parameter whose step is in percent of its value.
 const fn percent(name: &'static str, meaning: &'static str, step: f64) -> RunParameter {
     RunParameter {
         name,
@@ -241,12 +244,15 @@ impl PatternSearch<'_> {
         is_rate(&self.analysis.study.dataset.outputs()[output])
     }
 
+    /// Returns the two cyclic inputs; `None` unless the on-axis responses indicate them.
     fn cyclic(&self) -> Option<[usize; 2]> {
         cyclic_inputs(self.analysis.study.dataset.on_axis(), |output| {
             self.is_rate(output)
         })
     }
 
+    /// Finds a mixing with opposite signs between the cyclic inputs: the larger share is notable,
+    /// and not both are within their error bars.
     fn crossed_cyclic(&self) -> Option<RunPattern> {
         let couplings = self.couplings?;
         let inputs = self.cyclic()?;
@@ -328,6 +334,9 @@ impl PatternSearch<'_> {
         found
     }
 
+    /// Finds the rate commanded by the pedals (the first on-axis rate of an input that is not
+    /// cyclic) if its G is notable and, where couplings are assessed, its feedback is outside the
+    /// error bar.
     fn pedal_gain(&self) -> Option<RunPattern> {
         let cyclic = self.cyclic()?;
         let dataset = &self.analysis.study.dataset;
@@ -367,6 +376,8 @@ impl PatternSearch<'_> {
         (0.5 * (most - least)).max(0.0)
     }
 
+    /// Finds a notable difference in the pitch rate's mean ln G between the slower and the faster
+    /// half of the conditions.
     fn pitch_gain(&self) -> Option<RunPattern> {
         let dataset = &self.analysis.study.dataset;
         let pair = dataset.on_axis().marked().find(|pair| {

@@ -59,7 +59,11 @@ impl HistoryRecords {
     /// Returns the step count for `record_simulations::time_histories_of`: one step to prepare each
     /// record, and one for each role's simulation with it.
     pub fn steps(records: &[Self]) -> usize {
-        (1 + RequirementRole::ALL.len()) * records.iter().map(|of| of.records.len()).sum::<usize>()
+        let count: usize = records
+            .iter()
+            .map(|condition| condition.records.len())
+            .sum();
+        (1 + RequirementRole::ALL.len()) * count
     }
 }
 

@@ -72,7 +72,9 @@ pub enum GainVerdict {
 }
 
 impl GainVerdict {
-    /// Judges a condition's gains.
+    /// Judges a condition's gains: no response constrained; else all matched; else by the first
+    /// unmatched response: a bound, a channel that all unmatched responses share, or a
+    /// contradiction.
     pub fn new(result: &ConditionAnalysis) -> Self {
         if result.held().marked().next().is_none() {
             return Self::NoneHeld;
@@ -145,7 +147,8 @@ pub enum PhaseVerdict {
 }
 
 impl PhaseVerdict {
-    /// Judges a condition's phases.
+    /// Judges a condition's phases: no phase correction; else no response constrained; else all
+    /// matched; else the lags that remain.
     pub fn new(study: &Study, result: &ConditionAnalysis) -> Self {
         if study.settings.phase == PhaseCorrection::None {
             return Self::NotCorrected;
@@ -186,7 +189,8 @@ pub enum RemainingLag {
 }
 
 impl RemainingLag {
-    /// Summarises the lags of all responses \[ms\] (at least one), and sorts them.
+    /// Summarises the lags of all responses \[ms\] (at least one), and sorts them: equal as
+    /// displayed; else about equal, in a range of at most half the median; else the range.
     pub fn new(left_ms: &mut [f64]) -> Self {
         let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
         let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -203,8 +207,8 @@ impl RemainingLag {
     }
 }
 
-/// Mean J over a condition's constrained responses that have a J, or over all responses in the
-/// objective if none is constrained.
+/// Mean J over a condition's constrained responses that have a J; if none is constrained, over the
+/// on-axis responses, or over all if none is on-axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeanCost {
     pub before: f64,

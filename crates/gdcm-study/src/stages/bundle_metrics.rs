@@ -94,11 +94,11 @@ impl MeasuredBundle {
         if !measured.compared.is_empty() {
             return Ok(Self { polar, measured });
         }
-        let all = measuring.map(|_, _| true);
+        let all_pairs = measuring.map(|_, _| true);
         let polar = execution.each(responses.len(), 0, |model| {
-            PolarResponse::from_marked(&responses[model], &all)
+            PolarResponse::from_marked(&responses[model], &all_pairs)
         })?;
-        let measured = MeasuredPairs::new(&polar, &all);
+        let measured = MeasuredPairs::new(&polar, &all_pairs);
         Ok(Self { polar, measured })
     }
 }

@@ -28,7 +28,8 @@ enum Absence {
 }
 
 impl Absence {
-    /// Classifies a response that is zero or not finite at one or more frequencies.
+    /// Classifies a response that is zero or not finite at one or more frequencies: zero wherever
+    /// it is finite; else, if it is finite everywhere, zero somewhere; else not finite.
     fn classify(values: &[Complex<f64>]) -> Self {
         let finite: Vec<&Complex<f64>> = values.iter().filter(|value| value.is_finite()).collect();
         if !finite.is_empty() && finite.iter().all(|value| value.norm() == 0.0) {
@@ -100,7 +101,13 @@ impl ComparedModel {
     }
 }
 
-/// Returns why a response has no G and no D.
+/// Returns why a response has no G and no D, by the first reason that applies to a bundle, physics
+/// first:
+///
+/// 1. numerically zero;
+/// 2. zero, zero somewhere, or not finite;
+/// 3. a gain out of range, at frequencies with weight;
+/// 4. no frequency with weight.
 pub(crate) fn why_undefined(
     physics: &ComparedModel,
     identified: &ComparedModel,

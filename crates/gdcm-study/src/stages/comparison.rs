@@ -9,6 +9,8 @@
 //!    coherence, numerically zero responses                                     (`comparison_cautions`)
 //! 6  where requested, G as the mean over all pairs of kept models               (`mean_gains`)
 //! ```
+//!
+//! Step 6 is requested by the caller, `ConditionStages`.
 
 use gdcm_method::correction::delta::Delta;
 use gdcm_model::dataset::{BundleKind, Dynamics};
@@ -25,15 +27,19 @@ impl Comparison {
     /// representative's coherence weights if a minimum coherence is set (M4a).
     ///
     /// # Errors
-    /// [`ConditionFailure`] where a bundle has no model to represent it.
+    /// [`ConditionFailure`] where the condition has no reference, or a bundle has no model to
+    /// represent it.
     pub(crate) fn compute(input: &ComparisonInput<'_>) -> Result<Self, ConditionFailure> {
         let condition = input.condition;
         if !condition.has_reference() {
             return Err(ConditionFailure::NoReference);
         }
+        // Step 1.
         let mut cautions = input.model_cautions();
+        // Step 2.
         let physics = input.representative(BundleKind::Physics)?;
         let identified = input.representative(BundleKind::Identified)?;
+        // Step 3.
         let compared_physics = input.compared(BundleKind::Physics, physics.model);
         let compared_identified = input.compared(BundleKind::Identified, identified.model);
         let representative = input.mismatch(&compared_physics, &compared_identified);
@@ -43,6 +49,7 @@ impl Comparison {
             let nominal = input.compared(BundleKind::Physics, condition.nominal());
             input.mismatch(&nominal, &compared_identified)
         };
+        // Step 4.
         let delta = Delta::new(&representative.mismatch, input.grid.grid.omega());
         let identified_model = input.model(BundleKind::Identified, identified.model);
         let undefined = delta
@@ -54,6 +61,7 @@ impl Comparison {
                 }
                 (None, _) => Some(why_undefined(&compared_physics, &compared_identified, pair)),
             });
+        // Step 5.
         let compared = ComparedPair {
             physics: &compared_physics,
             physics_index: physics.model,

@@ -35,6 +35,7 @@ pub struct ConditionResponses {
 pub(crate) struct CoupledResponses {
     couplings: Arc<FittedCouplings>,
     airspeed_kt: f64,
+    /// Each model's coupled response, filled on first use; shared by clones.
     made: Arc<[OnceLock<Arc<FrequencyResponse>>]>,
 }
 
@@ -78,7 +79,10 @@ impl ConditionResponses {
         }
     }
 
-    /// Computes every model's responses in the band.
+    /// Computes every model's responses in the band, without a cache.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where `execution` is cancelled.
     pub fn compute(
         condition: &Arc<Condition>,
         key: GridKey,
@@ -157,7 +161,11 @@ impl ConditionModels {
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Computes the responses model by model; reports one progress step per model.
+    /// Returns a bundle's cached responses if all are cached, otherwise computes them model by
+    /// model; reports one progress step per model.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where `execution` is cancelled.
     pub(crate) fn responses(
         &self,
         purpose: Purpose,

@@ -8,6 +8,9 @@
 //! 5  with couplings: responses of the coupled physics models, and stage 3 again
 //! 6  optimal delays and gains                                    (constraints, weights, bounds)
 //! ```
+//!
+//! In brackets: the inputs on which a stage depends. *Moved* physics models are those to which
+//! physics parameters are applied (M18.5), *coupled* ones those with couplings (M16).
 
 use std::sync::Arc;
 
@@ -91,6 +94,7 @@ pub(crate) struct ConditionStages {
     physics: Option<Arc<AppliedPhysics>>,
     /// Stages for the moved physics models without couplings, where the condition has any.
     moved: Option<MovedStages>,
+    /// Responses of the physics models with couplings.
     responses: Memo<CoupledKey, CoupledResponses>,
     /// Stages for the physics models with couplings.
     coupled: ComparedStages,
@@ -111,7 +115,8 @@ struct ComparedStages {
     problems: SolvedProblems,
 }
 
-/// Inputs for comparing a condition's models and optimising its correction.
+/// A condition's models with the results of stages 1 and 2, from which the comparison (stage 3) and
+/// the optima (stage 6) are computed.
 struct Measured<'a> {
     run: Run<'a>,
     condition: Arc<Condition>,
@@ -181,7 +186,8 @@ impl ConditionStages {
         }
     }
 
-    /// Returns the step count for analysing a condition: three steps for each model, plus one.
+    /// Returns the step count for analysing a condition: for each model, one step for its response
+    /// and two for its distances; and one for the later stages.
     pub(crate) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
     }
@@ -199,7 +205,7 @@ impl ConditionStages {
         self.coupled.problems.take_gains(problem, solution);
     }
 
-    /// Computes responses and distances for the models as in the dataset.
+    /// Computes responses and distances for the models as in the dataset (stages 1 and 2).
     fn measure<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
         let execution = run.execution;
         let condition = Arc::clone(self.models.condition());
@@ -209,6 +215,7 @@ impl ConditionStages {
             self.models
                 .responses(Purpose::Comparison, run.grid_key(), run.grid, execution)?;
         if self.metrics.holds(&key) {
+            // Cached distances report no steps.
             execution.step(2 * model_count(&condition));
         }
         let metrics = self.metrics.get_or_fail(key, |key| {
@@ -285,13 +292,15 @@ impl ConditionStages {
         let measured = self.with_moved_models(measured)?;
         let source = match self.stages_without_couplings().compare(&measured, None) {
             Err(_) => None,
-            Ok(comparison) => self.source_of(&measured, comparison)?,
+            Ok(comparison) => self.source_with_delays(&measured, comparison)?,
         };
         run.execution.step(1);
         Ok(source)
     }
 
-    fn source_of(
+    /// Computes the optimal delays without couplings, and collects the coupling fit's input; `None`
+    /// without optimal delays.
+    fn source_with_delays(
         &mut self,
         measured: &Measured<'_>,
         comparison: Arc<Comparison>,
@@ -337,6 +346,10 @@ impl ConditionStages {
         Ok(outcome)
     }
 
+    /// Computes the condition's result: stages 1 and 2 with the models as in the dataset; stages 3
+    /// and 6 with the moved models, if any, and with the couplings, if any. The comparisons before
+    /// each of these changes (models as in the dataset, models without couplings) are part of the
+    /// result.
     fn solve(
         &mut self,
         run: Run<'_>,
@@ -366,7 +379,8 @@ impl ConditionStages {
         Ok(result)
     }
 
-    /// Compares the models as in the dataset, where the physics models are moved.
+    /// Compares the models as in the dataset, where the physics models are moved; `None` where they
+    /// are not.
     fn moved_condition(
         &mut self,
         measured: &Measured<'_>,

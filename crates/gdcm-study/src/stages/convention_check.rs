@@ -143,6 +143,8 @@ struct Evidence {
 }
 
 /// Collects the suspected sign and unit differences from all conditions, sign differences first.
+/// `measuring` marks the responses that can indicate a difference: the on-axis responses, or all if
+/// none is on-axis.
 pub(crate) fn convention_doubts(
     conditions: &[(ConditionId, &Mismatches)],
     measuring: &PairTable<bool>,
@@ -167,6 +169,7 @@ pub(crate) fn convention_doubts(
     doubts
 }
 
+/// Returns the suspicion that a channel's sign is reversed; `None` without evidence.
 fn sign_doubt(
     samples: &[Sample<'_>],
     measuring: &PairTable<bool>,
@@ -186,6 +189,8 @@ fn sign_doubt(
     doubt_from(Convention::Sign, channel, evidence.collect())
 }
 
+/// Returns the suspicion that a channel's unit differs; `None` without evidence, or if the factors
+/// differ too much for a unit.
 fn factor_doubt(
     samples: &[Sample<'_>],
     measuring: &PairTable<bool>,

@@ -1,5 +1,9 @@
 //! The physics representatives' J without and with a correction to the physics models (couplings or
 //! physics parameters), averaged over the conditions (M16.4, M18.5).
+//!
+//! Both are compared under the same channel corrections: none; each condition's own; the schedule;
+//! and, for conditions left out, the correction and the schedule fitted to the others. On-axis and
+//! off-axis responses are averaged separately.
 
 use gdcm_method::couplings::LeftOutFit;
 use gdcm_method::schedule::CostChange;
@@ -48,8 +52,9 @@ impl LeftOutCondition {
 
 impl LeftOutCost {
     /// Computes the condition's J under the schedule fitted to the others, without the correction
-    /// assessed and with it; `None` where the schedule cannot be fitted to the other conditions, or
-    /// the condition cannot be assessed.
+    /// assessed and with it; `held_out` is the analysis with the correction and the condition held
+    /// out. `None` where the schedule cannot be fitted to the other conditions, or the condition
+    /// cannot be assessed.
     pub(super) fn new(
         condition: ConditionId,
         without: &Analysis,
@@ -90,9 +95,9 @@ pub(super) fn correction_costs(
 ) -> CorrectionCosts {
     let own = cost_sums(without, with, AssessedCorrection::Own);
     let scheduled = cost_sums(without, with, AssessedCorrection::Scheduled);
-    let mut unseen = CostSums::new(without.study.dataset.on_axis());
+    let mut left_out_sums = CostSums::new(without.study.dataset.on_axis());
     for condition in left_out {
-        unseen.add(&condition.without, &condition.with);
+        left_out_sums.add(&condition.without, &condition.with);
     }
     CorrectionCosts {
         uncorrected: own.uncorrected(),
@@ -101,7 +106,7 @@ pub(super) fn correction_costs(
         left_out: if left_out.is_empty() {
             None
         } else {
-            Some(unseen.corrected())
+            Some(left_out_sums.corrected())
         },
     }
 }

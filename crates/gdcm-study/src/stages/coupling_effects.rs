@@ -38,7 +38,10 @@ pub(super) struct ConditionEffect {
     pub(super) unstable: Vec<UnstablePole>,
 }
 
-/// Computes the couplings' effect on a condition.
+/// Computes the couplings' effect on a condition; `grid` is [`margin_grid`].
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` requests it.
 pub(super) fn condition_effect(
     study: &Study,
     result: &ConditionAnalysis,
@@ -46,6 +49,7 @@ pub(super) fn condition_effect(
     progress: &dyn Progress,
 ) -> Result<ConditionEffect, Cancelled> {
     let Some(coupled) = &result.coupled else {
+        // Does not occur: all results of an analysis with couplings have them.
         return Err(Cancelled);
     };
     let representative = result.representative_model(BundleKind::Physics);
@@ -54,6 +58,7 @@ pub(super) fn condition_effect(
     let from_band = grid
         .omega()
         .partition_point(|omega| *omega < study.settings.band.min());
+    // The grid's last frequency is ten times the band's upper end.
     let above_band_db = relative_change_db(
         &response,
         &result.coupled_response(&response),
@@ -85,7 +90,7 @@ struct ConditionPoles {
     refused: Vec<RefusedModel>,
 }
 
-/// Computes the kept physics models' poles.
+/// Computes the kept physics models' poles; the representative's also if it is rejected.
 fn condition_poles(
     study: &Study,
     result: &ConditionAnalysis,

@@ -1,4 +1,12 @@
 //! Fits a study's couplings (M16.1, M16.2).
+//!
+//! ```text
+//! 1  each condition's representatives, with the channel delays that are optimal without couplings
+//! 2  mean of these delays over the conditions
+//! 3  each condition: response of the identified representative without the mean delays and their
+//!    leads; its standard deviation, from the model or from its coherence; coherence weights
+//! 4  fit to all conditions                                           (`gdcm_method::couplings`)
+//! ```
 
 use std::sync::Arc;
 
@@ -50,6 +58,7 @@ impl CouplingSource {
         self.condition.flight_state().airspeed_kt
     }
 
+    /// Returns the responses that can be compared in both representatives (M6, M6a).
     fn usable(&self) -> PairTable<bool> {
         self.comparison
             .representative
@@ -135,7 +144,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Builds the fit problem for these conditions (M16.1).
+    /// Builds the fit problem for these conditions (steps 2 and 3, M16.1).
     fn problem(
         &self,
         study: &Study,
@@ -177,7 +186,10 @@ impl CouplingFitKey {
         }
     }
 
-    /// Fits couplings to these conditions, or returns why there are none.
+    /// Fits couplings to these conditions (steps 2 to 4), or returns why there are none.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
     pub(crate) fn fit(
         &self,
         study: &Study,
@@ -195,8 +207,9 @@ impl CouplingFitKey {
     }
 }
 
-/// Returns the standard deviation of `ln H` from an identified model's standard deviations, or from
-/// its coherence if that is used (M16.2).
+/// Returns the standard deviation of `ln H` (M16.2): first from the identified model's standard
+/// deviations; else from a measured response's coherence, if coherence is used and the averaging is
+/// known; else `None`.
 pub(crate) fn deviation(
     study: &Study,
     identified: &Model,

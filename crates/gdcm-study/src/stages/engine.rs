@@ -135,6 +135,9 @@ impl Engine {
 
     /// Analyses `study`; stages whose inputs have not changed since the last call are not computed
     /// again.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn analyze(
         &mut self,
         study: &Study,
@@ -156,6 +159,9 @@ impl Engine {
     /// 7  assessment of each condition under the schedule
     /// 8  cautions about conditions for which the schedule costs much more than their optimum
     /// ```
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn analyze_first(
         &mut self,
         study: &Study,
@@ -206,8 +212,12 @@ impl Engine {
         Ok(analysis)
     }
 
-    /// Computes the uncertainty of the results in `analysis` (M13). Swaps whose inputs have not
-    /// changed since the last call are not computed again.
+    /// Computes the uncertainty of the results in `analysis` from swaps, in each of which another
+    /// model replaces a representative (M13). Swaps whose inputs have not changed since the last
+    /// call are not computed again.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn uncertainty(
         &mut self,
         analysis: &Analysis,
@@ -281,7 +291,10 @@ impl Engine {
     }
 
     /// Returns the curves for a condition's models on `grid`, a band and a number of frequencies in
-    /// it; `None` where the condition does not exist.
+    /// it; `None` where the condition does not exist. Only the last condition's curves are cached.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn curves(
         &mut self,
         dataset: &Arc<Dataset>,

@@ -7,6 +7,9 @@
 //! 4  confidence bands of the schedule                                                    (M13.6)
 //! 5  tests for a second scheduling variable, Holm's correction                           (M13.7)
 //! ```
+//!
+//! Steps 3 to 5 need a schedule and the error bars of every scheduled condition. Holm's correction
+//! adjusts probabilities for the number of tests.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -36,7 +39,7 @@ use crate::results::uncertainty::{
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
-    /// Computes the uncertainty from the conditions' swaps.
+    /// Computes the uncertainty from the conditions' swaps (steps 1 to 5).
     pub(crate) fn new(analysis: &Analysis, swaps: &[(ConditionId, ConditionSwaps)]) -> Self {
         let study = &analysis.study;
         let level = study.settings.uncertainty.level;
@@ -109,7 +112,8 @@ fn bar_source<'a>(
     }
 }
 
-/// Returns the half-width `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
+/// Returns the half-width `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band, the difference
+/// that no constant gain removes; it is the standard deviation if the values are normal.
 fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
     let mismatches = &result.comparison.representative.mismatch;
     mismatches.map(|_, mismatch| {
@@ -133,18 +137,18 @@ impl<'a> ScheduleEvidence<'a> {
         conditions: &'a BTreeMap<ConditionId, ConditionUncertainty>,
     ) -> Self {
         let scheduled = analysis.scheduled();
-        let of_schedule: Vec<&ConditionUncertainty> = scheduled
+        let with_bars: Vec<&ConditionUncertainty> = scheduled
             .iter()
             .filter_map(|id| conditions.get(id))
             .collect();
-        let is_complete = of_schedule.len() == scheduled.len();
+        let is_complete = with_bars.len() == scheduled.len();
         let dataset = &analysis.study.dataset;
         Self {
             schedule: match &analysis.schedule {
                 Ok(schedule) if is_complete => Some(schedule),
                 _ => None,
             },
-            conditions: of_schedule,
+            conditions: with_bars,
             states: scheduled
                 .iter()
                 .filter_map(|id| Some(dataset.condition(*id)?.flight_state()))

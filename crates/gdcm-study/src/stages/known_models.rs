@@ -41,6 +41,8 @@ impl ModelResponses {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Returns the model's response on `grid`, which `key` identifies; from the cache if the last
+    /// response for this purpose has the same key.
     pub(super) fn response(
         &self,
         model: &Model,
@@ -77,6 +79,7 @@ impl KnownModels {
             .retain(|_, responses| responses.strong_count() > 0);
     }
 
+    /// Returns the shared responses of the models with this content, empty if no condition uses them.
     pub(super) fn responses_of(&self, content: ContentHash) -> Arc<ModelResponses> {
         let mut by_content = self.by_content();
         let known = by_content.entry(content).or_default();

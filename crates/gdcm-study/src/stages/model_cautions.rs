@@ -24,8 +24,8 @@ pub(crate) struct BundleCautions<'a> {
 }
 
 impl BundleCautions<'_> {
-    /// Returns the cautions about the models that are not rejected: models set aside because they
-    /// lack responses, models with responses that are not finite, measured models with missing responses, and channels assigned by position.
+    /// Returns the cautions about the models that are not rejected: first model by model, then
+    /// about channels assigned by position.
     pub(crate) fn find(&self) -> Vec<Caution> {
         let mut cautions = Vec::new();
         for index in 0..self.condition.bundle(self.kind).len() {
@@ -35,6 +35,11 @@ impl BundleCautions<'_> {
         cautions
     }
 
+    /// Adds the cautions about a model:
+    ///
+    /// 1. measured, with responses that are zero at all measured frequencies;
+    /// 2. set aside, if it lacks responses that another model of the bundle has (M5b); otherwise
+    ///    responses that are not finite in the band.
     fn add_of_model(&self, index: usize, cautions: &mut Vec<Caution>) {
         let model = &self.condition.bundle(self.kind)[index];
         if self.choice.rejected.contains(&model.name) {

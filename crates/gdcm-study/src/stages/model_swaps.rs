@@ -187,8 +187,8 @@ impl SwapInput<'_> {
 }
 
 impl SwapMemo {
-    /// Completes all swaps. Those that are not cached are computed, one step each; `optimum`
-    /// returns the correction for a comparison.
+    /// Completes all swaps (steps 1 to 4 above). Those that are not cached are computed, one step
+    /// each; `optimum` returns the correction for a comparison.
     ///
     /// # Errors
     /// [`Cancelled`] where the execution is cancelled.
@@ -241,17 +241,20 @@ impl SwapMemo {
         Ok(ConditionSwaps { spread, swaps })
     }
 
-    /// Computes the results for the pairs that are not cached; `swaps` is the number of pairs that
-    /// count as steps.
+    /// Computes the results for the pairs that are not cached; `swap_count` is the number of pairs
+    /// that count as steps.
     fn compute_missing(
         &mut self,
         input: &SwapInput<'_>,
         mut wanted: Vec<ModelPair>,
-        swaps: usize,
+        swap_count: usize,
         optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
     ) -> Result<(), Cancelled> {
         wanted.retain(|pair| !self.kept.contains_key(pair));
-        input.run.execution.step(swaps.saturating_sub(wanted.len()));
+        input
+            .run
+            .execution
+            .step(swap_count.saturating_sub(wanted.len()));
         let figures = swap_figures(input, &wanted, optimum)?;
         self.kept.extend(wanted.into_iter().zip(figures));
         Ok(())

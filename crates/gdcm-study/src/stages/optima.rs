@@ -5,6 +5,9 @@
 //! 2  lead filters of the negative signed delays                     M15.3
 //! 3  gains from the difference that remains after the leads         eq. (7), M15.5
 //! ```
+//!
+//! Without leads, step 2 is skipped and the gains follow from the whole difference. The file also
+//! estimates the benefit of leads that are not requested (`SolvedProblems::offer`).
 
 use std::sync::Arc;
 
@@ -103,7 +106,7 @@ impl SolvedProblems {
     }
 
     /// Computes the delays, and then the gains from the difference that remains after the leads
-    /// (M15.5).
+    /// (steps 1 to 3).
     ///
     /// # Errors
     /// [`NoOptima`] where a problem has no solution, or the run is cancelled.
@@ -143,7 +146,11 @@ impl SolvedProblems {
     }
 
     /// Estimates the benefit of leads, where they are not requested and all constrained responses
-    /// need them. `now` is J under the present correction.
+    /// need them; `None` otherwise, or if no leads meet the constraints. `now` is J under the
+    /// present correction.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where the run is cancelled.
     pub(crate) fn offer(
         &mut self,
         input: &SolveInput<'_>,

@@ -7,6 +7,10 @@
 //!    other kept identified models, on the grid of the fit
 //! 4  diagnosis                                                             (`gdcm_method::physics`)
 //! ```
+//!
+//! A run is a model with moved parameters, its base the same model without; the family is the
+//! physics representative as a function of the parameters. Without parameters, parameters that are
+//! on, or conditions, there is no diagnosis ([`PhysicsFailure`]).
 
 use std::sync::Arc;
 
@@ -140,7 +144,10 @@ impl FindingsKey {
     }
 }
 
-/// Diagnoses the parameters that are on, or returns why that is impossible.
+/// Diagnoses the parameters that are on (steps 1 to 4), or returns why that is impossible.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` requests it.
 pub(crate) fn find_parameters(
     study: &Study,
     sources: &[PhysicsSource],
@@ -148,8 +155,8 @@ pub(crate) fn find_parameters(
     progress: &dyn Progress,
 ) -> Result<FindingsOutcome, Cancelled> {
     let settings = &study.settings.physics_parameters;
-    let all = settings.parameters(&study.dataset);
-    if all.is_empty() {
+    let offered = settings.parameters(&study.dataset);
+    if offered.is_empty() {
         return Ok(Err(PhysicsFailure::NoRuns));
     }
     let parameters = settings.parameters_on(&study.dataset);
@@ -180,7 +187,7 @@ pub(crate) fn find_parameters(
         Err(PhysicsError::Cancelled(cancelled)) => return Err(cancelled),
         Err(error) => return Ok(Err(PhysicsFailure::Fit(error))),
     };
-    let mut off = all;
+    let mut off = offered;
     off.retain(|parameter| settings.off.contains(&parameter.name));
     Ok(Ok(Arc::new(PhysicsFindings {
         off,
@@ -201,7 +208,8 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// Returns a condition's data; notes why the condition, or one of its runs, is left out.
+    /// Returns a condition's data (steps 1 to 3); notes why the condition, or one of its runs, is
+    /// left out.
     fn condition(&mut self, source: &PhysicsSource) -> Option<PhysicsCondition> {
         let id = source.condition.id();
         let is_used = |model: &Model| source.uses(self.study, model);
@@ -223,6 +231,8 @@ impl Fitting<'_> {
         }
     }
 
+    /// Returns a condition's data, or why the condition is left out: held out, not compared, or
+    /// without usable runs.
     fn fitted_condition(
         &self,
         source: &PhysicsSource,
@@ -268,6 +278,8 @@ impl Fitting<'_> {
         Arc::new(PreparedModel::new(&model.dynamics).at(&self.omega))
     }
 
+    /// Builds the fit problem; a parameter set by hand is held at its value in plausible standard
+    /// deviations, the others are fitted.
     fn problem(&self, conditions: Vec<PhysicsCondition>) -> PhysicsProblem {
         let settings = &self.study.settings.physics_parameters;
         let mut parameters = Vec::with_capacity(self.parameters.len());

@@ -6,6 +6,9 @@
 //! 2  each condition: increments from its runs; conditions without a run keep their models
 //! 3  each physics model with the states of the runs' base: A(z), B(z), C(z), D(z)
 //! ```
+//!
+//! z is a parameter's change in plausible standard deviations, the increments are the changes of
+//! the matrices with z.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -113,7 +116,11 @@ impl Application<'_> {
         Ok(Arc::new(self.applied(values)))
     }
 
-    /// Moves the models by the fitted values of the named parameters, or of all.
+    /// Moves the models by fitted values:
+    ///
+    /// - all parameters: the values of the diagnosis;
+    /// - named parameters: the values of another fit in which the others are held at 0 and values
+    ///   set by hand stay; no values if no parameter is named or set by hand.
     fn fitted(&self, findings: Arc<PhysicsFindings>) -> Result<PhysicsOutcome, Cancelled> {
         let mut refit = None;
         if self.study.settings.physics == PhysicsCorrection::Named {
@@ -162,7 +169,7 @@ impl Application<'_> {
         })))
     }
 
-    /// Moves every condition's models by `values`.
+    /// Moves every condition's models by `values` that are not zero (steps 2 and 3).
     fn applied(&self, mut values: Vec<AppliedValue>) -> AppliedPhysics {
         values.retain(|value| value.z != 0.0);
         let mut conditions = BTreeMap::new();
@@ -200,7 +207,8 @@ impl Application<'_> {
         }
     }
 
-    /// Moves a condition's physics models.
+    /// Moves a condition's physics models (steps 2 and 3); parameters whose effect is notably
+    /// curved are listed.
     ///
     /// # Errors
     /// Why the condition keeps its models.
@@ -253,6 +261,7 @@ struct MovedBundle {
     kept: Vec<UnmovedModel>,
 }
 
+/// Moves the physics models by z; a model that does not have the states of the runs' base is kept.
 fn moved_bundle(condition: &Condition, increments: &ConditionIncrements, z: &[f64]) -> MovedBundle {
     let mut models = Vec::new();
     let mut kept = Vec::new();

@@ -52,6 +52,11 @@ struct RerunComparison<'a> {
 }
 
 impl RerunComparison<'_> {
+    /// Returns J of the prediction and of the base against a rerun (steps 1 to 3).
+    ///
+    /// # Errors
+    /// The first reason that applies: no base; a change of an unknown parameter or in another unit;
+    /// runs that do not suffice; increments that do not apply to the base; no comparable response.
     fn cost(
         &self,
         rerun: &MovedModel,
@@ -105,13 +110,13 @@ impl RerunComparison<'_> {
         }
     }
 
-    /// Returns a model's mean J against a reference, on and off axis; structurally zero responses
-    /// do not count (M6a).
+    /// Returns a model's mean J against a reference, on and off axis; numerically zero responses do
+    /// not count (M6a).
     fn mean_cost(&self, model: &Dynamics, reference: &Dynamics) -> AxisCost {
         let mut compared = [model, reference].map(|dynamics| {
             let mut polar = PolarResponse::new(&PreparedModel::new(dynamics).response(self.grid));
-            let nothing = polar.numerically_zero();
-            polar.clear(&nothing);
+            let numerically_zero = polar.numerically_zero();
+            polar.clear(&numerically_zero);
             polar
         });
         let [model, reference] = &mut compared;

@@ -13,7 +13,7 @@ use crate::results::scheduled_conditions::in_schedule;
 /// can reproduce.
 const APART_S: f64 = 0.02;
 /// Signed delays smaller than this \[s\] have no significant sign.
-const NOTHING_S: f64 = 2e-3;
+const LEAST_DELAY_S: f64 = 2e-3;
 
 /// Returns cautions about the channels for which no schedule can reproduce the signed delays in all
 /// conditions.
@@ -29,8 +29,9 @@ pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<Sch
         .collect()
 }
 
-/// Returns the caution about a channel, which names the condition farthest from the mean: the
-/// distance is too large, or some conditions need a lead and others a delay.
+/// Returns the caution about a channel, which names the condition farthest from the mean, with the
+/// mean over the other conditions. There is a caution if this condition's distance is too large, or
+/// if some conditions need a lead and others a delay; none for fewer than two conditions.
 fn signed_delay_apart(
     leads: &[(ConditionId, &ChannelLeads)],
     channel: Channel,
@@ -48,8 +49,8 @@ fn signed_delay_apart(
     let farthest = (0..taus_s.len())
         .max_by(|a, b| distance_s(taus_s[*a]).total_cmp(&distance_s(taus_s[*b])))?;
     let tau_s = taus_s[farthest];
-    let has_delay = taus_s.iter().any(|tau_s| *tau_s > NOTHING_S);
-    let has_lead = taus_s.iter().any(|tau_s| -*tau_s > NOTHING_S);
+    let has_delay = taus_s.iter().any(|tau_s| *tau_s > LEAST_DELAY_S);
+    let has_lead = taus_s.iter().any(|tau_s| -*tau_s > LEAST_DELAY_S);
     if distance_s(tau_s) > APART_S || (has_delay && has_lead) {
         Some(ScheduleCaution::SignedDelayApart {
             channel,

@@ -18,7 +18,7 @@ pub enum ExportFault {
     )]
     Curve {
         channel: String,
-        /// "gain" or "delay".
+        /// "gain", "delay" or "lead numerator".
         curve: &'static str,
     },
     /// The requested airspeeds are not finite and increasing, or there are none.

@@ -276,7 +276,8 @@ impl FileError {
         }
     }
 
-    /// Returns the line with the fault, counted from 1, if it is known.
+    /// Returns the line with the fault, or at which the faulty condition or model begins, counted
+    /// from 1. `None` if it is unknown, and if an invalid entry's fault contains its own line.
     pub fn line(&self) -> Option<usize> {
         match self {
             Self::CutOff { line, .. } | Self::NotJson { line, .. } => Some(*line),

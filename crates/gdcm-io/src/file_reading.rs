@@ -108,7 +108,7 @@ pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
 /// Reads a whole file into memory.
 ///
 /// # Errors
-/// The file is longer than `most` bytes.
+/// As `open_file`; the file is longer than `most` bytes, or the reading is cancelled.
 pub(super) fn read_bytes(
     path: &Path,
     most: u64,
@@ -185,7 +185,7 @@ pub(super) fn sha256(
 /// Computes the SHA-256 of the stored bytes in a file, in lower-case hexadecimal.
 ///
 /// # Errors
-/// The file cannot be read.
+/// The file cannot be read, exceeds the size limit, or has damaged gzip data.
 pub fn file_sha256(path: &Path) -> Result<String, FileError> {
     Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }

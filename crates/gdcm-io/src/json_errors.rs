@@ -56,7 +56,8 @@ pub(super) fn json_error(
     }
 }
 
-/// Translates a syntax error, a number that is out of range, or nesting that is too deep.
+/// Translates a syntax error. The first that applies: nesting that is too deep; a number that is
+/// infinite or NaN; valid JSON, which has no string where a word is expected; any other error.
 fn syntax_error(
     text: &[u8],
     path: &Path,

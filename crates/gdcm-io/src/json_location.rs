@@ -111,6 +111,7 @@ pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     if let Some(model) = &place.model {
         value = entry(value, bundle_key(model.bundle), model.position)?;
     }
+    // The raw value is a slice of the text.
     let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
     Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
 }

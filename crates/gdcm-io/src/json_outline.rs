@@ -90,6 +90,8 @@ impl Outline {
     fn read_until(text: &[u8], is_enough: impl Fn(&Self) -> bool) -> Self {
         let mut outline = Self::default();
         let mut parser = SliceJsonParser::new(text);
+        // Path to the next value. A list pushes its entry 0, an object an empty key, which each of
+        // its keys replaces.
         let mut steps: Vec<Step> = Vec::new();
         while let Ok(event) = parser.parse_next()
             && steps.len() < DEEPEST

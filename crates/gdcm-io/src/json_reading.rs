@@ -31,8 +31,14 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// Reads the value in a text; returns a caution for each unknown key. The memory for the value
-    /// is first taken from the budget.
+    /// Reads the value in a text; returns a caution for each unknown key.
+    ///
+    /// 1. A list at the top level, another format or another version: error. A file without
+    ///    "format" fails in step 3, with its missing key.
+    /// 2. Take the memory for the value from the budget.
+    /// 3. Deserialize, while the path of keys and indices is tracked and unknown keys are
+    ///    collected.
+    /// 4. An error is located by that path, in terms of conditions and models (`json_location.rs`).
     ///
     /// # Errors
     /// Another format or version, which is reported before any other error; text that is not JSON;
@@ -63,7 +69,7 @@ impl Format {
         }
     }
 
-    /// Rejects a file with another "format" or "version".
+    /// Rejects a file with another "format" or "version"; accepts one without "format".
     fn check(self, text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
         let (format, version) = Outline::format_and_version(text, budget);
         let Some(format) = format else {

@@ -146,7 +146,7 @@ fn marked_responses(pairs: &Json, dataset: &Dataset) -> Json {
 }
 
 /// Returns the member `key` of a response's net gain or, if `place` is given, that member's entry
-/// at this index; null if missing.
+/// at this index, such as an end of the interval; null if missing.
 fn net_gain_value(
     net_gains: &[Json],
     output: &str,
@@ -166,7 +166,7 @@ fn net_gain_value(
     }
 }
 
-/// Adds a schedule row's delays as lists in channel order.
+/// Adds a schedule row's delays as lists in channel order; nothing if it has no delays.
 fn add_delay_lists(row: &mut Json) {
     for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
         if let Some(delays) = row

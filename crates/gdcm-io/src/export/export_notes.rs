@@ -80,7 +80,9 @@ impl Export<'_> {
         }]
     }
 
-    /// Returns the notes on the scheduled delays and leads, compared with those of `conditions`.
+    /// Returns the notes on the scheduled delays and leads: if the schedule has none, whether
+    /// `conditions` have delays of their own; else whether the schedule's are constant; then the
+    /// signed delays that cannot be scheduled.
     fn delay_notes(&self, schedule: &Schedule, conditions: &[ConditionId]) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = Vec::new();
@@ -149,7 +151,9 @@ fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
     notes
 }
 
-/// Returns the notes on a file with corrected models.
+/// Returns the notes on a file with corrected models: left-out conditions; delays and lead price,
+/// from the schedule if it corrects the models, else the price from the models; and the accuracy of
+/// the worst model.
 pub(super) fn model_notes(export: &Export<'_>, models: &[ExportedModel]) -> Vec<ExportNote> {
     let mut notes = export.choice_notes();
     let conditions: Vec<ConditionId> = models.iter().map(|model| model.condition).collect();

@@ -109,7 +109,8 @@ impl ExportSet {
         (formats, names.contains(&CHECKSUMS))
     }
 
-    /// Returns the set's file names with this number in each.
+    /// Returns the set's file names with this number in each: one per format in their order, then
+    /// checksums and report.
     fn names(&self, number: &str) -> Vec<String> {
         let mut names = Vec::new();
         for format in &self.formats {
@@ -196,6 +197,7 @@ impl ExportSet {
             },
             number,
         };
+        // After the formats, the next name is that of the checksums.
         let mut names = self.names(&plan.number).into_iter();
         for (index, (format, name)) in self.formats.iter().zip(&mut names).enumerate() {
             progress.advanced(index, self.formats.len());

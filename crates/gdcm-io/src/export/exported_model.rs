@@ -24,7 +24,8 @@ pub(super) struct ExportedModel {
     pub(super) lead_states: usize,
     /// Order of the Padé approximants for delays; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
-    /// Maximum phase error \[deg\] at the band's upper end due to the Padé approximants.
+    /// Maximum phase error \[deg\] at the band's upper end due to the Padé approximants or, in
+    /// discrete time, to Tustin's rule.
     pub(super) approximation_error_deg: f64,
     /// Phase lag \[deg\] at the band's upper end due to delays in the condition's own correction
     /// that the schedule omits.
@@ -78,12 +79,17 @@ pub(super) struct DescribedPrice {
 
 impl ExportedModel {
     /// Returns the maximum phase error \[deg\] at the band's upper end due to the export, that is,
-    /// to Padé approximants and omitted delays.
+    /// to Padé approximants or Tustin's rule, and to omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
     }
 
-    /// Returns the accuracy of the parts; omitted delays do not count.
+    /// Returns the accuracy of the parts; omitted delays do not count. The first that applies:
+    ///
+    /// 1. leads in discrete time: by Tustin's rule;
+    /// 2. leads without delay states: exact;
+    /// 3. discrete time, or no delay states: exact delays, where there are any;
+    /// 4. delay states: Padé approximants, for the correction's delays or only the model's own.
     pub(super) fn accuracy(&self) -> ModelAccuracy {
         let has_delays = self.contents.delays != PartSource::None;
         let has_leads = self.lead_states > 0;

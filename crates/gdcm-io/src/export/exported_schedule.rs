@@ -85,9 +85,12 @@ impl ExportedSchedule<'_> {
         }
     }
 
-    /// Returns a channel's delay \[s\]; zero if delays are not scheduled.
+    /// Returns a channel's delay \[s\]: with leads, the signed delay, limited to positive values
+    /// ([`Curve::upper`]) because the negative ones are leads (`zero_s`); else the scheduled delay;
+    /// else zero.
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
         if let Some(leads) = &self.schedule.leads {
+            // A table with one airspeed is a constant.
             let upper = Regression::Table {
                 airspeeds_kt: vec![self.schedule.airspeeds.min_kt],
                 values: vec![leads.bounds_s[1]],

@@ -50,6 +50,9 @@ impl Layout {
         }
     }
 
+    /// Converts a list. The first that applies: empty, an empty cell column; objects, gathered or a
+    /// struct array (`columns`); numbers, a row; lists with equal lengths, gathered with two
+    /// indices; anything else, gathered with one.
     fn list(&self, name: &str, entries: &[Json]) -> Value {
         if entries.is_empty() {
             return Value::Cell(CellArray {
@@ -99,9 +102,9 @@ impl Layout {
     }
 
     /// Gathers values in an array with this shape; in `leaves`, which holds the value at each
-    /// index, the last index runs fastest. Objects become a struct of arrays, numbers an array,
-    /// booleans a logical array, lists of numbers an array with an additional index, and all other
-    /// values cells.
+    /// index, the last index runs fastest. The first that applies: if any is an object, a struct of
+    /// arrays; all numbers, an array; all booleans, a logical array; equally long lists of numbers,
+    /// an array with an additional index; anything else, cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);

@@ -146,8 +146,13 @@ impl<'e> BreakpointTable<'e> {
         )
     }
 
-    /// Builds the table at the requested airspeeds \[kt\]; by default at the scheduled conditions'
-    /// distinct airspeeds.
+    /// Builds the table.
+    ///
+    /// 1. Its airspeeds \[kt\] (breakpoints) are the requested ones; by default the scheduled
+    ///    conditions' distinct airspeeds.
+    /// 2. It has a row for each of them, repeated for each value of the second variable.
+    /// 3. It has the columns gain, delay and, if scheduled, lead filter for each channel, then the
+    ///    mixing, each with its maximum deviation from the schedule.
     ///
     /// # Errors
     /// [`ExportFault::Breakpoints`] if the airspeeds are not finite and increasing, or if there are

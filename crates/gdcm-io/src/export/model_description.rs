@@ -108,7 +108,8 @@ pub(super) fn correction_words(correction: AssessedCorrection) -> &'static str {
 }
 
 impl ModelCouplings {
-    /// Returns how couplings enter a model with the matrices `dynamics`.
+    /// Returns how couplings enter a model with the matrices `dynamics`. Only in continuous time
+    /// are its own delays approximated inside the feedback loop.
     pub(super) fn new(analysis: &Analysis, dynamics: &StateSpace) -> Self {
         let has_delays =
             !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();

@@ -114,6 +114,11 @@ pub(super) const C: ExportFormat = ExportFormat {
 };
 
 impl Language {
+    /// Exports the schedule as a file in this language.
+    ///
+    /// # Errors
+    /// There is no schedule, requested couplings or physics parameters are unavailable, or a curve
+    /// is not finite.
     fn export<'e>(self, export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let scheduled = export.scheduled()?;
         scheduled.check()?;
@@ -198,7 +203,9 @@ impl Language {
     }
 
     /// Returns the template values of the couplings: the mixing `M~(V)` and the feedback `K`, both
-    /// row by row, with the clamping and scaling of the airspeed on which `M~` depends.
+    /// row by row, with the clamping and scaling of the airspeed on which `M~` depends. An entry of
+    /// `M~` is the mixing curve `own` divided by the sender's curve for itself, `of`, so that the
+    /// diagonal is 1 (`is_unit`).
     fn coupling_values(&self, couplings: &CouplingMatrices) -> Value {
         let airspeeds = couplings.airspeeds();
         let (inputs, outputs) = couplings.feedback().shape();
@@ -269,7 +276,9 @@ impl Language {
     }
 
     /// Returns the expression of a curve in terms of the airspeed `a`, the scaled airspeed `v` and
-    /// the scaled second variable `z`, together with the arrays `c0`, `c1`, … that it uses.
+    /// the scaled second variable `z`, together with the arrays `c0`, `c1`, … that it uses: the
+    /// regression; plus the slope times `z`; its exponential, if it gives a logarithm; clamped to 0
+    /// and the upper limit.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
         let mut value = self.regression_expression(&curve.figures, &mut arrays);

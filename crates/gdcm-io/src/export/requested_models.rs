@@ -107,6 +107,11 @@ pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -
     }
 }
 
+/// Computes a condition's corrected model, with the facts that describe it.
+///
+/// # Errors
+/// The analysis lacks the requested model or correction, the model is a measured response, or the
+/// corrected model has no matrices.
 fn exported_model(
     analysis: &Analysis,
     request: &ExportRequest,
@@ -203,7 +208,8 @@ fn model_of<'c>(
     }
 }
 
-/// Returns the own or the scheduled correction of a condition, as requested.
+/// Returns a condition's requested correction: its own; the schedule's at its flight state, with or
+/// without leads; or that of a schedule fitted to the other conditions.
 fn correction_of(
     analysis: &Analysis,
     which: AssessedCorrection,
@@ -232,7 +238,10 @@ fn correction_of(
     }
 }
 
-/// Returns the analysis of a condition, or why there is none.
+/// Returns a condition's analysis.
+///
+/// # Errors
+/// [`ExportFault::NoResult`] with the reason.
 fn result_of<'a>(
     analysis: &'a Analysis,
     condition: &Condition,

@@ -121,7 +121,8 @@ impl Example {
         }
     }
 
-    /// Returns the example with this name; the simulated one if no example has it.
+    /// Returns the example with this name; if no example has it, the simulated one, with which
+    /// every study without a dataset path was read while it was the only example.
     pub(crate) fn from_name(name: &str) -> Self {
         for example in Self::ALL {
             if example.name() == name {
@@ -162,8 +163,9 @@ impl Example {
         }
     }
 
-    /// Writes the example's files into a directory, which is created if missing; all or none.
-    /// Returns their paths, the dataset's first.
+    /// Writes the example's files into a directory, which is created if missing; all or none. The
+    /// simulated example's records are not among them; [`Self::records`] returns them. Returns the
+    /// paths, the dataset's first.
     ///
     /// # Errors
     /// [`FileError`] if a file exists and is to be kept, or cannot be written.

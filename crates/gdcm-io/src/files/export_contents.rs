@@ -146,6 +146,11 @@ impl ExportContents {
 
     /// Returns the contents of a file with the corrected models for these conditions.
     ///
+    /// 1. Own corrections: no schedule, nothing is omitted.
+    /// 2. Otherwise the schedule; for a single condition, that of the others if requested.
+    /// 3. Omitted delays are only those of these conditions, and only if the schedule has none.
+    /// 4. Leads are omitted if requested.
+    ///
     /// # Errors
     /// [`ScheduleError`] if the schedule is requested but does not exist.
     pub fn of_models(
@@ -208,6 +213,8 @@ impl ExportContents {
         contents
     }
 
+    /// Returns the parts that all exports share: couplings and physics parameters, or why they are
+    /// unavailable. No gains, delays and leads.
     fn of_none(analysis: &Analysis) -> Self {
         let (couplings, mut left_out) = match analysis.asked_couplings() {
             Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
@@ -234,6 +241,7 @@ impl ExportContents {
         }
     }
 
+    /// Returns the contents of the conditions' own corrections.
     fn of_own(analysis: &Analysis) -> Self {
         let phase = analysis.study.settings.phase;
         Self {
@@ -244,6 +252,7 @@ impl ExportContents {
         }
     }
 
+    /// Returns the contents of a schedule, without the delays that it lacks.
     fn of_schedule(analysis: &Analysis, schedule: &Schedule) -> Self {
         let mut contents = Self {
             gains: PartSource::Scheduled,

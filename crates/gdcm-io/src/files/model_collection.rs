@@ -162,9 +162,9 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
 /// Reads the models from a file in one of this program's model formats, with cautions about unknown
 /// keys.
 ///
-/// Returns `None` for any other file, and if an unknown key's name suggests a delay: such a file is
-/// read as general JSON instead, which supports more delay notations and asks the engineer about
-/// the rest.
+/// Returns `None` for any other file, if a model has no dimensions or unfitting labels, and if an
+/// unknown key's name suggests a delay: such a file is read as general JSON instead, which supports
+/// more delay notations and asks the engineer about the rest.
 pub(crate) fn found_models(
     text: &[u8],
     path: &Path,
@@ -228,8 +228,10 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// Converts the model at `index` (from 0), which is part of its variable name. Returns `None` if
-/// neither the matrices nor a response give its dimensions.
+/// Converts the model at `index` (from 0), which is part of its variable name. Its origin follows
+/// from its role; else it is identified if it has a method or an order; else unknown
+/// (`Perturbed`). Returns `None` if neither the matrices nor a response give its dimensions, or if
+/// a list of channel names or units does not fit them.
 fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = match text.origin() {
         Some(origin) => origin,

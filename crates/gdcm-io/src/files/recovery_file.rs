@@ -157,7 +157,8 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     lost
 }
 
-/// Returns the recovery file that belongs to a lock file; `None` if its process still runs.
+/// Returns the recovery file that belongs to a lock file. `None` for any other file, if its process
+/// still runs, and without a recovery file; in that case an old lock file is removed.
 fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     if lock_path.extension()? != LOCK_EXTENSION {
         return None;

@@ -81,7 +81,8 @@ struct Listing<'p> {
 
 impl Listing<'_> {
     /// Adds the files in a folder and in its subfolders, down to `deeper` subfolder levels; each
-    /// recursion lowers `deeper` by 1.
+    /// recursion lowers `deeper` by 1. Skips silently: hidden entries, linked folders, files with
+    /// unsupported extensions, and `.log` and `.bin` files in no supported log format.
     ///
     /// # Errors
     /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many

@@ -56,8 +56,8 @@ fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableF
     })
 }
 
-/// Converts a list: numbers become an array (row by row), strings a string array, anything else a
-/// cell array.
+/// Converts a list: strings become a string array; else numbers, or rectangular nested lists of
+/// numbers, an array (row by row); anything else a cell array.
 fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     let shape = vec![1, list.len()];
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {

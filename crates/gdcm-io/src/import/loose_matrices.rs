@@ -10,6 +10,10 @@ use super::recognise::{Found, recognise};
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::ReadingBudget;
 
+/// `pages_first` for [`recognise`]: in a NumPy array with three dimensions, the first index selects
+/// the matrix.
+const PAGES_FIRST: bool = true;
+
 /// A matrix that is the only variable in its file.
 pub(super) struct LooseMatrix {
     /// Folder, and file name without the matrix letter; the matrices in a group form a model.
@@ -80,6 +84,8 @@ pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     found
 }
 
+/// Reads a group's matrices as a file with one variable for each. A group without a model and
+/// without a fault, such as a lone `A.csv`, is a fault.
 fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
     let variables: Vec<Variable> = matrices
         .iter()
@@ -87,7 +93,7 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
         .collect();
     let mut found = Found::default();
     // No limit is needed: each file was already read within its own budget.
-    match recognise(&variables, true, &ReadingBudget::new(u64::MAX)) {
+    match recognise(&variables, PAGES_FIRST, &ReadingBudget::new(u64::MAX)) {
         Ok(recognised) => {
             found.items = recognised.items;
             for fault in recognised.faults {

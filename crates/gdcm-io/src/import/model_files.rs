@@ -29,6 +29,11 @@ pub const EVERY_TABLE: &str = "*";
 const HEADING_LINES: usize = 50;
 /// Maximum number of unused variables listed for each file.
 const MOST_LISTED: usize = 20;
+/// `pages_first` for [`recognise`]: in a NumPy array with three dimensions, the first index selects
+/// the matrix.
+const NUMPY_PAGES_FIRST: bool = true;
+/// `pages_first` for [`recognise`]: matrices in a text have two dimensions.
+const NO_PAGES: bool = false;
 
 /// Results of reading model files.
 #[derive(Clone, Debug, Default)]
@@ -125,6 +130,10 @@ impl<'h> ModelReading<'h> {
         }
     }
 
+    /// Adds the models in a file, by its contents: named variables, and matrices in a text, go
+    /// through [`recognise`]; a table in a text may hold frequency responses; a dataset or models
+    /// of this program are taken as they are; a log is ignored; an archive is read file by file,
+    /// and its arrays together.
     fn add_file(
         &mut self,
         file: ImportedFile<'_>,
@@ -151,7 +160,7 @@ impl<'h> ModelReading<'h> {
                 .map_err(error)?,
             Contents::Text(text) => match read_text(&text, path, budget).map_err(error)? {
                 TextContents::Variables { variables, notes } => self
-                    .recognise(&variables, &notes, identity, false, budget)
+                    .recognise(&variables, &notes, identity, NO_PAGES, budget)
                     .map_err(error)?,
                 TextContents::Table(table) => self.read_table(table, name).map_err(error)?,
             },
@@ -178,8 +187,7 @@ impl<'h> ModelReading<'h> {
                     self.add_archived_file(identity, &inner, contents, budget)?;
                 }
                 self.found.ignored.extend(with_file_name(name, ignored));
-                // `true`: the first index selects the matrix in NumPy arrays.
-                self.recognise(&variables, &[], identity, true, budget)
+                self.recognise(&variables, &[], identity, NUMPY_PAGES_FIRST, budget)
                     .map_err(error)?
             }
         };
@@ -242,8 +250,8 @@ impl<'h> ModelReading<'h> {
         Ok(found)
     }
 
-    /// Reads the frequency responses in a table, with the headings given for this file or for every
-    /// table.
+    /// Reads the frequency responses in a table. Its headings are those given for this file; else
+    /// those given for every table, if they are as many as the columns; else its own.
     fn read_table(
         &mut self,
         mut table: TextTable,
@@ -310,8 +318,11 @@ enum TextContents {
     Table(TextTable),
 }
 
-/// Reads a single matrix if the file name ends in a matrix letter, named matrices if the text
-/// begins with one, and otherwise a table.
+/// Reads the contents of a text:
+///
+/// 1. a single matrix, if the file name ends in a matrix letter;
+/// 2. else named matrices, if one is headed in the first lines and all can be read;
+/// 3. else a table; complex numbers are split into two columns first.
 fn read_text(
     text: &str,
     path: &Path,

@@ -58,6 +58,7 @@ pub(super) fn add_condition_plots(
     Ok(())
 }
 
+/// Computes a condition's curves; `None` if the dataset lacks the condition.
 fn curves(
     analysis: &Analysis,
     result: &ConditionAnalysis,

@@ -123,12 +123,13 @@ const RESPONSE_COLUMNS: [&str; 11] = [
     "ΔJ phase",
 ];
 
-/// Adds the response table, and the reasons why some responses have no G and no D.
+/// Adds the response table, and the reasons why some responses have no G and no D. If there are
+/// more responses than fit, only those in the objective and the constrained ones are listed.
 pub(super) fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
-    let all: Vec<Pair> = study.dataset.on_axis().pairs().collect();
+    let pairs: Vec<Pair> = study.dataset.on_axis().pairs().collect();
     let measuring = study.dataset.measuring_pairs();
-    let mut shown = all.clone();
-    if all.len() > PAIRS_LISTED {
+    let mut shown = pairs.clone();
+    if pairs.len() > PAIRS_LISTED {
         shown.retain(|pair| measuring[*pair] || study.settings.constrained[*pair]);
     }
     let title = format!(
@@ -140,10 +141,10 @@ pub(super) fn add_responses(page: &mut Page, study: &Study, result: &ConditionAn
         table.row(response_cells(study, result, *pair));
     }
     page.table(&table);
-    if shown.len() < all.len() {
+    if shown.len() < pairs.len() {
         page.paragraph(&format!(
             "Not listed: {} neither on-axis nor held.",
-            responses_that_are(all.len() - shown.len())
+            responses_that_are(pairs.len() - shown.len())
         ));
     }
     page.list(undefined_lines(study, result));
@@ -170,6 +171,8 @@ fn change_or_missing(value: Option<f64>) -> String {
     }
 }
 
+/// Returns a response's cells. It is treated as undefined without G and D, else as held, ignored or
+/// fitted, in this order.
 fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
     let is_defined = result.wanted_gain(pair).is_some();
@@ -286,7 +289,8 @@ pub(super) fn add_models_omitted(
     }
 }
 
-/// Describes in a word whether a model is kept.
+/// Describes in a word whether a model is kept: rejected by the analyst, else set aside by the
+/// analysis, else the representative, else any other kept model.
 fn kept_word(
     study: &Study,
     result: &ConditionAnalysis,

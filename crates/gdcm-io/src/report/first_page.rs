@@ -37,6 +37,7 @@ pub(super) fn add_first_page(page: &mut Page, analysis: &Analysis) {
     let mut tables = vec![correction_table(analysis, &pairs)];
     tables.extend(delay_table(analysis, &pairs));
     let rows = ROWS_SHOWN / tables.len();
+    // The same for both tables: each has a row per condition.
     let mut omitted = 0;
     for mut table in tables {
         omitted = table.rows.len().saturating_sub(rows);
@@ -120,6 +121,7 @@ fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
             Some(result) => cells.extend(correction_cells(analysis, result, pairs)),
             None => {
                 cells.push("no result".to_owned());
+                // Besides the responses: condition, gain, phase, J before and J after.
                 cells.resize(pairs.len() + 5, MISSING.to_owned());
             }
         }

@@ -22,8 +22,14 @@ use gdcm_words::time_histories::{record_table, share_table};
 use super::page::Page;
 use super::{CancellationOnly, ReportSubject};
 
-/// Maximum number of columns in a table that fits on a page.
+/// Maximum number of columns in a table that fits on a page, beside the columns that each part of a
+/// wide table repeats.
 const COLUMNS: usize = 9;
+/// Columns that each part of the summary table repeats: condition, airspeed and model.
+const SUMMARY_HEADS: usize = 3;
+/// Maximum number of other columns in the summary table: those that [`COLUMNS`] leaves with two
+/// repeated columns more than one.
+const SUMMARY_COLUMNS: usize = COLUMNS - 2;
 /// Maximum number of plots per row in the figure of bandwidths.
 const BANDWIDTH_COLUMNS: usize = 4;
 
@@ -67,8 +73,8 @@ pub(super) fn add_requirements(
     );
     page.wide_table_behind(
         &summary_table(requirements, subject.histories),
-        3,
-        COLUMNS - 2,
+        SUMMARY_HEADS,
+        SUMMARY_COLUMNS,
     );
     add_grids(page, requirements, subject.histories, study);
 }

@@ -73,7 +73,7 @@ pub enum LineFault {
         place: ColumnPlace,
         fault: FrequencyFault,
     },
-    /// A complex number has only one part.
+    /// A complex number has only one part, or an infinite part.
     #[error(
         "{place} has no finite number; complete it, or also empty the other part of the complex \
         number"

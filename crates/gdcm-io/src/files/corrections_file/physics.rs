@@ -48,6 +48,15 @@ const COLUMNS: [&str; 21] = [
     "applied",
 ];
 
+/// Place of "on" in `COLUMNS`.
+const ON: usize = 2;
+/// Place of "z" in `COLUMNS`.
+const Z: usize = 6;
+/// Place of `plausible_sd` in `COLUMNS`.
+const PLAUSIBLE_SD: usize = 7;
+/// Place of "applied" in `COLUMNS`, the last column.
+const APPLIED: usize = 20;
+
 /// Returns the study's parameters with their diagnosis; null where none are requested.
 pub(super) fn physics(analysis: &Analysis) -> Value {
     let applied = match &analysis.physics {
@@ -265,7 +274,8 @@ pub(crate) fn write_physics_csv(
     write_records(file, records.into_iter())
 }
 
-/// Returns the rows of `physics.csv`.
+/// Returns the rows of `physics.csv`: the diagnosed parameters, those that are switched off, and
+/// those that are only set by hand.
 fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
     let mut records = Vec::new();
     let mut listed: BTreeSet<&str> = BTreeSet::new();
@@ -284,7 +294,7 @@ fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
         for parameter in &findings.off {
             listed.insert(&parameter.name);
             let mut cells = empty_cells(parameter);
-            cells[2] = "no".to_owned();
+            cells[ON] = "no".to_owned();
             records.push(cells);
         }
     }
@@ -293,9 +303,9 @@ fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
             continue;
         }
         let mut cells = empty_cells(&value.parameter);
-        cells[2] = "yes".to_owned();
-        cells[6] = full_precision(Some(value.z));
-        cells[20] = full_precision(Some(value.change()));
+        cells[ON] = "yes".to_owned();
+        cells[Z] = full_precision(Some(value.z));
+        cells[APPLIED] = full_precision(Some(value.change()));
         records.push(cells);
     }
     records
@@ -306,7 +316,7 @@ fn empty_cells(parameter: &OfferedParameter) -> Vec<String> {
     let mut cells = vec![String::new(); COLUMNS.len()];
     cells[0] = parameter.name.clone();
     cells[1] = parameter.unit.clone();
-    cells[7] = full_precision(Some(parameter.plausible_sd));
+    cells[PLAUSIBLE_SD] = full_precision(Some(parameter.plausible_sd));
     cells
 }
 

@@ -70,8 +70,8 @@ impl ModelText {
         }
     }
 
-    /// Returns a physics model's origin. A model with moved parameters counts as perturbed,
-    /// whatever its role, because it is no bundle member.
+    /// Returns a physics model's origin: perturbed, if it has moved parameters and either no role
+    /// or the role "nominal", because it is no bundle member; else the origin given by its role.
     ///
     /// # Errors
     /// Fails if a bundle member lacks a role, or if a role is neither nominal nor perturbed.

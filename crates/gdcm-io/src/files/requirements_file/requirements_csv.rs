@@ -84,7 +84,7 @@ impl Subject<'_> {
     }
 }
 
-/// Formats a value; a missing value becomes an empty cell.
+/// Formats a value with all digits; a missing value becomes an empty cell.
 fn cell(value: Option<f64>) -> String {
     match value {
         Some(value) => value.to_string(),

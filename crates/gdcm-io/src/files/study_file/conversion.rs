@@ -167,6 +167,8 @@ fn present_decisions(
     dataset: &Dataset,
 ) -> Result<Decisions, ContentError> {
     settings.complete_delay_scheduling();
+    // The check needs sets of responses, but only checks numbers: any set will do. The names of
+    // responses are resolved when the decisions are applied to the dataset.
     let start = Settings::for_dataset(dataset);
     settings
         .with_responses(|_, _| start.ignored.clone())

@@ -69,6 +69,13 @@ pub(crate) fn check_study_text(
 
 /// Opens the study in `source`; its dataset is at `moved` if given, otherwise at the path given in
 /// the study.
+///
+/// 1. Decode the text; unknown keys become cautions.
+/// 2. Load the dataset.
+/// 3. Check the decisions, and apply those that suit the dataset.
+/// 4. List the differences: none if the dataset has the same hash, otherwise against the inventory
+///    in the study, or only the hashes in older studies without one; and the decisions that no
+///    longer apply.
 pub(crate) fn study_from(
     source: &Source<'_>,
     path: &Path,
@@ -99,7 +106,8 @@ pub(crate) fn study_from(
     })
 }
 
-/// Loads the dataset of a study from `moved` if given, otherwise from the path given in the study.
+/// Loads the dataset of a study from `moved` if given; else an embedded example if the study gives
+/// no path; else from that path, or from the study file's directory.
 fn load_referenced(
     reference: &DatasetReference,
     study: &Path,

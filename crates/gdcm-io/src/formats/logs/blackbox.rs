@@ -173,8 +173,14 @@ impl Flight {
         }
     }
 
-    /// Reads the frames in `bytes`, which begin with the header. At a byte that begins no valid
-    /// frame, reading continues at the next byte.
+    /// Reads the frames in `bytes`, which begin with the header.
+    ///
+    /// 1. Decode a frame at the current byte; a main frame is predicted from its predecessors. It
+    ///    is damaged if it cannot be decoded, no frame letter follows it, or its time does not
+    ///    continue that of its predecessor.
+    /// 2. By its kind: the end ends the reading; a main frame is a sample, and the next
+    ///    predecessor; a slow frame is a mode sample; other frames are skipped.
+    /// 3. After a damaged frame there is no predecessor, and reading continues at the next byte.
     fn read_frames(
         &mut self,
         bytes: &[u8],
@@ -278,6 +284,7 @@ impl Flight {
             }
             columns.push(column);
         }
+        // Axes 0, 1 and 2 are roll, pitch and yaw.
         for axis in 0..3 {
             let sum = controller_sum(&columns, axis, &name, budget)?;
             columns.extend(sum);

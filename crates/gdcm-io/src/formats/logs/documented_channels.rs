@@ -6,6 +6,7 @@ use gdcm_sysid::records::RecordColumn;
 /// A column whose channel and unit are documented.
 struct DocumentedColumn {
     name: &'static str,
+    /// Usual name of the channel, by which columns are assigned to a dataset's channels.
     channel: &'static str,
     /// Unit; empty if the documentation gives none.
     unit: &'static str,
@@ -110,7 +111,8 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
         using signs of derivatives",
 };
 
-/// Assigns the documented channels and units to columns. Returns a note that lists the assigned
+/// Assigns the documented channels and units to columns: the unit to every documented column that
+/// has none, a channel only to the first column that varies. Returns a note that lists the assigned
 /// channels; `None` if there are none.
 pub(super) fn assign_documented_meanings(
     columns: &mut [RecordColumn],

@@ -77,7 +77,15 @@ struct Messages<'b> {
     unread: usize,
 }
 
-/// Reads a log, message by message.
+/// Reads a log, message by message:
+///
+/// 1. A message that reaches into appended data: continue there.
+/// 2. A message that reaches beyond the file: the log is truncated, stop.
+/// 3. The flags message gives the offsets of appended data; all others go to [`Messages::add`].
+///
+/// # Errors
+/// [`VariableFault`] for an unknown incompatibility flag, an exceeded limit, and a log without any
+/// topic that can be read.
 fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     if bytes.len() < HEADER {
         return Err(VariableFault::cut_off("", bytes.len()));

@@ -46,7 +46,13 @@ pub(crate) const MAT: Importer = Importer {
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
-/// Reads the variables in file order.
+/// Reads the variables in file order. The first that applies decides the level:
+///
+/// 1. HDF5 signature: error, because version 7.3 is read elsewhere.
+/// 2. Header of levels 5 to 7, unless the file does not begin with text and has a valid header of
+///    level 4.
+/// 3. Header of level 4.
+/// 4. Header of another version, or anything else: error.
 ///
 /// Variable parts that cannot be decoded become [`super::variables::Value::Opaque`]; bytes that
 /// contradict the format are an error for the whole file.

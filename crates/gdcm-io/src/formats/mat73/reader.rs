@@ -91,7 +91,9 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a dataset. Without a MATLAB class, its elements are in row-major order.
+    /// Reads a dataset; its elements are in row-major order unless it has a MATLAB class. The first
+    /// that applies: empty value; function handle (opaque); references (cell array); numbers;
+    /// strings; compound elements (struct array); anything else is opaque.
     fn dataset_value(
         &self,
         dataset: &Dataset,
@@ -188,8 +190,8 @@ impl Reader<'_> {
             .map_err(|error| library_fault(&error, path))
     }
 
-    /// Reads a group: a struct, a struct array, a sparse matrix, or an object of an old-style (`@`
-    /// folder) class.
+    /// Reads a group. The first that applies: sparse matrix; function handle or enumeration
+    /// (opaque); struct array or struct, which may be an object of an old-style (`@` folder) class.
     fn group_value(&self, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
         let attributes = MatlabAttributes::read(group.attrs(), path)?;
         let members = self.members(group, path)?;

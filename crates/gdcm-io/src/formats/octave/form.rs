@@ -101,7 +101,9 @@ impl Form {
         }
     }
 
-    /// Interprets the words in a numeric type name; `None` if a word is unknown.
+    /// Interprets the words in a numeric type name: some give the element type, others the form.
+    /// Without a word for the form, only "bool" (a scalar) and "null_matrix" are known. Returns
+    /// `None` if a word or the name is unknown.
     fn from_number_words(name: &str) -> Option<Self> {
         let mut element = Element::FLOAT;
         // Variant that the words require; its element is complete only after the last word.

@@ -27,6 +27,11 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
+/// `in_cells` for the fields of a single record: each holds its value directly.
+const DIRECTLY: bool = false;
+/// `in_cells` for a struct array or an object: each field is a cell array with a value per record.
+const IN_CELLS: bool = true;
+
 /// Converts the groups in a file written by Octave to values; returns the values from any other
 /// file unchanged.
 pub(crate) fn convert_hdf5_groups(
@@ -109,8 +114,8 @@ fn convert_group(
                 Form::Range => Value::Array(parts.range()?),
                 Form::Cell => Value::Cell(parts.cell()?),
                 Form::Sparse(_) => Value::Array(parts.sparse()?),
-                Form::ScalarStruct => Value::Struct(parts.records(false)?),
-                Form::StructArray => Value::Struct(parts.records(true)?),
+                Form::ScalarStruct => Value::Struct(parts.records(DIRECTLY)?),
+                Form::StructArray => Value::Struct(parts.records(IN_CELLS)?),
                 Form::Class => Value::Object(parts.object()?),
                 _ => unknown_value(type_name),
             }
@@ -228,7 +233,7 @@ impl<'v> GroupParts<'v> {
         };
         Ok(Object {
             class,
-            records: fields.records(true)?,
+            records: fields.records(IN_CELLS)?,
         })
     }
 

@@ -26,8 +26,12 @@ struct FittingLine {
 }
 
 impl Heading {
-    /// Finds names and units in the lines before the numbers. The names are in the nearest line
-    /// with a cell for each column, preferably not a comment; a line with units may come between.
+    /// Finds names and units in the lines before the numbers.
+    ///
+    /// 1. Candidates are the lines with a cell for each column, nearest first, comments last. If
+    ///    there are none, a nearest line with another number of cells is noted.
+    /// 2. If the nearest holds units, and the next candidate is above it: the next gives the names.
+    /// 3. Otherwise the nearest gives the names, with units in brackets.
     pub(super) fn find(above: &[NumberedLine], layout: Layout) -> Self {
         let mut heading = Heading {
             names: None,

@@ -32,7 +32,7 @@ pub(super) struct RowShape {
 
 impl Layout {
     /// Finds the separator and the decimal mark with which most lines are equally wide rows; in a
-    /// tie, the wider rows. Returns `None` if no line is a row.
+    /// tie the wider rows, then the first of [`candidates`]. Returns `None` if no line is a row.
     pub(super) fn recognise(
         text: &str,
         budget: &ReadingBudget,

@@ -14,6 +14,10 @@ use crate::variable_fault::matlab_fault::MatlabFault;
 const OPERATORS: &str = "+-*/^:.\\";
 /// Operators within brackets if no blank precedes them; the quotation mark transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
+/// `in_matrix` for a number that is not between square brackets.
+const ALONE: bool = false;
+/// `in_matrix` for a number between square brackets, where a blank may separate two elements.
+const IN_MATRIX: bool = true;
 
 /// Reads values, beginning at the scanner's position.
 pub(super) struct ValueReader<'r, 't, 'm> {
@@ -51,14 +55,15 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a value; `depth` is its nesting depth.
+    /// Reads a value, at nesting depth `depth`: a number, if there is one; else by the first
+    /// character a matrix, a cell array or a string; else a function call, or a copy of a variable.
     fn read_value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
             return Err(VariableFault::too_deep("").into());
         }
         self.scanner.pass_blanks()?;
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.read_complex(false)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(ALONE)? {
             let im = if im == 0.0 { None } else { Some(vec![im]) };
             return Ok(Value::Array(Array {
                 im,
@@ -90,9 +95,12 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a real number, or a complex number such as `1 - 2i`, at this position; `None`, without
-    /// moving, if there is no number. `in_matrix`: between square brackets, where a blank may
-    /// separate two elements.
+    /// Reads a real, imaginary or complex number at this position.
+    ///
+    /// 1. A number with its signs; `None`, without moving, if there is none.
+    /// 2. If it is real, and a sign follows that does not begin another element (`in_matrix`): the
+    ///    imaginary part, as in `1 - 2i`.
+    /// 3. Otherwise, or if no imaginary number follows, the number of step 1 alone.
     fn read_complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
         let before = self.scanner.clone();
         let Some(Number {
@@ -309,7 +317,7 @@ impl ValueReader<'_, '_, '_> {
     /// Reads an element between square brackets.
     fn read_matrix_element(&mut self) -> Result<Element, ValueError> {
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.read_complex(true)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(IN_MATRIX)? {
             return Ok(Element::Number { re, im });
         }
         match self.scanner.peek() {

@@ -115,8 +115,13 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// Reads a statement that does not assign function results; if no name begins it, it is skipped
-    /// with a note.
+    /// Reads a statement that does not assign function results. The first that applies:
+    ///
+    /// 1. name and equals sign: an assignment;
+    /// 2. no name, or a word that begins a block: skipped with a note;
+    /// 3. a word that ends a block: skipped;
+    /// 4. a name whose value is changed in part: the variable becomes opaque;
+    /// 5. any other name: skipped with a note.
     fn read_named_statement(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let path = self.scanner.read_path(self.budget)?;
         let behind = self.scanner.clone();

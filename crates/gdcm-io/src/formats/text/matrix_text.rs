@@ -140,8 +140,9 @@ impl Reading<'_> {
         self.take_other_line(number, line, has_row_names)
     }
 
-    /// Reads a line that is neither a name nor a row: a line with column names, a row with errors,
-    /// or a line to be skipped.
+    /// Reads a line that is neither a name nor a row: words where column names may follow are
+    /// column names; else a line with at least half numbers is a row with errors; else it is
+    /// skipped, with a note.
     fn take_other_line(
         &mut self,
         number: usize,

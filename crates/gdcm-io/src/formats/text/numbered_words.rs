@@ -14,6 +14,10 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const SAMPLE: usize = 200;
 /// Maximum number of distinct words numbered in a column; a column with more does not hold labels.
 const MOST_WORDS: usize = 500;
+/// Minimum number of columns with numbers: text with fewer is not a table of numbers.
+const FEWEST_NUMBER_COLUMNS: usize = 2;
+/// Minimum number of cells in a line: these columns, and one with words or clock times.
+const FEWEST_CELLS: usize = FEWEST_NUMBER_COLUMNS + 1;
 /// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
@@ -95,8 +99,8 @@ struct ClockSpan {
 }
 
 impl Numbering {
-    /// Finds the separator and what each column holds. Returns `None` unless at least two columns
-    /// hold numbers, and at least one holds words or clock times.
+    /// Finds the separator and what each column holds. Returns `None` unless at least
+    /// `FEWEST_NUMBER_COLUMNS` hold numbers, and at least one holds words or clock times.
     fn recognise(text: &str) -> Option<Self> {
         let sample: Vec<&str> = lines(text)
             .map(|(_, line)| line)
@@ -124,7 +128,7 @@ impl Numbering {
                 clock: None,
             });
         }
-        if number_columns < 2 || number_columns == width {
+        if number_columns < FEWEST_NUMBER_COLUMNS || number_columns == width {
             return None;
         }
         Some(Self {
@@ -134,7 +138,8 @@ impl Numbering {
         })
     }
 
-    /// Returns a row with its words and times replaced; a heading is returned unchanged.
+    /// Returns a row with its words and times replaced. A line whose numeric columns do not all
+    /// hold numbers is a heading, and is returned unchanged.
     fn line(&mut self, mut cells: Vec<String>) -> String {
         let is_row = cells
             .iter()
@@ -245,8 +250,8 @@ fn best_candidate(sample: &[&str]) -> Option<Candidate> {
         .max_by_key(|candidate| (candidate.lines, candidate.width))
 }
 
-/// Returns the most frequent line width for a separator; `None` unless it has at least three cells
-/// and more than half the lines have it.
+/// Returns the most frequent line width for a separator; `None` unless it has at least
+/// `FEWEST_CELLS` cells and more than half the lines have it.
 fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     let mut lines_by_width: BTreeMap<usize, usize> = BTreeMap::new();
     for line in sample {
@@ -257,7 +262,7 @@ fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     let (width, lines) = lines_by_width
         .into_iter()
         .max_by_key(|(width, lines)| (*lines, *width))?;
-    if width <= 2 || 2 * lines <= sample.len() {
+    if width < FEWEST_CELLS || 2 * lines <= sample.len() {
         return None;
     }
     Some(Candidate {

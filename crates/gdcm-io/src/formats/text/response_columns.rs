@@ -66,8 +66,8 @@ impl RecognisedResponse {
     /// are omitted; `omega` is the frequency of each row \[rad/s\].
     ///
     /// # Errors
-    /// [`VariableFault`] with the line if only one part of a complex number is missing, a part is
-    /// infinite, or the magnitude is too large.
+    /// [`VariableFault`] with the line if only one part of a complex number is missing or a part is
+    /// infinite (both [`LineFault::HalfNumber`]), or the magnitude is too large.
     pub(super) fn points(
         &self,
         table: &TextTable,

@@ -107,6 +107,11 @@ impl<'t> Recognition<'t> {
     }
 
     /// Returns the responses in the order of their first columns.
+    ///
+    /// 1. Group the columns by response; columns without a known quantity are unused.
+    /// 2. In each group: a column with standard deviations is unused.
+    /// 3. The two columns with the complex number; a group without them is unused, with a note.
+    /// 4. The coherence, if there is a column.
     pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
@@ -233,8 +238,13 @@ impl<'t> Recognition<'t> {
         groups
     }
 
-    /// Interprets a magnitude and a phase column; missing units are derived from the numbers if
-    /// possible.
+    /// Interprets a magnitude and a phase column.
+    ///
+    /// - Magnitude: in dB or a ratio by its unit; without a unit, in dB if it has negative levels,
+    ///   else the user is asked.
+    /// - Phase: in degrees or radians by its unit; else the user is asked.
+    ///
+    /// The interpretation is noted only if both units are known.
     fn read_polar(&mut self, columns: PolarColumns) -> PolarReading {
         let PolarColumns { magnitude, phase } = columns;
         let mut unsaid = Vec::new();
@@ -367,9 +377,9 @@ impl Group {
     }
 }
 
-/// Returns the index of the group to which a column belongs: the last group if the column has no
-/// label, otherwise the last group with the same label. A group that already has the quantity is
-/// not eligible; `None` if no group is.
+/// Returns the index of the group to which a column belongs, among the groups that do not have the
+/// quantity yet: first the last group, if the column has no label; else the last group with the
+/// same label; else `None`, and the column begins a group.
 fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
     // An error column's label names a quantity, not a channel, so the column joins the last group.
     let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;

@@ -74,7 +74,14 @@ impl<'m> Reading<'m> {
         })
     }
 
-    /// Adds a line as a row, or skips it.
+    /// Adds a line as a row, or skips it. The first that applies:
+    ///
+    /// 1. empty line: skipped;
+    /// 2. line with a comment mark: a row if its cells fit, else skipped;
+    /// 3. ruled line: skipped;
+    /// 4. before the first row: `take_line_before_rows`;
+    /// 5. repeated heading: skipped, with a note;
+    /// 6. anything else must be a row.
     ///
     /// # Errors
     /// [`VariableFault`] if a row has the wrong number of columns, or text follows the first row.
@@ -103,7 +110,9 @@ impl<'m> Reading<'m> {
         }
     }
 
-    /// Adds a line as the first row, or skips it.
+    /// Adds a line as the first row, or skips it: numbers with the layout's columns are a row, a
+    /// single number is skipped with a note, other numbers are a row with an error, and text is
+    /// skipped unless it is mostly numbers.
     fn take_line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         match self.layout.row_shape(line) {
             Some(shape) if self.layout.fits(shape) => self.take_row(number, line),

@@ -110,7 +110,9 @@ pub(super) fn is_delay(name: &str) -> bool {
     delay_meaning(name).is_some()
 }
 
-/// Returns what a field name means; `None` if it does not resemble a delay name.
+/// Returns what a field name means. First without the unit at its end: a delay name, with the unit
+/// of MATLAB if the name is spelled as in MATLAB, else with the unit in the name; else a name that
+/// resembles one, `Unclear`; else `None`.
 fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     let (stem, unit) = split_unit(name);
     let folded = folded_name(stem);
@@ -135,8 +137,8 @@ fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     Some(DelayMeaning { delayed, unit })
 }
 
-/// Splits a name into its front part and the unit at its end: `input_delay_ms`, `InputDelay (s)`,
-/// `inputDelayMs`.
+/// Splits a name into its front part and the unit at its end: a separate word (`input_delay_ms`,
+/// `InputDelay (s)`), or milliseconds without a mark between (`inputDelayMs`, `inputdelayms`).
 fn split_unit(name: &str) -> (&str, DelayUnit) {
     let trimmed = name.trim_end_matches(is_mark);
     if let Some((stem, last)) = trimmed.rsplit_once(is_mark) {

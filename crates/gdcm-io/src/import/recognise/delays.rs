@@ -26,8 +26,15 @@ pub(super) struct NotedTiming {
 
 /// Reads sample time and delays for a model with `outputs` outputs and `inputs` inputs.
 ///
+/// 1. A time unit other than seconds: error.
+/// 2. Sample time; continuous time without one.
+/// 3. Each nonzero delay field beside the matrices: input, output or response delays, in seconds
+///    (`DelayReading::add`). A nonzero delay field in an enclosing record: error.
+/// 4. Response delays are split into input and output delays, which are added to those of step 3.
+///
 /// # Errors
-/// The question to the user if a field may be a delay, but its signals or its unit are ambiguous:
+/// An invalid sample time, delays with another count, shape or range, or contradictory ones; and
+/// the question to the user if a field may be a delay, but its signals or its unit are ambiguous:
 /// no delay is silently ignored.
 pub(super) fn timing_of(
     record: &Record<'_>,
@@ -63,7 +70,7 @@ pub(super) fn timing_of(
 }
 
 /// Rejects delays given beside a measured response, which already contains all delays. Fields whose
-/// names only resemble delays are ignored.
+/// names only resemble delays are ignored: nothing is lost if they are delays.
 pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), RecognitionFault> {
     for field in record.delay_fields() {
         if field.meaning.delayed != Delayed::Unclear && field.is_nonzero() {
@@ -95,6 +102,8 @@ struct SplitDelays {
 }
 
 impl DelayReading {
+    /// Reads a delay field. Input and output delays may be given twice if equal, response delays
+    /// only once.
     fn add(&mut self, field: &DelayField<'_>) -> Result<(), RecognitionFault> {
         let name = field.name;
         match field.meaning.delayed {
@@ -238,6 +247,12 @@ impl DelayReading {
 
     /// Returns the factor that converts a field's delays to seconds. Notes the convention if the
     /// name contains no unit.
+    ///
+    /// - Name with a unit: that unit. Samples require a sample time.
+    /// - Name as in MATLAB, discrete time: samples, which must be whole numbers.
+    /// - Any other name without a unit, discrete time: ambiguous.
+    /// - Name without a unit, continuous time: seconds; outside objects, delays above
+    ///   `LONGEST_PLAIN_S` are ambiguous.
     fn seconds_per_unit(
         &mut self,
         field: &DelayField<'_>,

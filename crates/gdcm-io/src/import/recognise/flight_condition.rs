@@ -65,11 +65,11 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, Recogni
     })
 }
 
-/// Returns a quantity of the flight condition, given beside a model or in an enclosing record;
-/// `None` if it is not given.
+/// Returns a quantity of the flight condition, given beside a model or in an enclosing record,
+/// there each as a field or inside a struct; `None` if it is not given. No place has precedence.
 ///
 /// # Errors
-/// The reason if different values are given.
+/// The reason if different values are given, or a list's length differs from the number of models.
 fn quantity(
     record: &Record<'_>,
     names: &[&'static str],
@@ -95,7 +95,12 @@ fn quantity(
     Ok(known)
 }
 
-/// Returns the number in a field; if the field is a list, its entry for the model.
+/// Returns the number in a field: a single number applies to all models, and a list has an entry
+/// for each. `None` for an empty field, for a list beside a single model, and if the number is not
+/// finite.
+///
+/// # Errors
+/// The reason if a list beside several models has another length.
 fn number_beside(
     record: &Record<'_>,
     names: &[&str],
@@ -127,8 +132,8 @@ fn number_beside(
     Ok(Some(value))
 }
 
-/// Returns a quantity from a struct that holds the flight condition: `trim.airspeed_kt`,
-/// `condition.id`.
+/// Returns a quantity from the first struct in `CONDITION_STRUCTS` that holds it:
+/// `trim.airspeed_kt`, `condition.id`. The other fields in that struct are listed as unused.
 fn number_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, RecognitionFault> {
     for keys in CONDITION_STRUCTS {
         let Some(field) = record.find(keys) else {
@@ -188,7 +193,7 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
 
 /// Returns the origin of a model (role, trim offsets, identification method) from its record and
 /// the enclosing records. Without a role, objects of MATLAB's `id…` classes are identified models
-/// and all others physics models.
+/// and all others perturbed physics models.
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let role = match text_beside(record, "role") {
         Some(word) => RowRole::from_word(&word.to_lowercase()),

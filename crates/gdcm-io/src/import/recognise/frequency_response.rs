@@ -66,6 +66,7 @@ pub(super) fn response(
         valid_bands: None,
         estimate: Estimate::default(),
     };
+    // A measured response is never a physics model, whatever role the record gives.
     let origin = match origin_of(record) {
         Origin::Identified { method, order } => Origin::Identified { method, order },
         Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {
@@ -139,11 +140,11 @@ impl<'v> StoredResponse<'v> {
     }
 }
 
-/// Returns the coherence γ²; `None` if the record has none.
+/// Returns the coherence γ²: from a field that is certainly γ²; `None` if the record has none.
 ///
 /// # Errors
-/// The reason if the coherence and the response have different value counts, or a field may hold γ
-/// or γ².
+/// The reason if the coherence and the response have different value counts, a value is not finite,
+/// or the only field may hold γ or γ².
 fn coherence_of(
     record: &Record<'_>,
     stored: &StoredResponse<'_>,
@@ -183,7 +184,11 @@ struct ResponseLayout {
 
 impl ResponseLayout {
     /// Determines the layout for a response with `count` frequencies: the frequency is the last
-    /// index, as in MATLAB, or the first, as in NumPy. A single response may be a row or a column.
+    /// index, as in MATLAB, if that fits; else the first, as in NumPy. A single response may be a
+    /// row or a column.
+    ///
+    /// # Errors
+    /// The reason if none of these fits.
     fn new(shape: &[usize], count: usize) -> Result<Self, RecognitionFault> {
         match *shape {
             [outputs, inputs, last] if last == count => Ok(Self {

@@ -99,8 +99,12 @@ fn labels(
 }
 
 /// Returns the names or units in the first field with one of these keys, from the record or
-/// otherwise from its enclosing records; missing entries are empty strings. Returns `None` if no
-/// field has them.
+/// otherwise from its enclosing records; missing entries are empty strings. Fields with numbers,
+/// with empty strings only, and in an enclosing record those with another count are passed over.
+/// Returns `None` if no field has them.
+///
+/// # Errors
+/// As [`labels`].
 fn list_of_labels(
     record: &Record<'_>,
     keys: &[&str],
@@ -139,8 +143,12 @@ fn list_of_labels(
     Ok(None)
 }
 
-/// Returns the labels in a list of strings, or of objects with a name and a unit as in a dataset
-/// file; `None` for numbers.
+/// Returns the labels in a list of strings, or of channel objects with a name and a unit as in a
+/// dataset file; `None` for numbers.
+///
+/// # Errors
+/// The reason if the list mixes objects and other values, or an object has no name: a struct whose
+/// field names are the channels has no order.
 fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, RecognitionFault> {
     if let Some(texts) = texts_of(value) {
         return Ok(Some(texts));
@@ -203,7 +211,8 @@ fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
     }
 }
 
-/// Parses a label such as "P", "P [deg/s]" or "P (deg/s)".
+/// Parses a label such as "P", "P [deg/s]" or "P (deg/s)". Brackets with a direction, such as
+/// "(positive up)", belong to the name.
 pub(in crate::import) fn label_of(text: &str) -> ChannelLabel {
     let text = text.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {

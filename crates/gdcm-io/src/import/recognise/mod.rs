@@ -54,6 +54,11 @@ const NEVER_UNUSED: [&str; 5] = [
 
 /// Finds all models among the variables of a file. If the shape of an array is ambiguous,
 /// `pages_first` decides whether its first or its last index selects the model.
+///
+/// 1. Search the variables together, and inside each (`search`).
+/// 2. Add the models whose matrices have a common suffix; they come first.
+/// 3. Without any result, only the ignored variables are listed; otherwise only the unused ones,
+///    without those of step 2, and elements of an array only once.
 pub(crate) fn recognise(
     variables: &[Variable],
     pages_first: bool,
@@ -83,7 +88,8 @@ pub(crate) fn recognise(
     Ok(found)
 }
 
-/// Reads the models that the fields of a record form; `None` if they do not form a model.
+/// Reads the models that the fields of a record form: state-space models, else a measured response,
+/// else transfer functions; `None` if they do not form a model.
 fn read_models(
     record: &Record<'_>,
     variable: &str,

@@ -61,7 +61,12 @@ struct GivenFrequencies<'v> {
 }
 
 impl<'v> GivenFrequencies<'v> {
-    /// Finds the field; its name decides the unit, unless a unit is given.
+    /// Finds the field, and whether it is in Hz:
+    ///
+    /// 1. a name for rad/s: Hz only if the given unit is Hz or a multiple;
+    /// 2. else a name without a unit: likewise; without a given unit, rad/s in MATLAB and
+    ///    python-control, and an error elsewhere;
+    /// 3. else a name for Hz: Hz, or the given multiple.
     ///
     /// # Errors
     /// The reason if there are no frequencies, or neither their name nor a unit tells whether they

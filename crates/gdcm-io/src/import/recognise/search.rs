@@ -7,7 +7,11 @@
 //!          recognise it, or each page of it                     (try_pages)
 //!          if it is not recognised: descend into its fields
 //!      cell: descend into each entry
-//! 3  list the unused fields beside what was found; without any result, list all variables
+//!      object that its format reader could not read: a fault
+//!      deeper than DEEPEST, or after MOST_FOUND results: a fault
+//! 3  list the unused fields beside what was found
+//! 4  list what was not recognised: without any result, all variables;
+//!      otherwise the arrays, unless step 1 was successful
 //! ```
 //!
 //! The functions that search return whether they found anything, so that a field that holds a model
@@ -92,17 +96,18 @@ pub(crate) fn search<T>(
     let whole = Rc::new(Record::from_variables(variables));
     search.try_record(&whole, "")?;
     let is_file_no_record = search.found.has_nothing();
-    // Variables in which nothing was found.
-    let mut empty = BTreeSet::new();
+    let mut without_results = BTreeSet::new();
     for variable in variables {
         if !search.descend(&variable.name, &variable.value, DEEPEST, &whole)? {
-            empty.insert(variable.name.as_str());
+            without_results.insert(variable.name.as_str());
         }
     }
     let mut found = search.found;
-    found.unused.splice(0..0, unused_among(&whole, &empty));
-    // Unless the variables together form a record, its arrays were not recognised even if other
-    // variables were.
+    found
+        .unused
+        .splice(0..0, unused_among(&whole, &without_results));
+    // Unless the variables together form a record, the file's arrays were not recognised even if
+    // other variables were.
     let is_nothing_found = found.has_nothing();
     for variable in variables {
         let is_array = matches!(variable.value, Value::Array(_));
@@ -116,11 +121,12 @@ pub(crate) fn search<T>(
     Ok(found)
 }
 
-/// Returns a record's unused fields. A field in which something was found is not unused; `empty`
-/// lists the fields in which nothing was found. Paths into structs are always kept.
-fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
+/// Returns a record's unused fields. A field in which something was found is not unused;
+/// `without_results` lists the fields in which nothing was found. Paths into structs are always
+/// kept.
+fn unused_among(record: &Record<'_>, without_results: &BTreeSet<&str>) -> Vec<String> {
     let mut unused = record.unused();
-    unused.retain(|name| empty.contains(name.as_str()) || name.contains('.'));
+    unused.retain(|name| without_results.contains(name.as_str()) || name.contains('.'));
     unused
 }
 
@@ -214,17 +220,16 @@ impl<T> Search<'_, T> {
                 continue;
             }
             let inner = Rc::new(Record::from_struct(records, index).inside(outer));
-            // Fields in which nothing was found.
-            let mut empty = BTreeSet::new();
+            let mut without_results = BTreeSet::new();
             for field in inner.fields() {
                 let path = format!("{name}.{}", field.name);
                 if !self.descend(&path, field.value, levels - 1, &inner)? {
-                    empty.insert(field.name);
+                    without_results.insert(field.name);
                 }
             }
-            if empty.len() < inner.fields().count() {
+            if without_results.len() < inner.fields().count() {
                 is_any_found = true;
-                self.note_unused(&name, &unused_among(&inner, &empty))?;
+                self.note_unused(&name, &unused_among(&inner, &without_results))?;
             }
         }
         Ok(is_any_found)

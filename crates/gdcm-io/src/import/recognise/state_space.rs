@@ -59,8 +59,9 @@ pub(super) fn is_state_space(record: &Record<'_>) -> bool {
 }
 
 /// Reads the model that the matrices in `record` form, or each model in an array: `A(:,:,k)` in
-/// MATLAB, `A[k,:,:]` in NumPy. If the shapes are ambiguous, `pages_first` decides whether the
-/// first or the last index selects the model.
+/// MATLAB, `A[k,:,:]` in NumPy. The first index selects the model if only then the shapes of A, B
+/// and C fit, the last index if they do not fit with the first, and `pages_first` decides if both
+/// fit.
 pub(super) fn state_spaces(
     record: &Record<'_>,
     variable: &str,
@@ -154,7 +155,13 @@ fn required_matrix(
     }
 }
 
-/// Reads a model. D is zero if it is missing or a single zero; E is eliminated.
+/// Reads a model.
+///
+/// 1. A, B and C, with at most `MOST_STATES` rows and columns.
+/// 2. D; zero if it is missing or a single zero.
+/// 3. E is eliminated, unless it is missing or empty.
+/// 4. The shapes of A, B, C and D must fit.
+/// 5. Delays and sample time, labels, flight condition and origin, from the fields beside them.
 fn state_space(
     record: &Record<'_>,
     variable: &str,
@@ -280,6 +287,9 @@ fn check_shape(
 const WORST_CONDITION: f64 = 1e12;
 
 /// Computes `E^-1 A` and `E^-1 B` for the descriptor model `E x' = A x + B u` (M2a).
+///
+/// # Errors
+/// The reason if E has another shape than A, or its condition number exceeds `WORST_CONDITION`.
 fn solve_descriptor(
     e: DMatrix<f64>,
     a: DMatrix<f64>,

@@ -1,7 +1,15 @@
 //! Models whose matrices have a common suffix: `A_nom, B_nom, ...`, `A1, B1, ...`.
 //!
 //! The variables `A_nom, B_nom, C_nom, InputDelay_nom, labels` become the record `A, B, C,
-//! InputDelay, labels`, which is read like any other.
+//! InputDelay, labels`, which is read like any other:
+//!
+//! ```text
+//! 1  suffixes: A_nom with a B_nom beside it                       (suffixed_models)
+//! 2  for each suffix: the matrices, without it                    (matrices_with_suffix)
+//!      A, B and C are not all there: no model
+//! 3  the other variables; its own delays, without the suffix      (fields_beside)
+//! 4  read the record, and list the variables that it used
+//! ```
 
 use std::collections::{BTreeSet, HashMap};
 

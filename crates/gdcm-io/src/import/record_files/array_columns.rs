@@ -14,8 +14,12 @@ use crate::import::recognise::record::Record;
 
 /// Minimum number of samples in a record with time stamps or a sample time.
 pub(super) const FEWEST_TIMED: usize = 20;
-/// Minimum number of samples in a record with neither time stamps nor a sample time.
+/// Minimum number of samples in a record with neither time stamps nor a sample time: a shorter
+/// matrix may be any table of numbers.
 const FEWEST: usize = 50;
+/// First rank ([`time_name_rank`]) that only contains the word "time"; lower ranks denote time
+/// itself.
+const UNSURE_TIME_RANK: u8 = 2;
 const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fs",
     "sample_rate",
@@ -32,9 +36,14 @@ struct RecordLength {
     is_timed: bool,
 }
 
-/// Returns the record formed by the arrays of equal length. Their length is that of the time
-/// vector, otherwise the length with the most columns. Returns `None` if there are too few samples
-/// or columns, and for a model.
+/// Returns the record formed by the arrays of equal length.
+///
+/// 1. Fields `A`, `B` and `C`: a model, `None`.
+/// 2. The length is that of the time vector, otherwise the length with the most columns. With
+///    fewer samples than `FEWEST_TIMED`, or `FEWEST` if times are unknown: `None`.
+/// 3. The arrays with this length become columns; the others are listed in a note. Fewer than two
+///    columns: `None`.
+/// 4. Columns of a single matrix without labels are numbered.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
         .iter()
@@ -120,12 +129,12 @@ impl LongArrays {
     }
 }
 
-/// Returns the longest time vector's length. If none is long enough, returns the length with the
-/// most columns; in a tie, the greater length.
+/// Returns the longest time vector's length if it has at least `FEWEST_TIMED` samples; otherwise
+/// the length with the most columns, in a tie the greater length. `None` without any samples.
 fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     let mut timed = None;
     for field in record.fields() {
-        if time_name_rank(field.name).is_some_and(|rank| rank < 2)
+        if time_name_rank(field.name).is_some_and(|rank| rank < UNSURE_TIME_RANK)
             && let Some(samples) = samples_of(field.value, None)
             && samples.columns.len() == 1
         {
@@ -142,6 +151,7 @@ fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     }
     let mut columns_by_length: BTreeMap<usize, usize> = BTreeMap::new();
     for field in record.fields() {
+        // Not single numbers, nor square matrices, in which time may run along either dimension.
         if let Some(samples) = samples_of(field.value, None)
             && samples.columns.len() < samples.rows
         {

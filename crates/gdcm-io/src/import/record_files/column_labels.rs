@@ -76,9 +76,13 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels for a field with `count` columns in lists named after the field
-    /// (`u_names`). Without these, a matrix of inputs or outputs takes the lists for all inputs or
-    /// all outputs, and any other matrix the record's lists. Lists with another length are ignored.
+    /// Finds the labels for a field with `count` columns, names and units separately:
+    ///
+    /// 1. in lists named after the field (`u_names`, `u_units`);
+    /// 2. else, for inputs or outputs, in the lists for all inputs or all outputs;
+    /// 3. else, for any other matrix, in the record's lists; a vector has none but its own.
+    ///
+    /// Lists with another length, and lists with an empty name, are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
         let side = side_of(&name, count);
@@ -121,7 +125,8 @@ impl ColumnLabels {
         self.names.is_some()
     }
 
-    /// Creates a field's columns and labels them.
+    /// Creates a field's columns and labels them. A unit from a list of units has precedence over
+    /// the unit in a name, such as "P [deg/s]".
     pub(super) fn label(self, field: &str, values: Vec<Vec<f64>>) -> Vec<RecordColumn> {
         let mut columns = named_columns(field, values);
         for (index, column) in columns.iter_mut().enumerate() {

@@ -1,9 +1,11 @@
 //! Data objects from the identification tools in MATLAB and GNU Octave.
 //!
 //! An `iddata` object holds `OutputData` and `InputData` (a matrix, or a cell for each experiment),
-//! `Ts` or `SamplingInstants`, and names and units; the field names may end in an underscore.
-//! Octave's control package uses the names `y`, `u`, `tsam`, `outname` and `inname`. A struct with
-//! the same fields is also accepted.
+//! `Ts` or `SamplingInstants`, and names and units; [`Record::get`] also finds the names with an
+//! underscore at their end (`Ts_`), as saved MATLAB objects have them. Octave's control package
+//! uses the names `y`, `u`, `tsam`, `outname` and `inname`. A struct with `OutputData` and
+//! `InputData` is read like an object; one with `y` and `u` is not, because other files use these
+//! letters for plain arrays (`array_columns.rs`).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_sysid::records::RecordColumn;
@@ -40,16 +42,20 @@ const OUTPUT_FIELDS: SideFields = SideFields {
     letter: 'y',
 };
 
-/// Returns whether the fields are identification data.
+/// Returns whether the fields are identification data: an object from either program, or a struct
+/// with MATLAB's names for outputs and inputs.
 pub(super) fn is_iddata(record: &Record<'_>) -> bool {
     let has_both = record.get(&["OutputData"]).is_some() && record.get(&["InputData"]).is_some();
     record.class == Some("iddata") || has_both
 }
 
-/// Returns a record for each experiment.
+/// Returns a record for each experiment, named after the variable and, if there are several, after
+/// the experiment.
 ///
 /// # Errors
-/// The reason if the data are in the frequency domain, or the outputs cannot be read.
+/// The reason if the data are in the frequency domain, there are no outputs, or the inputs and
+/// outputs in an experiment have different sample counts. The first faulty experiment ends the
+/// reading.
 pub(super) fn experiments(
     record: &Record<'_>,
     variable: &str,
@@ -66,10 +72,10 @@ pub(super) fn experiments(
         .get(&["ExperimentName", "expname"])
         .and_then(texts_of)
         .unwrap_or_default();
-    let parts = parts_of(outputs);
-    let count = parts.len();
+    let outputs = experiment_values(outputs);
+    let count = outputs.len();
     let mut records = Vec::with_capacity(count);
-    for (index, output) in parts.into_iter().enumerate() {
+    for (index, output) in outputs.into_iter().enumerate() {
         let name = match names.get(index) {
             _ if count == 1 => variable.to_owned(),
             Some(name) if !name.is_empty() => format!("{variable}, {name}"),
@@ -81,17 +87,23 @@ pub(super) fn experiments(
 }
 
 /// Reads the experiment at `index`; `output` holds its outputs.
+///
+/// 1. The outputs' sample count decides which dimension of the other matrices is time.
+/// 2. The sampling instants are the first column. Instants that do not fit the outputs are ignored.
+/// 3. Input and output columns follow. Inputs that cannot be read are left out.
+/// 4. Columns with another sample count: error.
+/// 5. A positive `Ts` is the sample time.
 fn experiment(
     record: &Record<'_>,
     output: &Value,
     index: usize,
     variable: String,
 ) -> Result<Columns, RecognitionFault> {
-    let rows = samples_of(output, None).map(|samples| samples.rows);
+    let sample_count = samples_of(output, None).map(|samples| samples.rows);
     let mut columns = Vec::new();
-    if let Some(instants) = part_of(record, &["SamplingInstants"], index)
-        && let Some(stamps) = samples_of(instants, rows)
-        && Some(stamps.rows) == rows
+    if let Some(instants) = value_for_experiment(record, &["SamplingInstants"], index)
+        && let Some(stamps) = samples_of(instants, sample_count)
+        && Some(stamps.rows) == sample_count
         && stamps.columns.len() == 1
     {
         let unit = record.get(&["TimeUnit"]).and_then(first_text_of);
@@ -100,27 +112,28 @@ fn experiment(
             columns.push(column);
         }
     }
-    columns.extend(side_columns(record, &INPUT_FIELDS, index, rows));
-    columns.extend(side_columns(record, &OUTPUT_FIELDS, index, rows));
+    columns.extend(side_columns(record, &INPUT_FIELDS, index, sample_count));
+    columns.extend(side_columns(record, &OUTPUT_FIELDS, index, sample_count));
     if columns
         .iter()
-        .any(|column| Some(column.values.len()) != rows)
+        .any(|column| Some(column.values.len()) != sample_count)
     {
         return Err(RecognitionFault::SampleCounts);
     }
-    let step = part_of(record, &["Ts", "tsam"], index).and_then(first_number_of);
+    let step = value_for_experiment(record, &["Ts", "tsam"], index).and_then(first_number_of);
     Ok(Columns {
         sample_time_s: step.filter(|step| *step > 0.0),
         ..Columns::new(variable, columns)
     })
 }
 
-/// Returns the input or output columns in the experiment at `index`.
+/// Returns the input or output columns in the experiment at `index`; none if they cannot be read.
+/// Time runs along the dimension with length `sample_count`, otherwise along the longer one.
 fn side_columns(
     record: &Record<'_>,
     fields: &SideFields,
     index: usize,
-    rows: Option<usize>,
+    sample_count: Option<usize>,
 ) -> Vec<RecordColumn> {
     let names = record
         .get(&fields.names)
@@ -130,8 +143,8 @@ fn side_columns(
         .get(&fields.units)
         .and_then(texts_of)
         .unwrap_or_default();
-    let Some(samples) =
-        part_of(record, &fields.data, index).and_then(|value| samples_of(value, rows))
+    let Some(samples) = value_for_experiment(record, &fields.data, index)
+        .and_then(|value| samples_of(value, sample_count))
     else {
         return Vec::new();
     };
@@ -158,7 +171,7 @@ fn nonempty_text(texts: &[String], at: usize) -> Option<String> {
 }
 
 /// Returns each experiment's value: the cells in a cell array, or the value itself.
-fn parts_of(value: &Value) -> Vec<&Value> {
+fn experiment_values(value: &Value) -> Vec<&Value> {
     match value {
         Value::Cell(cell) => cell.values.iter().collect(),
         other => vec![other],
@@ -166,7 +179,11 @@ fn parts_of(value: &Value) -> Vec<&Value> {
 }
 
 /// Returns the value for the experiment at `index`; a single value applies to all experiments.
-fn part_of<'v>(record: &Record<'v>, names: &[&str], index: usize) -> Option<&'v Value> {
+fn value_for_experiment<'v>(
+    record: &Record<'v>,
+    names: &[&str],
+    index: usize,
+) -> Option<&'v Value> {
     match record.get(names)? {
         Value::Cell(cell) => cell.values.get(index),
         other => Some(other),

@@ -166,7 +166,8 @@ impl FoundRecords {
         RecordTable::of_topics_called(&self.tables, variable?)
     }
 
-    /// Adds the records in the contents of a file.
+    /// Adds the records in the contents of a file. Those in an archive are found file by file, and
+    /// among its arrays; datasets and models are ignored.
     fn add_file(
         &mut self,
         file: ImportedFile<'_>,
@@ -301,7 +302,9 @@ pub(crate) fn search_records(
     search(variables, budget, &read_columns)
 }
 
-/// Reads the flight records that the fields of a record form; `None` if they form none.
+/// Reads the flight records that the fields of a record form: identification data, else a timetable
+/// or table, else Simulink's structure with time, else arrays of equal length; `None` if they form
+/// none.
 fn read_columns(
     record: &Record<'_>,
     variable: &str,

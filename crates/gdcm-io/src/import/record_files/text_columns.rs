@@ -9,8 +9,18 @@ use crate::formats::text::sections::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads a text table's columns. If the text is not a single table, each table that is long enough
-/// for a record becomes a separate entry.
+/// Maximum number of columns whose first line may be data although it reads 1, 2, …
+const FEW_COLUMNS: usize = 2;
+
+/// Reads the columns of the table, or the tables, in a text:
+///
+/// 1. the whole text as a single table;
+/// 2. else each section of the text ([`sections`]) as a table. Sections that are no tables or are
+///    too short for a record are skipped.
+///
+/// # Errors
+/// An exceeded limit at once. If neither way yields a table, the fault of the whole text, which
+/// describes what the user wrote.
 pub(super) fn text_columns(
     text: &str,
     budget: &ReadingBudget<'_>,
@@ -20,14 +30,14 @@ pub(super) fn text_columns(
         Err(fault) if is_of_the_text(&fault) => fault,
         Err(fault) => return Err(fault),
     };
-    let parts = sections(text);
-    let count = parts.len();
+    let sections = sections(text);
+    let count = sections.len();
     if count <= 1 {
         return Err(first_fault);
     }
     let mut found = Vec::new();
-    for (index, (line, part)) in parts.into_iter().enumerate() {
-        let mut columns = match whole_text_columns(part, budget) {
+    for (index, (line, section)) in sections.into_iter().enumerate() {
+        let mut columns = match whole_text_columns(section, budget) {
             Ok(columns) => columns,
             Err(fault) if fault.is_of_the_budget() => return Err(fault),
             Err(_) => continue,
@@ -60,8 +70,7 @@ fn is_of_the_text(fault: &VariableFault) -> bool {
     )
 }
 
-/// Reads a text as a single table; if necessary, words and clock times are first replaced by
-/// numbers.
+/// Reads a text as a single table: as it is, else with words and clock times replaced by numbers.
 fn whole_text_columns(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let first_fault = match read_table(text, budget) {
         Ok(table) => return Ok(table_columns(table)),
@@ -113,7 +122,7 @@ fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<ReadingNote>) {
         .iter()
         .enumerate()
         .all(|(index, values)| values.first() == Some(&(index as f64 + 1.0)));
-    if !is_numbering || columns.len() <= 2 {
+    if !is_numbering || columns.len() <= FEW_COLUMNS {
         return;
     }
     for values in columns {

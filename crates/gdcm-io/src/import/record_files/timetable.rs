@@ -26,6 +26,8 @@ pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<C
     }
 }
 
+/// Reads a timetable. Row times whose count differs from the samples are left out: the record then
+/// has neither time nor sample time.
 fn read_timetable(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let inner = inner_record(record.get(&["any"])?)?;
     let names = texts_of(inner.get(&["varNames"])?)?;
@@ -120,6 +122,8 @@ enum RowTimes {
     Step(f64),
 }
 
+/// Reads the row times: a `duration`; else a `datetime`; else a constant step. `None` for any other
+/// value.
 fn row_times(value: &Value) -> Option<RowTimes> {
     if let Some(millis) = millis_of(value) {
         return Some(RowTimes::Stamps {
@@ -143,7 +147,8 @@ fn row_times(value: &Value) -> Option<RowTimes> {
     regular_step(&record).map(RowTimes::Step)
 }
 
-/// Returns the constant sample time \[s\], from the sample rate \[Hz\] or the step.
+/// Returns the constant sample time \[s\]: from the step, unless the object is specified by its
+/// rate; else from the sample rate \[Hz\].
 fn regular_step(record: &Record<'_>) -> Option<f64> {
     let is_rate_given = match record.get(&["specifiedAsRate"]).and_then(first_number_of) {
         Some(is_rate) => is_rate != 0.0,

@@ -74,8 +74,14 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Returns the objects to which a reference points; objects that are nested too deeply or
-    /// cannot be decoded become opaque.
+    /// Returns the objects to which a reference points:
+    ///
+    /// 1. a single `string` object: its strings, or opaque if their packing is unknown;
+    /// 2. an object that is already being assembled, and thus contains itself: opaque;
+    /// 3. else the records of all objects; opaque if they are nested too deeply or damaged.
+    ///
+    /// # Errors
+    /// Any other fault, such as an exceeded limit.
     pub(super) fn resolve(
         &mut self,
         reference: &Reference,
@@ -185,7 +191,8 @@ impl<'s> Assembly<'s> {
     }
 
     /// Returns an object's saved properties, and the class defaults for the properties that are not
-    /// saved.
+    /// saved; only the saved ones if the class saves another value (`CREATED`), and none for a
+    /// deleted object (number 0).
     fn properties(
         &mut self,
         object: u32,

@@ -24,6 +24,14 @@ use super::printed_lines::indented;
 use super::terminal::{self, caution, caution_for, error, print};
 
 /// Assembles a dataset from the models in files and folders.
+///
+/// 1. Checks declarations and output files: the dataset and, unless rules are given, a file for the
+///    proposed rules.
+/// 2. Reads the models, applies the rules, and prints a table of the models, and the cautions.
+/// 3. Writes the proposed rules, and the dataset if the rules are complete.
+///
+/// # Errors
+/// An option or a file is wrong. The rules are incomplete: the missing items are printed first.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     check_declared_once(arguments)?;
     let given_rules = arguments.rules.as_deref();
@@ -78,7 +86,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 }
 
 /// Reads the models, and applies the rules from a file (proposed rules if none is given) together
-/// with the declarations on the command line.
+/// with the declarations on the command line, which override them: column headings, with which the
+/// files are read, sample time, units, factors and signs.
 pub(super) fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
     let given = match &arguments.rules {
         Some(path) => Some(rules_of_file(path)?),

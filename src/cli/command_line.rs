@@ -51,7 +51,8 @@ pub(super) fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) 
     joined
 }
 
-/// Returns whether an argument is a word accepted by an option with a variable number of values.
+/// Returns whether an argument is a word accepted by an option with a variable number of values:
+/// the word for no value of a range, or one of the choices that a bare option also allows.
 fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
     let Some(setting) = SETTINGS.iter().find(|setting| option == setting.option) else {
         return false;

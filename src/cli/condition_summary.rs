@@ -19,7 +19,7 @@ use super::printed_lines::{detail, detail_list, fixed_digits, indented, line};
 use super::schedule_summary::shown_pairs;
 
 /// Returns the section on a condition: representatives, rejected models, on-axis and constrained
-/// responses, and unmatched responses.
+/// responses, channels, and unmatched responses; without a result, the reason.
 pub(super) fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
     let title = format!(
@@ -154,7 +154,8 @@ fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String
     headings
 }
 
-/// Returns all channels' gains, and their delays or leads.
+/// Returns all channels' gains, and their delays or leads: first, with leads, as a table; else as
+/// lists, without the delays that round to zero.
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
     let correction = &result.correction;

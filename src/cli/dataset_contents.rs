@@ -13,8 +13,8 @@ use gdcm_words::Table;
 use super::printed_lines::{caution_line, indented, line};
 use super::terminal::keep_caution;
 
-/// Returns a dataset's contents: its header, conditions, timings, records and cautions, which are
-/// also added to the JSON object.
+/// Returns a dataset's contents: its header, conditions, timings, records and cautions. The
+/// cautions are also added to the JSON object.
 pub(super) fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
     let band = format!(

@@ -22,7 +22,8 @@ use super::study_analysis::{ErrorBars, StudyAnalysis, analyze_study};
 use super::study_options::CommandStudy;
 use super::terminal::{note, print};
 
-/// Analyses a study, writes the requested files, and prints their contents and cautions.
+/// Analyses a study, writes the requested files, and prints their contents and cautions: with
+/// `--folder` any formats under names that the program chooses, with `--out` a single format.
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let names = arguments.formats.iter().map(String::as_str);
     let (formats, has_checksums) = ExportSet::formats_named(names);

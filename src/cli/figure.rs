@@ -30,6 +30,11 @@ use super::study_options::CommandStudy;
 use super::terminal::print;
 
 /// Writes a figure to a file, and prints its path.
+///
+/// 1. The study; the format by the file's extension; whether the file may be written; the request.
+///    All of these can fail before the analysis, which takes long.
+/// 2. The analysis, with error bars if they are requested or the figure cannot do without them.
+/// 3. The figure, and the file.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let CommandStudy { study, outputs, .. } =
         CommandStudy::open(&arguments.study, arguments.force)?;
@@ -73,10 +78,12 @@ impl FigurePlace {
     }
 }
 
-/// Draws a requested figure from an analysed study.
+/// Draws a requested figure from an analysed study: first computes the results that only this
+/// figure needs (requirements, couplings, physics parameters), then draws it for all conditions or
+/// for its condition.
 ///
 /// # Errors
-/// There is nothing to draw, or the work was stopped.
+/// There is nothing to draw, the condition has no result, or the work was stopped.
 pub(super) fn drawn_figure(
     place: FigurePlace,
     analysed: &mut StudyAnalysis,
@@ -159,7 +166,11 @@ fn assessed_physics(
     }
 }
 
-/// Draws a condition's figure from the same curves as the window.
+/// Draws a condition's figure from the same curves as the window; `None` if the study does not have
+/// the condition, its curves or the figure's data.
+///
+/// # Errors
+/// The condition has no result, or the work was stopped.
 fn figure_of_condition(
     request: &FigureRequest,
     analysis: &Analysis,
@@ -197,7 +208,8 @@ fn figure_of_condition(
     Ok(request.figure(Some(analysis), Some(&source)))
 }
 
-/// Builds the figure request from the command line.
+/// Builds the figure request from the command line. Without `--pair`, the responses are the
+/// constrained ones in the net-gain figure, else those in the objective (on-axis).
 fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRequest, Failure> {
     let dataset = &study.dataset;
     let pairs = match &arguments.pair {
@@ -255,6 +267,8 @@ fn chosen_pairs(dataset: &Dataset, choice: &PairChoice) -> Result<Vec<Pair>, Fai
     })
 }
 
+/// Returns the channels given by `--channel`: all, the inputs, the outputs, or the named ones in
+/// their order.
 fn chosen_channels(dataset: &Dataset, choice: Option<&str>) -> Result<Vec<Channel>, Failure> {
     let mut channels = all_channels(dataset);
     match choice {
@@ -291,13 +305,16 @@ fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
 }
 
 /// Returns the figure's condition; `None` for a figure about all conditions.
+///
+/// # Errors
+/// The figure is of one condition, and none or an unknown one is given.
 fn figure_condition(
     study: &Study,
     arguments: &FigureArguments,
 ) -> Result<Option<ConditionId>, Failure> {
     // Couplings concern all conditions; the poles shown beside them belong to a single condition.
-    let is_requested = arguments.view == FigureKind::Couplings && arguments.condition.is_some();
-    if !arguments.view.is_of_condition() && !is_requested {
+    let adds_poles = arguments.view == FigureKind::Couplings && arguments.condition.is_some();
+    if !arguments.view.is_of_condition() && !adds_poles {
         return Ok(None);
     }
     let Some(id) = arguments.condition else {

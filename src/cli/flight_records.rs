@@ -1,12 +1,18 @@
 //! Flight records read for identification.
 //!
 //! ```text
-//! 1  read the files                                          (found_records)
+//! 1  read the files; an error without any record             (found_records)
 //! 2  join the topics of logs, cut the requested parts
-//! 3  assign the columns of each record to channels           (RecordLayouts)
-//! 4  repeat step 3 if a unit became known only from a later record
-//! 5  leave out records with the same samples
+//! 3  assign the columns of each record to channels; leave out parts without samples
+//!                                                            (RecordLayouts)
+//! 4  an error if a requested part has samples in no record   (check_parts)
+//! 5  repeat step 3 if a unit became known only from a later record
+//! 6  leave out records with the same samples as another one
+//! 7  an error if the columns of a remaining record are unclear
 //! ```
+//!
+//! Topics are tables of the same log, each with some of the channels and time stamps of its own;
+//! joining makes one record of them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -62,8 +68,12 @@ pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> 
     }
 }
 
-/// Reads the records and assigns their columns to channels. Assumptions and faults are reported on
-/// standard error. Channels without a unit take the unit stated by a record.
+/// Reads the records and assigns their columns to channels, by the steps above. Assumptions and
+/// faults are reported on standard error. Channels without a unit take the unit stated by a record.
+///
+/// # Errors
+/// The files contain no record; a part names an unknown record or has no samples; the columns of a
+/// record are unclear.
 pub(super) fn laid_out_records(
     arguments: &RecordArguments,
     channels: &mut RecordChannels,
@@ -153,8 +163,9 @@ impl RecordLayouts<'_> {
         (record, notes)
     }
 
-    /// Assigns all records' columns, and reports notes, cautions and problems. Channels without a
-    /// unit take the unit stated by a record.
+    /// Assigns all records' columns, and reports notes (for a log, first those of its format),
+    /// cautions and problems. Channels without a unit take the unit stated by a record. Parts
+    /// without samples are omitted.
     fn lay_out_all(
         &mut self,
         tables: Vec<RecordTable>,
@@ -184,7 +195,8 @@ impl RecordLayouts<'_> {
     }
 
     /// Repeats the assignment for the usable records with the final units: the records before the
-    /// first that states units were assigned without them.
+    /// first that states units were assigned without them. Only new problems are reported; a record
+    /// with problems keeps them.
     fn lay_out_again(
         &self,
         records: Vec<LaidOutRecord>,

@@ -6,8 +6,12 @@ use super::failure::Failure;
 use super::option_values::record_part;
 use super::record_parts::{WholeRecord, is_called, is_part};
 
-/// Holds out the requested records or parts; `wholes` are the records from which parts were cut.
-/// Without a request, the records whose names mark them as validation are held out.
+/// Holds out the requested records or parts; `wholes` are the records from which parts were cut. A
+/// name that has the form of a part (`A:B`) holds out the part, and any name also the records that
+/// it identifies. Without a request, the records whose names mark them as validation are held out.
+///
+/// # Errors
+/// A name holds out no record.
 pub(super) fn hold_out(
     names: &[String],
     records: &mut [LaidOutRecord],

@@ -1,4 +1,6 @@
-//! Identifying models from a condition's flight records.
+//! Identification of models from a condition's flight records: the task, its cautions with the
+//! options that remove their causes, and the texts about its result. `identify` creates the tasks;
+//! `identifications` and `plan` run them.
 
 use std::path::{Path, PathBuf};
 
@@ -24,6 +26,8 @@ use super::progress::ProgressReceiver;
 use super::record_table::record_table;
 use crate::executor::Pool;
 
+/// Models that the file contains in addition to the bundle: the refined and the unrefined one.
+const REFINED_AND_UNREFINED: usize = 2;
 /// File name for the identified models.
 pub(super) const IDENTIFIED_FILE: &str = "identified.json";
 
@@ -97,7 +101,8 @@ impl IdentificationTask {
     }
 
     /// Returns a caution if a channel in the measured responses lags behind the condition's nominal
-    /// physics model; it names the option that removes the delay.
+    /// physics model; it names the option that removes the delay, which adds the delay that is
+    /// already removed.
     fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;
@@ -117,7 +122,9 @@ impl IdentificationTask {
         })
     }
 
-    /// Appends the options that solve the problem to a caution's note.
+    /// Appends the options that solve the problem to a caution's note. Only records that contradict
+    /// each other have such options, for each record with an identified fault: a delay of a
+    /// channel, or a factor other than 1.
     fn with_remedy(&self, mut note: CautionNote, caution: &IdentificationCaution) -> CautionNote {
         let IdentificationCaution::Contradiction { records, .. } = caution else {
             return note;
@@ -186,7 +193,7 @@ impl IdentificationTask {
             "{}{}: {}; order {}, J per degree of freedom {:.2}{held_out}\n",
             prefix(self.condition),
             sanitized_path(file),
-            counted(2 + found.bundle.len(), "model"),
+            counted(REFINED_AND_UNREFINED + found.bundle.len(), "model"),
             found.refined.order().unwrap_or_default(),
             found.cost,
         )

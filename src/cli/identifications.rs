@@ -1,5 +1,8 @@
 //! Runs the identifications for `gdcm identify` and writes their results: a file for each, and the
 //! dataset that receives the models.
+//!
+//! `gdcm identify` calls [`Identifications::run`] and [`Identifications::finish`]; the library
+//! call, which writes nothing, only [`Identifications::describe`].
 
 use std::mem::take;
 use std::path::{Path, PathBuf};
@@ -68,8 +71,8 @@ impl<'a> Identifications<'a> {
         }
     }
 
-    /// Runs all tasks. A failure ends the command if there is a single task; otherwise it becomes a
-    /// caution about the condition.
+    /// Checks the output files, prints the records, and runs all tasks. A failure ends the command
+    /// if there is a single task; otherwise it becomes a caution about the condition.
     pub(super) fn run(&mut self, tasks: &[IdentificationTask]) -> Result<(), Failure> {
         let files: Vec<PathBuf> = tasks
             .iter()
@@ -99,7 +102,8 @@ impl<'a> Identifications<'a> {
         Ok(())
     }
 
-    /// Adds a task's result to the output files, and prints its notes and cautions.
+    /// Adds a task's result to the output files and to the dataset, if there is one; prints its
+    /// notes, and keeps its cautions and its line for the end.
     fn take(
         &mut self,
         task: &IdentificationTask,
@@ -199,7 +203,8 @@ impl<'a> Identifications<'a> {
     /// Writes the output files and prints the cautions and the lines about the results.
     ///
     /// # Errors
-    /// No task has a result, or the records identify no input.
+    /// No task has a result; a file cannot be written. After all is written: the records identify
+    /// no input.
     pub(super) fn finish(mut self, task_count: usize) -> Result<(), Failure> {
         for shared in shared_messages(take(&mut self.cautions)) {
             let Message { code, text } = &shared.message;

@@ -24,6 +24,15 @@ use super::terminal::caution;
 
 /// Identifies models from flight records and writes them; with `--into`, also a copy of the dataset
 /// that contains them.
+///
+/// 1. The dataset, if any, and the output files whose names are known; band and channels.
+/// 2. The records, as tasks: one for all, or one for each condition ([`identification_tasks`]).
+/// 3. The identifications ([`Identifications::run`]), and their results
+///    ([`Identifications::finish`]).
+///
+/// # Errors
+/// An option or a file is wrong; no task has a result; the work was stopped. After all is written:
+/// the records identify no input, or some records were not read.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let source = &arguments.source;
     let read = source.records.iter().chain(&source.into);
@@ -77,7 +86,13 @@ pub(super) struct IdentificationTasks {
     pub(super) duplicates: Vec<Duplicate>,
 }
 
-/// Creates the identification tasks: one for all records, or one per condition.
+/// Creates the identification tasks: one for all records, or with a dataset one for each condition
+/// with records.
+///
+/// 1. The records, with their columns assigned to channels.
+/// 2. Held-out records; delays and factors of single records.
+/// 3. The preparation of the channels, common to all records: delays, and how held inputs act.
+/// 4. Groups by condition, each a task.
 pub(super) fn identification_tasks(
     arguments: &RecordArguments,
     destination: Option<&ReceivingDataset>,
@@ -129,8 +144,12 @@ fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     }
 }
 
-/// Sets each input's hold, judged from a record that was not resampled, because resampling already
-/// shifts the time stamps.
+/// Sets how each input given by `--held` acts between its samples, judged from the first record
+/// that was not resampled, because resampling already shifts the time stamps.
+///
+/// First, if most samples repeat their predecessor (a staircase), the input acts as logged; else
+/// each sample is a command that is held for one sample step. Without a record that was not
+/// resampled, nothing is set.
 fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
     let as_logged = records
         .iter()

@@ -8,11 +8,12 @@ use gdcm_words::assessment::not_assessed_text;
 
 use super::printed_lines::{detail, fixed_digits, indented, line};
 
-/// Returns the change in J for each condition's nominal model when the schedule is fitted to the
-/// other conditions only.
+/// Returns, for each condition's nominal model, the mean change in J over the responses in the
+/// objective: with the schedule fitted to all conditions, and fitted to the other conditions only.
+/// Below, the conditions without such a schedule, and which fits still contain the condition.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
-    let seen = assessment(analysis, AssessedCorrection::Scheduled);
-    let unseen = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
+    let fitted_to_all = assessment(analysis, AssessedCorrection::Scheduled);
+    let fitted_to_others = assessment(analysis, AssessedCorrection::ScheduleOfOthers);
     let mut text = line(
         "Left out",
         "on-axis mean of the change of J, under the schedule fitted to all conditions or to all others:",
@@ -21,7 +22,7 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
         "",
         ["condition", "kt", "fitted to all", "fitted to the others"],
     );
-    for condition in &unseen.conditions {
+    for condition in &fitted_to_others.conditions {
         let id = condition.condition;
         let mean_change = |table: &AssessmentTable| {
             let mut changes: Vec<f64> = Vec::new();
@@ -33,12 +34,12 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
         table.row([
             id.to_string(),
             fixed_digits(Some(condition.airspeed_kt), 0),
-            fixed_digits(mean_change(&seen), 1),
-            fixed_digits(mean_change(&unseen), 1),
+            fixed_digits(mean_change(&fitted_to_all), 1),
+            fixed_digits(mean_change(&fitted_to_others), 1),
         ]);
     }
     text += &indented(&table, 2);
-    for left_out in &unseen.left_out {
+    for left_out in &fitted_to_others.left_out {
         let why = sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset));
         text += &detail("", &format!("condition {}: {why}", left_out.condition));
     }

@@ -152,8 +152,12 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
     }
 }
 
-/// Opens a dataset or a study; if a study's dataset has changed, the differences are reported on
-/// standard error, one per line.
+/// Opens a dataset or a study, whose dataset is at `--dataset` if it has moved. If the dataset has
+/// changed since, the differences are reported on standard error, one per line.
+///
+/// # Errors
+/// The file holds models, which are to be assembled first; it cannot be read; with `--strict`, the
+/// dataset has changed.
 fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     if file.is_file() && file.extension().is_some() && holds_models(file) {
         return Err(Failure::Models {

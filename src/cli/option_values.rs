@@ -182,6 +182,8 @@ pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
     })
 }
 
+/// Parses a part from its end: the last two fields are the times, the rest is the record, whose
+/// name may contain colons. Both times have a plus sign, or neither.
 fn valid_part(text: &str) -> Option<RecordPart> {
     let (rest, to) = text.rsplit_once(':')?;
     let (record, from) = match rest.rsplit_once(':') {

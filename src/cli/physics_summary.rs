@@ -14,8 +14,12 @@ use gdcm_words::physics::{
 use super::printed_lines::{detail, indented, line};
 use super::terminal::keep_caution;
 
-/// Returns diagnosis, values, benefit and cautions about the physics parameters; a hint where the
-/// dataset has runs that are not used; empty without runs.
+/// Returns the section on the physics parameters:
+///
+/// - if the study applies none, a hint that the dataset has runs; empty without runs;
+/// - if the diagnosis failed, the reason, and the data that were left out;
+/// - else diagnosis or "set by hand", applied values, benefit, reruns, and the values to paste into
+///   the input of the physics model.
 pub(super) fn physics_section(analysis: &Analysis) -> String {
     let applied = match &analysis.physics {
         None => return unused_runs_line(analysis),

@@ -32,6 +32,16 @@ use super::terminal::{caution_for, print};
 use crate::executor::Pool;
 
 /// Identifies models from flight records and prints a plan for each condition.
+///
+/// 1. Band and channels, from the options or the dataset; the wanted sweeps and targets, checked
+///    before the records are read.
+/// 2. The records, as for `gdcm identify`: one task for all, or one for each condition.
+/// 3. For each task the identification, and from its information the plan.
+/// 4. The file, if requested, and the tables.
+///
+/// # Errors
+/// An option or a file is wrong; the only task fails, or all do (otherwise a failed task is a
+/// caution); the work was stopped. After all is done: some records were not read.
 pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let source = &arguments.source;
     let read = source.records.iter().chain(&source.into);

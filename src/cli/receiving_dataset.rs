@@ -1,4 +1,5 @@
-//! The dataset that receives identified models (`gdcm identify --into`).
+//! The dataset that receives identified models (`gdcm identify --into`), and the conditions to
+//! which the records belong.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -64,8 +65,12 @@ impl ReceivingDataset {
         }))
     }
 
-    /// Groups the records by condition, ordered as in the dataset. Omitted records are reported on
+    /// Groups the records by condition, ordered as in the dataset: all in the condition given by
+    /// `--condition`, or each in the condition in its name. Omitted records are reported on
     /// standard error.
+    ///
+    /// # Errors
+    /// No record remains.
     pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
         match self.condition {
             Some(condition) => Ok(vec![group_for_condition(condition, records)?]),
@@ -141,8 +146,11 @@ impl ReceivingDataset {
     }
 }
 
-/// Returns a condition's group. Records whose names give another condition are omitted and reported
-/// on standard error.
+/// Returns a condition's group: the records whose names give this condition or none. Records whose
+/// names give another condition are omitted and reported on standard error.
+///
+/// # Errors
+/// No record remains.
 fn group_for_condition(
     condition: ConditionId,
     records: Vec<LaidOutRecord>,
@@ -187,7 +195,8 @@ pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
 }
 
 /// Adapts a dataset to a file in another folder: prefixes the record paths with `folder`, and
-/// replaces the description if a new one is given.
+/// replaces the description if a new one is given. Errors name the option of
+/// the description.
 fn moved_dataset(
     dataset: &Dataset,
     folder: &str,

@@ -15,7 +15,8 @@ use super::requested_channels::{has_channel, unknown_channel};
 /// Applies the delays and factors given for single records.
 ///
 /// # Errors
-/// The channel or the record is unknown, or a value is given twice.
+/// The channel or the record is unknown, a value is given twice, or the record cannot be used with
+/// it.
 pub(super) fn apply_record_remedies(
     arguments: &RecordArguments,
     records: &mut [LaidOutRecord],

@@ -16,6 +16,15 @@ use super::terminal::print;
 use super::time_histories::{read_histories, simulated_histories};
 
 /// Analyses a study and writes the full report.
+///
+/// 1. The study; the file's ending, and whether the file may be written.
+/// 2. The flight records for the comparison in time.
+/// 3. The analysis without error bars, which the report adds; the responses to the records.
+/// 4. The report, and the file.
+///
+/// # Errors
+/// An option or a file is wrong, no condition has a result, or the work was stopped. After all is
+/// written: some records were not read.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,
@@ -35,6 +44,7 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     } else {
         Some(simulated_histories(&analysis, &records)?)
     };
+    // The file is either the study or, without one, the dataset, which `loaded` names already.
     let mut study_file = arguments.study.file.as_deref();
     if study_file == loaded.path() {
         study_file = None;

@@ -1,4 +1,6 @@
-//! Channels requested by `gdcm identify`, with the declarations about their samples.
+//! Channels requested by `gdcm identify` and `gdcm plan`, with the declarations about their
+//! samples: columns, topics, units and factors. Declarations for a single record
+//! (`RECORD:CHANNEL=…`) are applied later, to that record (`record_remedies`).
 
 use gdcm_model::dataset::{Band, Dataset};
 use gdcm_model::names::channel_rule::ChannelRule;
@@ -11,7 +13,10 @@ use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
 use super::identify_arguments::RecordArguments;
 
-/// Returns the identification band; by default the dataset's band.
+/// Returns the identification band: first the one on the command line, else the dataset's.
+///
+/// # Errors
+/// The band is not valid, or there is neither.
 pub(super) fn requested_band(
     arguments: &RecordArguments,
     dataset: Option<&Dataset>,
@@ -29,6 +34,16 @@ pub(super) fn requested_band(
 }
 
 /// Returns the requested channels, with the declarations about their samples.
+///
+/// 1. Inputs and outputs: with a dataset its channels, else those on the command line.
+/// 2. References, behind the inputs.
+/// 3. Columns or topics of single channels.
+/// 4. Resampling: highest frequency of interest, requested sample rate, and inputs that keep their
+///    logged value until the next sample (held).
+/// 5. Units, then factors; a channel has either.
+///
+/// # Errors
+/// An option names an unknown channel or one twice, or contradicts the dataset's unit.
 pub(super) fn requested_channels(
     arguments: &RecordArguments,
     dataset: Option<&Dataset>,
@@ -245,10 +260,10 @@ pub(super) fn declare_conversions<'a, T: Clone + 'a>(
         if !has_channel(channels, channel) {
             return Err(unknown_channel(option, channel));
         }
-        let known = channels
+        let previous = channels
             .said
             .insert(channel.clone(), conversion(value.clone()));
-        if known.is_some() {
+        if previous.is_some() {
             let reason = format!("{channel} already has a unit or a factor");
             return Err(Failure::coded_option(option, "given-twice", reason));
         }

@@ -35,8 +35,18 @@ use super::terminal::{caution_for, note, print};
 use super::time_histories::{read_histories, simulated_histories};
 use crate::message::Message;
 
-/// Writes the tolerance table and the level boundaries if requested; analyses the study, writes the requirements, and prints
-/// a short table.
+/// Writes the requirements and prints a short table.
+///
+/// 1. Adds the tolerance table and the level boundaries to the output files, if requested; without
+///    `--out`, writes these alone and ends.
+/// 2. Reads the flight records for the comparison in time.
+/// 3. Analyses the study; computes the requirements, and the responses to the records.
+/// 4. Writes the files; reports cautions and missing results; prints grid, bandwidths, costs, modes
+///    and time histories.
+///
+/// # Errors
+/// An option or a file is wrong, no condition has a result, or the work was stopped. After all is
+/// done: some records were not read.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,
@@ -136,11 +146,13 @@ fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
 /// Reports missing results, first those that concern all conditions. Missing records are not
 /// reported if none were given.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
+    /// What is missing if a condition has no result.
+    const EVERYTHING: &str = "all";
     // Skip conditions without a result, which have already been reported.
     let mut missing: Vec<&MissingFinding> = requirements
         .missing
         .iter()
-        .filter(|finding| finding.what != "all")
+        .filter(|finding| finding.what != EVERYTHING)
         .collect();
     if !histories.records.is_empty() {
         missing.extend(&histories.missing);
@@ -250,8 +262,13 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
     format!("{model} compared with identified: {}", counts.join(", "))
 }
 
+/// Index of the quantity in a row of the table of shares, after condition and record.
+const QUANTITY: usize = 2;
+/// Index of the first share of time in that row.
+const FIRST_SHARE: usize = 3;
+
 /// Returns a table with the shares of time within the tolerances, limited to quantities for which a
-/// model leaves them, and a table with the rms errors.
+/// model leaves them, and a table with the rms errors; without records, the reason.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
@@ -265,7 +282,7 @@ fn history_section(histories: &TimeHistories) -> String {
     let count = table.rows.len();
     table.rows.retain(|row| leaves_tolerances(row));
     for row in &mut table.rows {
-        row[2] = sanitized(&row[2]);
+        row[QUANTITY] = sanitized(&row[QUANTITY]);
     }
     let source = match histories.tolerance_table.source() {
         "" => String::new(),
@@ -287,10 +304,10 @@ fn history_section(histories: &TimeHistories) -> String {
     text + &indented_untitled(history_cost_table(histories))
 }
 
-/// Returns whether a model in the row leaves the tolerances. The row gives condition, record and
-/// quantity, then the shares of time in percent.
+/// Returns whether a model in the row leaves the tolerances: one of the shares of time, in percent
+/// with one decimal, is not 100.
 fn leaves_tolerances(row: &[String]) -> bool {
-    row[3..]
+    row[FIRST_SHARE..]
         .iter()
         .any(|share| !matches!(share.as_str(), "100.0" | NO_VALUE))
 }

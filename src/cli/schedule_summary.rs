@@ -19,8 +19,9 @@ pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     shown.marked().collect()
 }
 
-/// Returns tables with the scheduled net gains and delays over airspeed, for the responses in
-/// [`shown_pairs`].
+/// Returns the schedule's kind, its cautions, the delays that it omits, and tables with the
+/// scheduled net gains and, if there are any, net delays over airspeed, for the responses in
+/// [`shown_pairs`]. Without a schedule, the reason.
 pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let schedule = match &analysis.schedule {
         Ok(schedule) => schedule,

@@ -1,7 +1,9 @@
 //! Cautions about all conditions: a table for kinds that usually recur in many conditions, and a
 //! line for each other caution, merged over the conditions with equal text.
 //!
-//! A caution is a [`Remark`] with the kind [`RemarkKind::Caution`].
+//! A caution is a [`Remark`] with the kind [`RemarkKind::Caution`]. It is recurring
+//! ([`Remark::is_recurring`]) if it usually concerns many conditions at once: missing leads,
+//! responses farther from flight, and those in [`COLUMNS`].
 
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
@@ -28,6 +30,12 @@ struct RecurringRow {
 
 /// Returns the recurring cautions as a table, and each other caution once with its conditions; also
 /// adds them to the JSON object.
+///
+/// 1. Sorts each condition's cautions into recurring ones, a row for each condition, and others;
+///    the limit of the leads is one of the others.
+/// 2. First, a single recurring caution in all becomes one of the others; else the rows become a
+///    table.
+/// 3. Merges the others with equal text.
 pub(super) fn cautions_section(analysis: &Analysis) -> String {
     let mut rows: Vec<RecurringRow> = Vec::new();
     let mut others: Vec<ConditionMessage> = Vec::new();
@@ -60,8 +68,8 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
         && let [alone] = &row.cautions[..]
     {
         // A single caution about a single condition needs no table.
-        let text = remark_text(alone, dataset);
-        let message = ConditionMessage::new(row.condition, alone.code(), text);
+        let words = remark_text(alone, dataset);
+        let message = ConditionMessage::new(row.condition, alone.code(), words);
         others.insert(0, message);
     } else if !rows.is_empty() {
         text += &recurring_table(dataset, &rows);
@@ -150,8 +158,8 @@ fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Re
 }
 
 /// Returns an explanation of the columns, followed by a table with a row for each condition, a
-/// column for each response that needs lead or moves away from flight, and columns for the other
-/// recurring cautions.
+/// column for each response that needs lead or moves away from flight, and those of [`COLUMNS`]
+/// that have an entry. The JSON object has a single caution with the explanation and the codes.
 fn recurring_table(dataset: &Dataset, rows: &[RecurringRow]) -> String {
     let cautions: Vec<&Remark> = rows.iter().flat_map(|row| &row.cautions).collect();
     let pairs: Vec<Pair> = dataset
@@ -269,6 +277,7 @@ impl RecurringColumn {
     }
 }
 
+/// Columns for the recurring cautions that do not concern single responses.
 const COLUMNS: [RecurringColumn; 3] = [
     RecurringColumn {
         heading: "all",

@@ -38,8 +38,11 @@ pub(super) fn analyze_study(
     analyze_with_progress(study, arguments, bars, ProgressReceiver::Terminal)
 }
 
-/// Analyses a study; if requested, the suggested outliers are first rejected. With error bars, the
-/// couplings and the physics parameters are assessed too. Conditions without a result are reported on standard error.
+/// Analyses a study.
+///
+/// 1. The analysis; if requested and if it suggests outliers, again without them.
+/// 2. With error bars: uncertainty, and the benefit of couplings and physics parameters.
+/// 3. Reports conditions without a result on standard error.
 ///
 /// # Errors
 /// No condition has a result, or the analysis was stopped.

@@ -74,7 +74,13 @@ pub(super) fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Res
         .map_err(|refusal| Failure::option(option, refusal))
 }
 
-/// Applies the options to the study; they override its settings.
+/// Applies the options to the study; they override its decisions. Later options build on earlier
+/// ones:
+///
+/// 1. settings (with `--physics`), then values of physics parameters, which may switch it on;
+/// 2. signs; held-out conditions; requirements;
+/// 3. a check of the second scheduling variable in the conditions that are left in the schedule;
+/// 4. constrained responses; rejected models.
 pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     for GivenSetting { setting, words } in &arguments.settings.given {
         let option = setting.option;
@@ -109,7 +115,8 @@ pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Re
     Ok(())
 }
 
-/// Applies the options about requirements; they override the study's settings.
+/// Applies the options about requirements; they override the study's settings. Levels for a channel
+/// that the dataset lacks are a caution only.
 fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     let mut settings = RequirementSettings::clone(&study.requirements);
     let (_, outputs) = study.dataset.names_of_channels();
@@ -191,7 +198,8 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
     ))
 }
 
-/// Inverts the channels given by `--sign`, or restores their signs.
+/// Inverts the channels given by `--sign`, or restores their signs. An input and an output may have
+/// the same name: such a name is refused.
 pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
     if let Some(channel) = first_duplicate(signs) {
@@ -209,9 +217,9 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
                 .collect();
         let [channel] = named[..] else {
             let count = named.len();
-            let known = [inputs, outputs].concat().join(", ");
+            let names = [inputs, outputs].concat().join(", ");
             let reason = sanitized(&format!(
-                "expected one of {known}; {count} channels are called {name}"
+                "expected one of {names}; {count} channels are called {name}"
             ));
             return Err(Failure::coded_option(OPTION, "unknown-channel", reason));
         };
@@ -220,7 +228,8 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
     Ok(())
 }
 
-/// Constrains the listed responses and releases all others.
+/// Constrains the listed responses and releases all others: `on_axis().pairs()` lists every
+/// response, whether on-axis or not.
 fn constrain(study: &mut Study, list: &[PairName]) -> Result<(), Failure> {
     let dataset = study.dataset.clone();
     let constrained = pairs_of(&dataset, list, "--on")?;
@@ -231,6 +240,7 @@ fn constrain(study: &mut Study, list: &[PairName]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Rejects a model by its name, which must be unique among both bundles of the condition.
 fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     const OPTION: &str = "--reject";
     let id = ConditionId(rejection.condition);

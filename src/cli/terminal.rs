@@ -132,7 +132,7 @@ thread_local! {
 }
 
 /// Carries out `work`, and returns its result together with its output as the JSON object; prints
-/// nothing.
+/// nothing. Output that the thread collected before is put back afterwards.
 pub(super) fn collected<T>(work: impl FnOnce() -> T) -> (T, serde_json::Value) {
     let before = MESSAGES.take();
     set_output(OutputFormat {

@@ -1,4 +1,6 @@
-//! Flight records with which models are compared in the time domain (M17.2).
+//! Flight records with which models are compared in the time domain (M17.2), for
+//! `gdcm requirements` and `gdcm report`. Unlike `flight_records`, which serves the identification,
+//! it reports a record that cannot be used as a caution and goes on with the others.
 
 use gdcm_io::import::record_files::FoundRecords;
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
@@ -26,7 +28,7 @@ use crate::message_codes::{layout_caution_code, layout_problem_code};
 #[derive(Default)]
 pub(super) struct ReadHistories {
     pub(super) conditions: Vec<HistoryRecords>,
-    /// Requested records that could not be read completely.
+    /// Requested records that could not be read completely, or that lack a unit.
     unread: Vec<String>,
 }
 
@@ -43,8 +45,17 @@ impl ReadHistories {
     }
 }
 
-/// Reads each condition's records. Topics are resampled to a sample rate suitable for `band`;
-/// omitted records are reported on standard error.
+/// Reads each condition's records; none without the option `--records`.
+///
+/// 1. Reads the files, and joins the topics of logs, resampled to a sample rate suitable for
+///    `band`.
+/// 2. Assigns the columns of each record to channels, and determines its condition; keeps the
+///    usable records of known conditions, and reports why the others are omitted.
+/// 3. Leaves out records with the same samples as another one.
+/// 4. Groups the records by condition; the samples are compared as they are, without preparation.
+///
+/// # Errors
+/// The files contain no record, or a declared unit concerns an unknown channel.
 pub(super) fn read_histories(
     arguments: &HistoryArguments,
     dataset: &Dataset,
@@ -69,6 +80,7 @@ pub(super) fn read_histories(
     for table in with_topics_joined(tables, &channels, &TimeWish::default()) {
         let laid_out = laid_out_record(table, dataset, &channels);
         report_record(&laid_out);
+        // Counts as not read: the option `--unit` can supply what it lacks.
         if laid_out.lacks_unit() {
             unread.push(sanitized(&laid_out.record.table.name));
         }
@@ -131,8 +143,10 @@ impl ConditionRecord {
     }
 }
 
-/// Assigns a record's columns, as stated in the dataset if it lists the record, and determines the
-/// condition.
+/// Assigns a record's columns, and determines its condition.
+///
+/// First, if the dataset lists the record, both as stated there; else the columns are recognised,
+/// and the condition is the dataset's only one, else the one in the record's name.
 fn laid_out_record(
     table: RecordTable,
     dataset: &Dataset,

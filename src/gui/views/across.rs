@@ -96,8 +96,46 @@ pub fn across_header_ui(
     ui.label(palette.dim("conditions"));
 }
 
+/// Areas of the plots; `None` for a plot that is not drawn.
+struct PlotAreas {
+    responses: Option<Rect>,
+    errors: Option<Rect>,
+}
+
+impl PlotAreas {
+    /// Divides an area: first, with room for both plots, side by side; else the shown page's plot
+    /// alone.
+    fn new(area: Rect, state: &State) -> Self {
+        if shows_both(state) {
+            let middle = area.left() + RESPONSE_PART * area.width();
+            Self {
+                responses: Some(area.with_max_x(middle)),
+                errors: Some(area.with_min_x(middle + GAP)),
+            }
+        } else if state.display.frequency.across_display.page == AcrossPage::Error {
+            Self {
+                responses: None,
+                errors: Some(area),
+            }
+        } else {
+            Self {
+                responses: Some(area),
+                errors: None,
+            }
+        }
+    }
+}
+
 /// Draws the response in focus and the schedule error in every condition; a click selects a
 /// condition.
+///
+/// 1. Curves; for a newly selected response, role or condition, the value axes are fitted again.
+/// 2. Chips above the plots.
+/// 3. Both scenes. The cursor is where the pointer was in either plot in the last frame. The scene
+///    of the errors is that of the responses with other curves, and without names at their ends.
+/// 4. Plots that have an area; a plot that is not drawn forgets the pointer.
+/// 5. If both are drawn, the errors take over the frequency range of the responses.
+/// 6. Values at the cursor, in a strip below the magnitudes if there is room.
 pub fn across_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -114,6 +152,7 @@ pub fn across_view_ui(
         .across
         .pointed_omega
         .or(frequency.across_error.pointed_omega);
+    // The scenes borrow the state: take the views out while the plots are drawn.
     let mut responses = std::mem::take(&mut frequency.across);
     let mut errors = std::mem::take(&mut frequency.across_error);
     let band = state.study.settings.band;
@@ -143,19 +182,9 @@ pub fn across_view_ui(
         end_names: &[],
         ..response_scene
     };
-    let (response_area, error_area) = if shows_both(state) {
-        let middle = plots.left() + RESPONSE_PART * plots.width();
-        (
-            Some(plots.with_max_x(middle)),
-            Some(plots.with_min_x(middle + GAP)),
-        )
-    } else if state.display.frequency.across_display.page == AcrossPage::Error {
-        (None, Some(plots))
-    } else {
-        (Some(plots), None)
-    };
+    let areas = PlotAreas::new(plots, state);
     let mut strip = None;
-    if let Some(area) = response_area {
+    if let Some(area) = areas.responses {
         let plot = AcrossPlot {
             state,
             scene: response_scene,
@@ -166,7 +195,7 @@ pub fn across_view_ui(
     } else {
         responses.pointed_omega = None;
     }
-    if let Some(area) = error_area {
+    if let Some(area) = areas.errors {
         let plot = AcrossPlot {
             state,
             scene: error_scene,
@@ -177,7 +206,7 @@ pub fn across_view_ui(
     } else {
         errors.pointed_omega = None;
     }
-    if response_area.is_some() && error_area.is_some() {
+    if areas.responses.is_some() && areas.errors.is_some() {
         errors.share_frequencies(&responses);
     }
     let source = AcrossReadout {
@@ -203,8 +232,9 @@ fn error_message(state: &State) -> &'static str {
     }
 }
 
-/// Returns the read-out's area: `before`, from another plot, joined with the strip below this
-/// magnitude plot if there is room; `None` if no plot has room.
+/// Returns the read-out's area: `before`, the strip found below another plot's magnitudes, joined
+/// with the strip between this plot's magnitudes and phases if there is room; `None` if neither
+/// plot has room.
 fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
     let magnitude = *view.transform(Pane::Magnitude)?.frame();
     let phase = *view.transform(Pane::Phase)?.frame();
@@ -253,14 +283,16 @@ impl AcrossPlot<'_> {
     }
 }
 
-/// Returns a name for each airspeed, with the condition count if it has several: "140 kt × 2".
+/// Returns the names in the right margin, where the curves end: one for each airspeed, in
+/// increasing order, with the condition count if it has several: "140 kt × 2". A name has the
+/// colour of its first curve.
 fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
-    struct Named {
+    struct AirspeedGroup {
         airspeed_kt: f64,
         conditions: Vec<ConditionId>,
         name: EndName,
     }
-    let mut named: Vec<Named> = Vec::new();
+    let mut groups: Vec<AirspeedGroup> = Vec::new();
     for curve in curves {
         let CurveId::OfCondition(id, _) = curve.id else {
             continue;
@@ -269,11 +301,11 @@ fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
             continue;
         };
         let airspeed_kt = condition.flight_state().airspeed_kt;
-        let place = named
+        let place = groups
             .iter()
             .position(|known| known.airspeed_kt == airspeed_kt);
         let place = place.unwrap_or_else(|| {
-            named.push(Named {
+            groups.push(AirspeedGroup {
                 airspeed_kt,
                 conditions: Vec::new(),
                 name: EndName {
@@ -282,21 +314,21 @@ fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
                     curves: Vec::new(),
                 },
             });
-            named.len() - 1
+            groups.len() - 1
         });
-        let entry = &mut named[place];
-        if !entry.conditions.contains(&id) {
-            entry.conditions.push(id);
+        let group = &mut groups[place];
+        if !group.conditions.contains(&id) {
+            group.conditions.push(id);
         }
-        entry.name.curves.push(curve.id.clone());
+        group.name.curves.push(curve.id.clone());
     }
-    named.sort_by(|a, b| a.airspeed_kt.total_cmp(&b.airspeed_kt));
+    groups.sort_by(|a, b| a.airspeed_kt.total_cmp(&b.airspeed_kt));
     let mut names = Vec::new();
-    for Named {
+    for AirspeedGroup {
         airspeed_kt,
         conditions,
         mut name,
-    } in named
+    } in groups
     {
         name.text = match conditions.len() {
             1 => format!("{airspeed_kt:.0} kt"),
@@ -311,13 +343,13 @@ fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
 /// condition are available.
 fn fit_across(state: &mut State) {
     let display = &state.display.frequency.across_display;
-    let asked = AcrossFit {
+    let wanted = AcrossFit {
         pair: state.display.selection.pair,
         condition: state.condition().id(),
         roles: display.roles.clone(),
         conditions: display.conditions,
     };
-    if state.display.frequency.across_fitted.as_ref() == Some(&asked) {
+    if state.display.frequency.across_fitted.as_ref() == Some(&wanted) {
         return;
     }
     state.display.frequency.across.request_refit();
@@ -327,7 +359,7 @@ fn fit_across(state: &mut State) {
     if let Some((job, _)) = &state.results.across
         && job.models == across_job(state).models
     {
-        state.display.frequency.across_fitted = Some(asked);
+        state.display.frequency.across_fitted = Some(wanted);
     }
 }
 
@@ -369,12 +401,15 @@ pub fn across_curves(state: &mut State) -> AirspeedCurves {
 
 /// Returns the text beside the title: "all 11 conditions".
 pub fn across_context(state: &State) -> String {
-    let all = state.dataset().conditions().len();
+    let count = state.dataset().conditions().len();
     let shown = state.display.frequency.across_display.conditions;
     match shown {
-        AcrossConditions::All => format!("all {all} conditions"),
+        AcrossConditions::All => format!("all {count} conditions"),
         AcrossConditions::InSchedule => {
-            format!("{} of {all} conditions", shown.of_study(&state.study).len())
+            format!(
+                "{} of {count} conditions",
+                shown.of_study(&state.study).len()
+            )
         }
     }
 }

@@ -139,7 +139,7 @@ fn error_of(curve: &BodeCurve, omega: f64) -> Option<ScheduleError> {
     })
 }
 
-/// Returns the error with the greatest integrand of J.
+/// Returns the error with the greatest integrand of J; `None` without errors.
 fn largest(errors: Vec<ScheduleError>) -> Option<ScheduleError> {
     errors
         .into_iter()

@@ -159,12 +159,12 @@ fn change_table_ui(
     let text = assessment_text_table(state, table);
     let pairs = assessed_pairs(state);
     let conditions = state.dataset().conditions();
-    let part = state.display.judging.assessed.part.extractor();
+    let chosen_part = state.display.judging.assessed.part.extractor();
     let color = |row: usize, column: usize| {
         // The first column holds response names.
         let condition = conditions.get(column.checked_sub(1)?)?;
         let change = table.change(condition.id(), *pairs.get(row)?)?;
-        if part(change) >= LEAST_SHOWN_RISE {
+        if chosen_part(change) >= LEAST_SHOWN_RISE {
             Some(palette.warning)
         } else {
             None

@@ -163,7 +163,8 @@ impl AssessmentPlots<'_> {
     }
 }
 
-/// Returns both parts' bars: improvements, then deteriorations.
+/// Returns the bars for the magnitude part, then for the phase part; of each the improvements, then
+/// the deteriorations.
 fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     let mut bars = Vec::new();
     for part in [BarPart::Magnitude, BarPart::Phase] {
@@ -174,7 +175,8 @@ fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     bars
 }
 
-/// Returns a part's bars in a colour: positive changes have the warning colour.
+/// Returns a part's bars in a colour: positive changes of J, which are deteriorations, have the
+/// warning colour.
 fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
     let mut bars = Vec::new();
     let mut feet = Vec::new();
@@ -212,6 +214,7 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
     Curve::through("ΔJ", Stroke::solid(Color::INK, 1.1), points)
 }
 
+/// Shades the places of the conditions that the assessment omits, over the whole height.
 fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
     // The visible range may exceed the data range.
     let range = range.with_margin(1.0, 0.0);

@@ -26,7 +26,11 @@ enum Automatic {
 }
 
 impl SettingControls<'_, '_> {
-    /// Draws a number that the program determines unless it is set by hand.
+    /// Draws a number that the program determines unless it is set by hand, with its "auto" check
+    /// box. Before there is a result, a value that the program determines is "…".
+    ///
+    /// First a typed number; else a click on the box: "auto" on removes the value, off keeps the
+    /// displayed value as set by hand.
     pub(super) fn automatic_number_ui(
         &mut self,
         setting: &'static Setting,
@@ -59,7 +63,11 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws both range ends. The program determines an optional range unless it is set by hand.
+    /// Draws both range ends. The program determines an optional range (`nothing` is then
+    /// `Some`) unless it is set by hand.
+    ///
+    /// First a typed or dragged end, if both ends are then valid; else a click on "auto", as in
+    /// [`Self::automatic_number_ui`].
     pub(super) fn range_ui(&mut self, setting: &'static Setting, value: Value) {
         let Kind::Range {
             range: [least, most],

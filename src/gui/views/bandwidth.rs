@@ -1,5 +1,5 @@
 //! Phase delay over bandwidth for a response, in the requirement details; a click on a mark selects
-//! its condition.
+//! its condition. Bandwidth and phase delay are those of ADS-33E-PRF (M17.1).
 
 use egui::{Grid, Ui, Vec2, vec2};
 
@@ -178,6 +178,8 @@ impl FigureWords for BandwidthWords<'_> {
         format!("Phase delay over bandwidth of {name}")
     }
 
+    /// Describes a condition, whichever of its marks is pointed at: for each role with a bandwidth
+    /// and a phase delay both values, and the level if boundaries give one.
     fn status_text(&self, _: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else {
             return None;

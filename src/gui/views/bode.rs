@@ -17,6 +17,9 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
 /// Draws magnitude and phase of the response in focus, for every model in the displayed condition.
+/// Around the curves: uncertainty bands, envelopes of unnoticeable changes (MUAD), coherence of the
+/// measured response, the remaining phase error, the region above the band in which the corrected
+/// model is not valid, and notes with J. The error view takes over the frequency range.
 pub fn bode_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -24,6 +27,7 @@ pub fn bode_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let pair = state.display.selection.pair;
+    // The scene borrows the state: take the view out while the plot is drawn.
     let mut view = std::mem::take(&mut state.display.frequency.bode);
     let curves = bode_curves(state, pair);
     let title = state.dataset().pair_name(pair);

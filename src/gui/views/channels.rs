@@ -26,6 +26,8 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 const HEADING_HEIGHT: f32 = 20.0;
 /// Gap below the inputs and below the outputs \[pt\].
 const GAP: f32 = 8.0;
+/// Whether significant differences are marked: not here, only in the net-gain view.
+const SHOWS_DIFFERENCES: bool = false;
 
 pub fn channels_pages(state: &State) -> Vec<PageEntry> {
     let (shown, across) = state.display.gains.channel_values;
@@ -83,12 +85,20 @@ pub fn channels_header_ui(
 
 /// Draws each channel's gain or delay over airspeed or conditions (Figures 3 and 4): inputs above,
 /// outputs below, on the same axes.
+///
+/// 1. Plots for all channels, on axes that do not move with every update.
+/// 2. Copies for the inputs and for the outputs, after step 1, because both have common axes.
+/// 3. Over airspeed, condition numbers only at the displayed condition; over conditions the axis
+///    has them.
+/// 4. Without plots, the message why.
+/// 5. The area divided in proportion to the rows of both halves, and both drawn.
 pub fn channels_view_ui(
     ui: &mut Ui,
     state: &mut State,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    // The scenes borrow the state: take the view out while the figures are drawn.
     let mut view = std::mem::take(&mut state.display.gains.channels);
     let mut plots = channel_plots(state);
     let update = axis_update(ui, state);
@@ -102,7 +112,7 @@ pub fn channels_view_ui(
     if plots.across == Across::Airspeed {
         let selected = MarkId::Condition(state.condition().id());
         for figure in [&mut inputs, &mut outputs] {
-            quieten(figure, &selected, false);
+            quieten(figure, &selected, SHOWS_DIFFERENCES);
         }
     }
     if plots.figure.plots.is_empty() {

@@ -15,8 +15,15 @@ const MATCHED_DB: f64 = 0.05;
 /// Remaining delay \[s\] below which the phases count as matched.
 const MATCHED_S: f64 = 0.5e-3;
 
-/// Returns the notes in the magnitude and phase panes: J before and after the correction, and the
-/// gain and delay that the correction leaves uncorrected.
+/// Returns the notes in the magnitude and phase panes: J before and after the correction, and what
+/// the correction leaves of the wanted gain G and of the wanted delay D with its net gain k and net
+/// delay τ. A constrained response that is not matched is a warning. `None` unless G, D and J
+/// exist.
+///
+/// ```text
+/// left gain   G / k, in dB
+/// left delay  D - tau, in s; negative if the corrected model lags
+/// ```
 pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
@@ -40,7 +47,9 @@ pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     Some([magnitude, phase])
 }
 
-/// Returns the area between corrected and identified phase within the band.
+/// Returns the area between corrected and identified phase within the band, its ends included;
+/// `NaN` where a curve has no value, and for the magnitudes, which have no area. `None` unless both
+/// curves are drawn.
 pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
     let corrected = drawn_curve(curves, Role::Corrected)?;
     let identified = drawn_curve(curves, Role::IdentifiedRepresentative)?;
@@ -72,7 +81,10 @@ pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand
 /// displayed unit.
 pub(super) fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
-    leads.filters().iter().find_map(|(_, filter)| *filter)?;
+    let has_filter = leads.filters().iter().any(|(_, filter)| filter.is_some());
+    if !has_filter {
+        return None;
+    }
     let corrected = drawn_curve(curves, Role::Corrected)?;
     let up_to = *corrected.omega.last()?;
     Some(InvalidRegion {

@@ -1,4 +1,6 @@
-//! Couplings: input mixing and output feedback, their benefit, and their effect on the loop.
+//! Couplings: constant shares of the other inputs (mixing) and of the outputs (feedback) that are
+//! added to each input (M16, docs/couplings.md); their benefit, their matrices, and their effect on
+//! the loop of the model with its feedback.
 
 use egui::{Frame, Label, Margin, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 
@@ -134,7 +136,8 @@ pub fn couplings_view_ui(
     beside.show(ui, |ui| couplings_figure_ui(ui, state, palette));
 }
 
-/// Draws the figure below its legend; empty until its curves are available.
+/// Draws the figure of the loop and the poles below its legend; empty until its curves are
+/// available.
 fn couplings_figure_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let mut figure = Figure::default();
     if let Some(request) = figure_request(state, View::Couplings)
@@ -232,6 +235,8 @@ impl CouplingsWords<'_> {
         self.table_ui(ui, &costs, TableLook::PLAIN, commands);
     }
 
+    /// Draws the remarks in three steps of emphasis: good ones plain, the others as warnings,
+    /// troubles also in a stronger font; below them, why the displayed condition has no poles.
     fn remarks_ui(&self, ui: &mut Ui) {
         ui.add_space(6.0);
         for remark in coupling_remarks(self.assessment, self.state.dataset()) {
@@ -295,8 +300,9 @@ impl CouplingsWords<'_> {
         table_block_ui(ui, table, &look, self.palette, commands);
     }
 
-    /// Builds the loop table: in each condition, the minimum singular value, and the on-axis
-    /// response that the couplings change most at ten times the band's upper end.
+    /// Builds the loop table: in each condition, the minimum singular value of `I - K H` with its
+    /// frequency, and the on-axis response that the couplings change most above the band, with that
+    /// change.
     fn loop_table(&self) -> Table {
         let dataset = self.state.dataset();
         let columns = [

@@ -18,9 +18,11 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     }
 }
 
-/// Returns whether the couplings are assessed even while their view is hidden. Couplings in use are
-/// assessed for their cost; unused couplings if they may be worthwhile: with matched delays or
-/// requested leads, and with enough conditions.
+/// Returns whether the couplings are assessed even while their view is hidden.
+///
+/// First, not without a current analysis; else, if they are in use, for their cost; else, if they
+/// may be worthwhile: the phase is corrected (by delays that are matched in all conditions, or by
+/// leads), and at least [`LEAST_CONDITIONS`] conditions have results.
 pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
     let Some(analysis) = state.analysis() else {

@@ -19,8 +19,10 @@ const LISTED: [Role; 4] = [
     Role::Scheduled,
 ];
 
-/// Differences at or above these are shown as a warning; J is small below both.
+/// Magnitude difference \[dB\] from which it is shown as a warning; below this and [`WARNING_DEG`],
+/// J is small.
 const WARNING_DB: f64 = 1.0;
+/// Phase difference \[deg\] from which it is shown as a warning.
 const WARNING_DEG: f64 = 10.0;
 
 /// Plot whose values are listed.

@@ -1,5 +1,5 @@
-//! Chips above a plot over frequency: the restrictions in effect, each with the command that
-//! removes it or that acts on the selected models.
+//! Chips above a plot over frequency: restrictions and marks in effect, each with the command that
+//! removes it, and commands for the models that the engineer has selected by a box.
 
 use std::collections::BTreeSet;
 
@@ -63,7 +63,7 @@ impl CurveChips {
                 kept.push(id.clone());
             }
         }
-        let any_selected = !(rejected.is_empty() && kept.is_empty());
+        let has_selection = !(rejected.is_empty() && kept.is_empty());
         if !kept.is_empty() {
             self.add(
                 format!("Reject {}", model_count(kept.len())),
@@ -78,7 +78,7 @@ impl CurveChips {
                 Edit::RestoreEach(rejected),
             );
         }
-        if any_selected {
+        if has_selection {
             self.add(
                 "Select none ×".to_owned(),
                 "Leaves the models unchanged (Escape)",
@@ -87,6 +87,8 @@ impl CurveChips {
         }
     }
 
+    /// Adds a chip for the marks at the crossings: the frequencies that define bandwidth and phase
+    /// delay, marked by *Show in Bode* in the requirements.
     fn add_crossings(&mut self, state: &State) {
         let curves = &state.display.curves;
         if curves.crossings.is_empty() {

@@ -35,7 +35,8 @@ pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Dims a figure's error bars and bands if they belong to earlier settings.
+/// If a figure's error bars and bands belong to earlier settings, dims them, and removes the
+/// brackets at significant differences, which depend on the bars.
 pub fn dim_older_bars(state: &State, figure: &mut Figure) {
     if state.older_uncertainty().is_none() {
         return;
@@ -58,7 +59,9 @@ fn dim(color: &mut Color) {
     *color = color.tint(color.percent / 2);
 }
 
-/// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
+/// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance"; then
+/// the remarks, and the count of substitutions (of another model for a representative, M13.1) in
+/// which the value is undefined. Without a half-width, only the remarks.
 pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     let remarks = bar_remark_texts(bar).join(", ");
     let Some(half) = bar.half_width(level) else {

@@ -1,5 +1,6 @@
 //! Evidence view: significant differences between net gains at equal airspeed, sources of their
-//! scatter, and the scheduling variables and schedule form that they require.
+//! scatter, and the scheduling variables and schedule form that they require (M13). A difference is
+//! significant if it exceeds what the uncertainty of trim and identification lets expect.
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
@@ -89,6 +90,8 @@ impl EvidenceTables<'_> {
         difference.is_significant(self.uncertainty.level)
     }
 
+    /// Draws a table with the significant differences, below an explanation of the first; nothing
+    /// without any.
     fn differences_ui(&self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let significant: Vec<&AirspeedDifference> = self
             .uncertainty
@@ -188,6 +191,7 @@ impl EvidenceTables<'_> {
         sorting: &mut Sorting,
         commands: &mut Vec<Command>,
     ) {
+        // The table borrows the state: take the cache out while it is drawn.
         let mut cached = std::mem::take(&mut state.display.gains.evidence);
         cached.refresh(state);
         if let Some(evidence) = cached.evidence() {

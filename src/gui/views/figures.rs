@@ -16,7 +16,8 @@ use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 
-/// Returns a view's figure; `None` until its results are available.
+/// Returns a view's figure; `None` until its results are available. Error bars are included if the
+/// figure cannot do without them, or unless the engineer has hidden them.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let needs_bars = match view.figure() {
         Some(kind) => kind.needs_bars(),
@@ -70,7 +71,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         View::Across => Some(&display.frequency.across),
         _ => None,
     };
-    // Axis ranges chosen by the engineer.
+    // Axis ranges that the engineer has chosen by zooming.
     let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
     let bode = BodeOptions {
         omega: plot.and_then(BodeView::chosen_omega),
@@ -79,7 +80,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     };
     let across_display = &display.frequency.across_display;
     let assessed = Some(state.assessment_choice());
-    let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
+    let defaults = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
     let over_time = shown_over_time(state, kind);
     let mut couplings = None;
@@ -98,7 +99,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         parameter: display.physics.selected.clone(),
         requirements,
         over_time,
-        ..usual
+        ..defaults
     })
 }
 

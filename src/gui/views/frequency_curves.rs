@@ -61,8 +61,8 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     }
 }
 
-/// Returns all curves for a response in the displayed condition; empty until its responses are
-/// available.
+/// Returns all curves for a response in the displayed condition, from a cache for each response
+/// that lasts as long as the responses are the same; empty until they are available.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let shown = state.curves().map(Arc::clone);
     state.display.frequency.keep_shapes_of(shown.as_ref());
@@ -83,7 +83,8 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
 }
 
 /// Returns all curves for a response in the displayed condition with unwrapped phases, whatever the
-/// engineer has hidden, isolated or shifted; empty until its responses are available.
+/// engineer has hidden, isolated or shifted: for comparison with an identification from records.
+/// Empty until its responses are available.
 pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut cache = state
         .display
@@ -126,7 +127,9 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Emphasises the curve under the pointer, and tells in each description what a click does.
+/// Emphasises the models under the pointer and in the selection box, tells in each model's
+/// description what a click does, and marks a scheduled curve from older settings. `reference` is
+/// the model with which error curves are compared: it cannot be rejected.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,
@@ -142,7 +145,7 @@ fn with_interaction(
         let is_reference = reference == Some(&curve.id);
         let is_hovered = state.display.selection.hovered.as_ref() == Some(id);
         let is_selected = state.display.curves.selected.contains(id);
-        // The reference cannot be rejected, so it is not highlighted as selected.
+        // The selection is for rejecting models, so the reference is not highlighted as selected.
         curve.highlighted = is_hovered || (is_selected && !is_reference);
         let note = if is_reference {
             "reference for the errors"

@@ -81,7 +81,7 @@ impl FrequencyPlot<'_> {
                 BodeEvent::ChipClicked(index) => {
                     commands.extend(chips.commands.get(index).cloned());
                 }
-                event => commands.extend(event_command(state, event)),
+                other => commands.extend(event_command(state, other)),
             }
         }
         if let Some(CurveId::Model(id)) = &view.hovered {
@@ -97,6 +97,10 @@ impl FrequencyPlot<'_> {
 }
 
 /// Returns the command for an event; `None` if the event changes neither study nor display.
+///
+/// A double click isolates a model, but its first click has already rejected or restored that
+/// model. `ClickUndone` therefore forgets this edit: a model that is rejected now was rejected by
+/// it.
 fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
     match event {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),

@@ -1,4 +1,5 @@
-//! Effect that delays or leads have in each channel, and the gain that leads add above the band.
+//! Effect that delays or leads have in each channel, and the gain that leads add above the band. A
+//! lead filter acts as if a servo were replaced by a faster one (M15).
 
 use egui::{Panel, Ui, vec2};
 

@@ -1,5 +1,5 @@
 //! Views between the side panels. [`view_content`] lists, for each view, its drawing function,
-//! header, background jobs and figure.
+//! header, background jobs and figure; the panels around the view draw what it lists.
 
 pub mod across;
 mod across_chips;

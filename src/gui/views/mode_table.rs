@@ -1,5 +1,5 @@
-//! Table of modes in the displayed condition, and a cache for this table, the zeros and the pole
-//! shifts.
+//! Table of modes in the displayed condition, and a cache for this table, the zeros and the shifts
+//! of the poles due to couplings.
 
 use std::sync::Arc;
 
@@ -12,6 +12,9 @@ use gdcm_words::Table;
 use super::mode_text::{mode_name, participation_words, shown_damping_ratio};
 use crate::gui::state::modes_cache::{CachedModes, ModesInputs};
 use crate::gui::state::window_state::State;
+
+/// States listed for each mode, those that participate most.
+const LISTED_STATES: usize = 2;
 
 impl ModesInputs {
     /// Collects the values on which the cached table, zeros and shifts depend.
@@ -115,8 +118,8 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
 }
 
 /// Builds the mode table for the physics bundle: a row for each mode in the reference model,
-/// followed from model to model. Also returns, for each row, the first model whose pole is an
-/// outlier for the mode.
+/// followed from model to model, with the spread of its poles and the models whose pole is far from
+/// the others (outliers). Also returns, for each row, the first of these models.
 fn modes_table(
     state: &State,
     modes: &ConditionModes,
@@ -144,7 +147,7 @@ fn modes_table(
         let Some(mode) = reference_modes.get(track.reference) else {
             continue;
         };
-        let jumps: Vec<&str> = track
+        let outlier_names: Vec<&str> = track
             .jumps
             .iter()
             .map(|&model| models[model].name.as_str())
@@ -159,8 +162,8 @@ fn modes_table(
             three_decimals(mode.pole.re),
             three_decimals(mode.pole.im),
             three_decimals(track.spread_rad_s),
-            participation_words(mode, reference_model, 2).unwrap_or_default(),
-            jumps.join(", "),
+            participation_words(mode, reference_model, LISTED_STATES).unwrap_or_default(),
+            outlier_names.join(", "),
         ]);
         let first = track.jumps.first();
         outliers.push(first.map(|&model| state.model_id(kind, &models[model].name)));

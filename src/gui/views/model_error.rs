@@ -19,7 +19,7 @@ use crate::gui::widgets::choices::PageOption;
 use crate::gui::widgets::palette::Palette;
 
 /// Draws magnitude ratio and phase difference to the identified model for every kept physics model
-/// and the corrected model, in the response in focus.
+/// and the corrected model, in the response in focus. The Bode view takes over the frequency range.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -27,6 +27,7 @@ pub fn error_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let pair = state.display.selection.pair;
+    // The scene borrows the state: take the view out while the plot is drawn.
     let mut view = std::mem::take(&mut state.display.frequency.error);
     let options = bode_options(state);
     let curves = error_curves(state, pair, &options);
@@ -35,6 +36,7 @@ pub fn error_view_ui(
         None => Vec::new(),
     };
     let reference = error_reference(&curves);
+    // Frequencies at which a pilot would notice the corrected model's error (MUAD).
     let strips = noticed(&curves, &options);
     let title = state.dataset().pair_name(pair);
     let message = error_message(state, pair);
@@ -90,7 +92,8 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: 
     }
 }
 
-/// Returns the message shown if there are no error curves.
+/// Returns the message shown if there are no error curves: first, why the response is not compared;
+/// else, why there are no curves; else, that there is nothing to compare in the band.
 pub fn error_message(state: &State, pair: Pair) -> String {
     let name = state.dataset().pair_name(pair);
     let undefined = match state.shown() {

@@ -1,5 +1,5 @@
-//! Net-gain view: plots of net gains over airspeed, and beside them the evidence for the schedule
-//! form. The header is in `net_gain_header`.
+//! Net-gain view: plots of net gains (output gain times input gain) over airspeed, and beside them
+//! the evidence for the schedule form. The header is in `net_gain_header`.
 
 use egui::{Panel, RichText, ScrollArea, Ui};
 
@@ -80,6 +80,7 @@ pub fn net_gain_view_ui(
 
 /// Draws the evidence for each schedule form; a click selects a form.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    // The tables borrow the state: take the cache out while they are drawn.
     let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
     let mut sorting = state.display.gains.evidence_sorting;
@@ -116,8 +117,13 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     state.display.gains.evidence_sorting = sorting;
 }
 
-/// Builds a plot for each displayed response: net gain at each condition's optimum, and the
-/// schedule.
+/// Builds a plot for each displayed response.
+///
+/// 1. Net gain at each condition's optimum with error bars, and the schedule; bars from earlier
+///    settings are dim.
+/// 2. In grey, the previous analysis; as hollow squares, the overlaid variant.
+/// 3. Titles of responses that are not constrained end in "(free)".
+/// 4. Axis ranges with room for the bars.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let mut pairs = Vec::new();
     let mut figure = Figure::default();

@@ -19,8 +19,9 @@ use crate::gui::widgets::choices::{Toggle, choice_ui};
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
 
-/// Size of the area that explains the control under the pointer \[pt\].
+/// Width of the area that explains the control under the pointer \[pt\].
 const HELP_WIDTH: f32 = 300.0;
+/// Height of that area, two lines \[pt\].
 const HELP_HEIGHT: f32 = 30.0;
 /// Width that the controls need in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
@@ -107,9 +108,9 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the schedule settings, line by line.
+/// Draws the schedule settings that apply to the chosen form, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let rows = [
+    let settings = [
         &setting_table::SCHEDULE,
         &setting_table::SCHEDULED_QUANTITY,
         &setting_table::SECOND_VARIABLE,
@@ -122,7 +123,7 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         .num_columns(2)
         .spacing([12.0, 6.0])
         .show(ui, |ui| {
-            for setting in rows {
+            for setting in settings {
                 if !(setting.control.applies)(&state.study) {
                     continue;
                 }

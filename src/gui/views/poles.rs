@@ -68,12 +68,18 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
 }
 
 /// Draws every model's poles in the displayed condition; a click rejects or restores a model.
+///
+/// 1. Modes, zeros and table from their cache.
+/// 2. On the page with the modes, only the table, or why there is none.
+/// 3. In a high view, the table below the plots.
+/// 4. The figure with its screen marks, below its legend.
 pub fn poles_view_ui(
     ui: &mut Ui,
     state: &mut State,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    // Refreshing borrows the state: take the cache out meanwhile.
     let mut modes = std::mem::take(&mut state.display.poles.modes);
     modes.refresh(state);
     state.display.poles.modes = modes;
@@ -169,8 +175,13 @@ pub fn poles(state: &State) -> Option<Figure> {
     Some(figure)
 }
 
-/// Returns the figure as shown in the window: arcs of equal frequency follow the visible range, and
-/// the nominal model and the representatives have larger marks.
+/// Returns the figure as shown in the window:
+///
+/// 1. the second plot, of the slow modes, has the constant range [`SLOW`];
+/// 2. axes do not move with every update;
+/// 3. the lines of equal damping ratio and frequency (guides) are those of the visible range
+///    instead of the range on paper;
+/// 4. perturbed models have smaller dots than the nominal model and the representatives.
 fn with_screen_marks(mut figure: Figure, view: &mut FigureView, update: AxisUpdate) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
@@ -198,20 +209,25 @@ fn with_screen_marks(mut figure: Figure, view: &mut FigureView, update: AxisUpda
     figure
 }
 
-/// Returns a legend entry's dot size, relative to the usual size. Perturbed models have smaller
-/// dots than the nominal model and the representatives.
+/// Returns the size of the dots with a legend entry, relative to the usual size. The entry ends in
+/// the role's name; dots without an entry are small.
 fn dot_size(key: Option<&str>) -> f64 {
     const LARGE: [Role; 3] = [
         Role::Nominal,
         Role::Representative,
         Role::IdentifiedRepresentative,
     ];
+    const SMALL: f64 = 0.7;
+    /// Rejected models have other legend entries.
+    const IS_REJECTED: bool = false;
     if let Some(key) = key
-        && LARGE.iter().any(|role| key.ends_with(role.key(false)))
+        && LARGE
+            .iter()
+            .any(|role| key.ends_with(role.key(IS_REJECTED)))
     {
         1.0
     } else {
-        0.7
+        SMALL
     }
 }
 
@@ -227,6 +243,8 @@ impl FigureWords for PoleWords<'_> {
         format!("{name}: {} poles and zeros", self.dots)
     }
 
+    /// Describes the mark at `re + i im`: the model's mode with exactly this pole; else, since a
+    /// model's other marks are its zeros, a transmission zero.
     fn status_text(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
         let modes = self.state.modes()?;
         let MarkId::Model(id) = id else {
@@ -234,10 +252,10 @@ impl FigureWords for PoleWords<'_> {
         };
         let index = modes.condition.position(id.bundle, &id.name)?;
         let model = &modes.condition.bundle(id.bundle)[index];
-        let known = modes.bundle(id.bundle)[index]
+        let model_modes = modes.bundle(id.bundle)[index]
             .as_deref()
             .unwrap_or_default();
-        let pointed = known
+        let pointed = model_modes
             .iter()
             .find(|mode| mode.pole.re == re && mode.pole.im == im);
         let mut words = vec![id.name.to_string()];

@@ -10,9 +10,9 @@ use crate::gui::widgets::panel_layout::in_line_ui;
 
 /// Heading height \[pt\].
 const HEADING: f32 = 22.0;
-/// Width of the accent line above the selected requirement's card, and of the line above other
-/// cards \[pt\].
+/// Width of the line above the selected requirement's card \[pt\].
 const ACCENT_LINE: f32 = 2.0;
+/// Width of the line above other cards \[pt\].
 const LINE: f32 = 1.0;
 
 pub(super) struct CardHeading<'a> {
@@ -39,13 +39,14 @@ pub(super) fn card_ui(
     };
     ui.painter().hline(area.x_range(), area.top() + 1.0, stroke);
     let row = Rect::from_min_size(area.min + vec2(0.0, 3.0), vec2(area.width(), HEADING));
-    let right = in_line_ui(ui, row, true, controls).response.rect;
+    let from_right = true;
+    let right = in_line_ui(ui, row, from_right, controls).response.rect;
     let end = if right.width() > 0.0 {
         right.left() - 6.0
     } else {
         row.right()
     };
-    in_line_ui(ui, row.with_max_x(end), false, |ui| {
+    in_line_ui(ui, row.with_max_x(end), !from_right, |ui| {
         ui.label(RichText::new(heading.title).font(medium(BODY_SIZE)));
         ui.add(Label::new(palette.dim(heading.subject)).truncate());
     });

@@ -31,11 +31,12 @@ use crate::gui::widgets::drawer::{Drawer, drawer_ui};
 use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Default and least drawer height \[pt\].
+/// Default drawer height \[pt\], and the least unless the view is lower than twice that.
 const HEIGHT: f32 = 250.0;
 /// Least distance between cards \[pt\].
 const CARD_GAP: f32 = 16.0;
-/// Card widths, as shares of the drawer width without gaps.
+/// Widths of the cards in the order of [`RequirementDetail::ALL`], as shares of the drawer width
+/// without gaps.
 const CARD_SHARES: [f32; 3] = [0.25, 0.37, 0.38];
 /// Width for the numbers beside a single card \[pt\].
 const NUMBERS: f32 = 250.0;
@@ -246,7 +247,8 @@ impl Details<'_> {
         ui.advance_cursor_after_rect(room);
     }
 
-    /// Draws the chosen card, with its numbers at the right.
+    /// Draws the chosen card, with its numbers at the right; the card about modes is a table
+    /// already and takes the whole width.
     fn card_with_numbers_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let detail = state.display.judging.requirements.detail;
         let room = ui.available_rect_before_wrap();
@@ -267,6 +269,8 @@ impl Details<'_> {
         ui.advance_cursor_after_rect(room);
     }
 
+    /// Draws a card: its heading, accented if the card explains the selected requirement; on the
+    /// card about time the selector of the record; and the content, clipped to the card.
     fn card_ui(
         &self,
         ui: &mut Ui,

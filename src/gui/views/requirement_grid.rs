@@ -1,5 +1,10 @@
 //! Requirement grid: a row for each requirement, a column for each condition. In windows narrower
 //! than [`FULL_WIDTH`], each group except that of the selected cell folds to a row of counts.
+//!
+//! A cell has the corrected model's value, on a warning background if it is outside the limit, and
+//! at its left a strip in the warning colour if the physics model's value is outside.
+//! [`GridLayout`] has the columns, [`GridPainter::lines`] the rows, and each kind of row a method
+//! that draws it.
 
 use egui::{
     Align2, EventFilter, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
@@ -36,22 +41,28 @@ const GROUP: f32 = 76.0;
 const NAME: f32 = 158.0;
 const UNIT: f32 = 28.0;
 const LIMIT: f32 = 58.0;
-/// Least and largest width of a condition's column \[pt\].
+/// Least width of a condition's column \[pt\].
 const LEAST_CONDITION: f32 = 40.0;
+/// Largest width of a condition's column \[pt\].
 const MOST_CONDITION: f32 = 72.0;
-/// Row heights if all groups are open, and if groups are folded \[pt\].
+/// Row height if all groups are open \[pt\].
 const ROW: f32 = 19.0;
+/// Row height if groups are folded \[pt\].
 const FOLDED_ROW: f32 = 21.0;
-/// Distance between rows, and additional distance between groups \[pt\].
+/// Distance between rows \[pt\].
 const ROW_GAP: f32 = 2.0;
+/// Additional distance between groups \[pt\].
 const GROUP_GAP: f32 = 4.0;
-/// Width of a cell's strip for the physics model, and distance between cells \[pt\].
+/// Width of a cell's strip for the physics model \[pt\].
 const STRIP: f32 = 5.0;
+/// Distance between cells \[pt\].
 const CELL_GAP: f32 = 2.0;
 /// Distance from a number to its cell's right edge \[pt\].
 const NUMBER_MARGIN: f32 = 8.0;
 /// Row indentation in an open group \[pt\].
 const INDENT: f32 = 13.0;
+/// Share of the warning colour in the background of a cell outside its limit.
+const OUTSIDE_TINT: f32 = 0.32;
 
 /// Draws the grid into the remaining space, with scroll bars where it does not fit.
 pub(super) fn grid_ui(
@@ -371,8 +382,22 @@ impl GridPainter<'_> {
             let color = palette.dim_text;
             ui.painter()
                 .text(at, Align2::LEFT_CENTER, words, small(), color);
-            return;
+        } else {
+            self.counts_ui(ui, row, group, commands);
         }
+    }
+
+    /// Draws a folded group's counts: for each condition, the requirements that are met and those
+    /// that have a verdict. A click selects the condition's first requirement that is not met.
+    fn counts_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        group: RequirementGroup,
+        commands: &mut Vec<Command>,
+    ) {
+        let palette = self.palette;
+        let name = group_name(group);
         for (place, column) in self.columns.iter().enumerate() {
             let found = self.grid.group_cell(group, *column);
             let cell = self.layout.cell(row, place);
@@ -492,8 +517,9 @@ impl GridPainter<'_> {
                 is_selected,
             },
         );
-        // Tab reaches only the selected cell; arrow keys reach the others. A cell that has just
-        // received the focus would lose it without a focusable sense.
+        // Tab reaches only the selected cell (`Sense::click` is focusable, `Sense::CLICK` is not);
+        // arrow keys reach the others. A cell that has just received the focus would lose it
+        // without a focusable sense.
         let id = ui.scope_id().with((key, condition));
         let is_focused = ui.memory(|memory| memory.has_focus(id));
         let sense = if is_selected || is_focused {
@@ -522,7 +548,8 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Moves the selection when an arrow key is pressed.
+    /// Moves selection and focus when arrow keys are pressed, among the rows that are not folded
+    /// and the columns in display order.
     fn move_selection(
         &self,
         ui: &Ui,
@@ -567,7 +594,7 @@ impl GridPainter<'_> {
                 palette.line
             };
             let ground = if look.is_outside {
-                palette.panel.lerp_to_gamma(palette.warning, 0.32)
+                palette.panel.lerp_to_gamma(palette.warning, OUTSIDE_TINT)
             } else {
                 palette.panel
             };
@@ -672,25 +699,31 @@ pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
         ui.add_space(6.0);
     }
     ui.label(palette.small("background: corrected outside"));
-    sample_ui(ui, palette, false);
+    sample_ui(ui, palette, CellPart::Background);
     ui.add_space(6.0);
     ui.label(palette.small("strip: physics outside"));
-    sample_ui(ui, palette, true);
+    sample_ui(ui, palette, CellPart::Strip);
 }
 
-/// Draws a small cell with its strip or its background in the warning colour.
-fn sample_ui(ui: &mut Ui, palette: &Palette, is_strip: bool) {
+/// Part of a cell that the legend explains.
+#[derive(Clone, Copy)]
+enum CellPart {
+    Strip,
+    Background,
+}
+
+/// Draws a small cell with one part in the warning colour.
+fn sample_ui(ui: &mut Ui, palette: &Palette, warned: CellPart) {
     const SIZE: Vec2 = vec2(22.0, 12.0);
     let (rect, _) = ui.allocate_exact_size(SIZE, Sense::hover());
     let strip = rect.with_max_x(rect.left() + 4.0);
     let body = rect.with_min_x(rect.left() + 5.0);
-    let (strip_color, ground) = if is_strip {
-        (palette.warning, palette.panel)
-    } else {
-        (
+    let (strip_color, ground) = match warned {
+        CellPart::Strip => (palette.warning, palette.panel),
+        CellPart::Background => (
             palette.line,
-            palette.panel.lerp_to_gamma(palette.warning, 0.32),
-        )
+            palette.panel.lerp_to_gamma(palette.warning, OUTSIDE_TINT),
+        ),
     };
     ui.painter().rect_filled(strip, 1.5, strip_color);
     ui.painter().rect_filled(body, 2.0, ground);

@@ -34,9 +34,9 @@ use crate::message::Message;
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 90.0);
-/// Height of the line with the time shares inside the tolerance, and distance between the shares
-/// \[pt\].
+/// Height of the line with the time shares inside the tolerance \[pt\].
 const SHARES: f32 = 16.0;
+/// Distance between the shares \[pt\].
 const SHARES_GAP: f32 = 7.0;
 /// Relative height of the test-input panel.
 const INPUT_WEIGHT: f64 = 0.4;
@@ -108,36 +108,41 @@ pub(super) fn time_subject(state: &State, selected: Option<Requirement>) -> Stri
     }
 }
 
-/// Returns the quantity to draw: the selected requirement's, else the first for the output in
-/// focus, else the record's first.
+/// Returns the quantity to draw, among those with a response of at least one model: first the
+/// selected requirement's; else the first for the output in focus; else the record's first.
 fn shown_quantity<'a>(
     state: &State,
     history: &'a RecordHistory,
     selected: Option<Requirement>,
 ) -> Option<&'a QuantityHistory> {
-    let drawn = || {
-        history
-            .quantities
-            .iter()
-            .filter(|quantity| !quantity.models.is_empty())
-    };
+    let drawn: Vec<&QuantityHistory> = history
+        .quantities
+        .iter()
+        .filter(|quantity| !quantity.models.is_empty())
+        .collect();
     if let Some(Requirement::PeakError(row)) = selected
         && let Some(tolerance) = state.study.requirements.tolerances.rows().get(row)
-        && let Some(found) = drawn().find(|quantity| {
+        && let Some(found) = drawn.iter().find(|quantity| {
             quantity.tolerance.quantity == tolerance.quantity
                 && quantity.tolerance.channel == tolerance.channel
         })
     {
-        return Some(found);
+        return Some(*found);
     }
     let focused = state.display.selection.pair.output;
-    drawn()
+    drawn
+        .iter()
         .find(|quantity| quantity.output == focused)
-        .or_else(|| drawn().next())
+        .or(drawn.first())
+        .copied()
 }
 
-/// Draws the input that was moved, the quantity with its tolerance corridor, and every model's
-/// error; for the test input, the input and the output in focus.
+/// Draws the detail that is chosen in the selector:
+///
+/// - a record: the input that was moved, the quantity with its tolerance corridor, and every
+///   model's error; without a quantity to draw, the reasons;
+/// - the test input, also without records: its fields, then the input and the output in focus;
+/// - without a result, the reason.
 pub(super) fn time_detail_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -275,6 +280,7 @@ pub(super) fn time_numbers_ui(
                 ui.end_row();
             }
         });
+    // The description of a tolerance does not depend on the row in `PeakError`.
     let limit = RequirementLimit::Tolerance(quantity.tolerance.clone());
     let text = format!(
         "Tolerance: {}. Windows of at most 10 s, each from an estimated initial state.",
@@ -283,7 +289,8 @@ pub(super) fn time_numbers_ui(
     ui.add(Label::new(palette.small(text)).wrap());
 }
 
-/// Draws the fields for the test input: shape, size and duration.
+/// Draws the fields for the test input: shape, size and duration; above them, why no record is
+/// compared.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     if let Some(reading) = &state.records.reading {
         ui.label(palette.small(format!("reading {reading} …")));
@@ -336,7 +343,8 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
-/// Draws a number field; returns the typed number.
+/// Draws a number field; returns a newly typed number; `None` without one, or if the field was
+/// emptied.
 fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
     number_entry_ui(ui, name, &number(value), "", 48.0, commands)?
 }

@@ -13,8 +13,9 @@ use super::need::{Need, current_analysis};
 use crate::gui::state::requirements_display::RequirementDetail;
 use crate::gui::state::window_state::State;
 
-/// Returns the index of the record in the requirement details: the chosen record, else the first
-/// held-out record, else the first record in use; `None` without records.
+/// Returns the index of the record in the requirement details: first the record chosen for the
+/// condition, if it is still in use; else the first held-out record; else the first record in use;
+/// `None` without records in use.
 pub(super) fn compared_record(state: &State) -> Option<usize> {
     let condition = state.condition().id();
     let records = state.records.conditions.get(&condition)?;
@@ -82,7 +83,8 @@ fn test_job(state: &State) -> Option<TestAnswersJob> {
     })
 }
 
-/// Returns the computation needed for the responses over time.
+/// Returns the computation needed for the responses over time: to the record, else to the test
+/// input.
 pub fn over_time_need(state: &State) -> Option<Need> {
     match record_job(state) {
         Some(job) => Some(Need::RecordHistory(job)),

@@ -52,7 +52,8 @@ pub(super) fn limit_editor_ui(
     }
 }
 
-/// Fields for the study's limits.
+/// Fields for the limit of one requirement. A field that several rows share (bandwidth, phase
+/// delay, J, MUAD) changes the limit of all of them.
 struct LimitEditor<'a> {
     state: &'a State,
     palette: &'a Palette,

@@ -1,4 +1,5 @@
-//! Modes in the displayed condition, as a card in the requirement details.
+//! Modes in the displayed condition, as a card in the requirement details: the modes of the
+//! identified model, each compared with its counterpart in the judged model (M17.3).
 
 use egui::{Align2, Rect, Role, ScrollArea, Sense, Ui, pos2, vec2};
 
@@ -52,6 +53,8 @@ pub(super) fn modes_detail_ui(
             modes.push(mode);
         }
     }
+    // Gains, delays and leads move no pole: only with couplings, the corrected model has modes of
+    // its own.
     let is_coupled = modes.iter().any(|mode| mode.corrected_verdict.is_some());
     let width = ui.available_width();
     let (head, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
@@ -142,7 +145,7 @@ impl ModeRow<'_> {
         }
     }
 
-    /// Returns the mode's name, else its number.
+    /// Returns the mode's name with a capital letter, else its number.
     fn name(&self) -> String {
         match self.mode.name {
             Some(name) => {

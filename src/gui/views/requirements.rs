@@ -1,5 +1,5 @@
 //! Requirements in addition to J, as in a qualification: a grid of requirements and conditions
-//! above details about the selected cell (M17).
+//! above details about the selected cell (M17, docs/requirements.md).
 
 use std::sync::Arc;
 
@@ -93,7 +93,8 @@ pub fn requirements_needs(state: &State) -> Vec<Need> {
     needs
 }
 
-/// Draws the counts, the grid, and the drawer with the details.
+/// Draws the drawer with the details at the bottom, which must come first because the others take
+/// the rest; then the counts and the grid. Without results, only the reason.
 pub fn requirements_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -133,7 +134,8 @@ impl RequirementsHeader<'_> {
         let width = ui.available_width();
         let size = vec2(width, COUNTS);
         let (row, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-        let legend = in_line_ui(ui, row, true, |ui| grid_legend_ui(ui, palette));
+        let from_right = true;
+        let legend = in_line_ui(ui, row, from_right, |ui| grid_legend_ui(ui, palette));
         let rest = row.with_max_x(legend.response.rect.left() - 8.0);
         let layout = Layout::left_to_right(Align::Center);
         let builder = egui::UiBuilder::new().max_rect(rest).layout(layout);

@@ -1,5 +1,5 @@
 //! Bars that divide the net gains' scatter among its sources: trim, identification, and
-//! unexplained.
+//! unexplained (M13.5).
 
 use egui::{
     Align2, Color32, FontId, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
@@ -94,8 +94,8 @@ impl ScatterBars<'_> {
         let mut from = bar.left();
         for (share, color) in shares.into_iter().zip(source_colors(self.palette)) {
             let to = from + bar.width() * share as f32;
-            let part = Rect::from_x_y_ranges(from..=to, bar.y_range());
-            painter.rect_filled(part, 0.0, color);
+            let area = Rect::from_x_y_ranges(from..=to, bar.y_range());
+            painter.rect_filled(area, 0.0, color);
             from = to;
         }
     }

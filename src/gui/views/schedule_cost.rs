@@ -1,9 +1,10 @@
-//! Dock page about the schedule for the response in focus: net gain over airspeed, and J before the
-//! correction, at each optimum and under the schedule.
+//! Dock page "Schedule cost", about the response in focus. Two plots over airspeed: the net gain
+//! with the schedule; and J before the correction, at each condition's optimum and under the
+//! schedule.
 
 use egui::{Ui, vec2};
 
-use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::gains::{GainQuantity, add_previous, quieten};
 use gdcm_plot::figure::marks::MarkId;
@@ -17,6 +18,11 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
+/// Index of the plot of the net gain; the other plot is that of J.
+const NET_GAIN_PLOT: usize = 0;
+/// Whether significant differences are marked: not on this page, only in the net-gain view.
+const SHOWS_DIFFERENCES: bool = false;
+
 /// Draws net gain and J over airspeed for the response in focus; a click selects a condition.
 pub(super) fn schedule_cost_view_ui(
     ui: &mut Ui,
@@ -24,29 +30,18 @@ pub(super) fn schedule_cost_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    let pair = state.display.selection.pair;
+    let figure = cost_figure(state, pair);
+    let message = match state.analysis() {
+        Some(_) => "The response cannot be compared",
+        None => state.results.absence(),
+    };
+    // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
         .display
         .figures
         .remove(&View::ScheduleCost)
         .unwrap_or_default();
-    let pair = state.display.selection.pair;
-    let mut figure = Figure::default();
-    if let Some(analysis) = state.analysis()
-        && let Some(found) = schedule_cost_figure(analysis, painted_uncertainty(state), pair)
-    {
-        figure = found;
-        dim_older_bars(state, &mut figure);
-        if let Some(previous) = state.previous_analysis() {
-            add_previous(&mut figure, &[GainQuantity::NetGain(pair)], previous);
-        }
-        let selected = MarkId::Condition(state.condition().id());
-        quieten(&mut figure, &selected, false);
-        figure = figure.with_ranges();
-    }
-    let message = match state.analysis() {
-        Some(_) => "The response cannot be compared",
-        None => state.results.absence(),
-    };
     let words = CostWords { state };
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
@@ -68,6 +63,31 @@ pub(super) fn schedule_cost_view_ui(
         commands.extend(gain_command(state, event));
     }
     state.display.figures.insert(View::ScheduleCost, view);
+}
+
+/// Builds the figure; empty without an analysis, or if the response cannot be compared in any
+/// condition.
+///
+/// 1. Plots of the net gain, with error bars if they are shown, and of J.
+/// 2. Dims error bars from earlier settings.
+/// 3. Adds the previous analysis in grey, behind the net gains only: J has no previous marks.
+/// 4. Rings the dot of the displayed condition, and removes the other labels.
+/// 5. Stores the axis ranges, which must include the marks added before.
+fn cost_figure(state: &State, pair: Pair) -> Figure {
+    let Some(analysis) = state.analysis() else {
+        return Figure::default();
+    };
+    let uncertainty = painted_uncertainty(state);
+    let Some(mut figure) = schedule_cost_figure(analysis, uncertainty, pair) else {
+        return Figure::default();
+    };
+    dim_older_bars(state, &mut figure);
+    if let Some(previous) = state.previous_analysis() {
+        add_previous(&mut figure, &[GainQuantity::NetGain(pair)], previous);
+    }
+    let selected = MarkId::Condition(state.condition().id());
+    quieten(&mut figure, &selected, SHOWS_DIFFERENCES);
+    figure.with_ranges()
 }
 
 /// Returns the page's context: "LON → Q, schedule against the optimum of each condition".
@@ -97,19 +117,19 @@ impl FigureWords for CostWords<'_> {
             .dataset()
             .pair_name(self.state.display.selection.pair);
         match plot {
-            0 => format!("Net gain and schedule of {name}"),
+            NET_GAIN_PLOT => format!("Net gain and schedule of {name}"),
             _ => format!("J of {name} with the schedule"),
         }
     }
 
-    /// Describes a dot: the net gain, or J before the correction, at the optimum and under the
-    /// schedule.
+    /// Describes a dot: in the plot of the net gain its value; in the plot of J, whichever of its
+    /// dots is pointed at, J before the correction, at the optimum and under the schedule.
     fn status_text(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = *id else {
             return None;
         };
         let condition = self.condition(id)?;
-        if plot == 0 {
+        if plot == NET_GAIN_PLOT {
             return Some(format!("{condition} · net gain {value:.3}"));
         }
         let pair = self.state.display.selection.pair;

@@ -1,6 +1,9 @@
 //! Tables about the schedule: error for each form in fitted and in left-out conditions, error for
 //! each polynomial degree in the signed delays, residuals, and coefficients; with a cache for the
-//! comparisons.
+//! comparisons. The net-gain view and the evidence view draw them.
+//!
+//! *Fit* is the error in the conditions to which a form is fitted; *unseen* that in each condition
+//! of the form fitted without it.
 
 use std::sync::Arc;
 
@@ -174,7 +177,7 @@ pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Op
 }
 
 /// Tabulates each condition's residuals from the current schedule, for each displayed response \[%
-/// of the scheduled gain\].
+/// of the scheduled gain\]. `None` unless the current form is among the compared forms.
 pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> Option<Table> {
     let form = evidence.forms.form(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);

@@ -33,8 +33,9 @@ const TYPED_WIDTH: f32 = 54.0;
 const IDLE_SOURCE: &str = "With leads, G is computed from the difference between the representatives that \
     remains after the leads";
 
-/// Height of a row with a caption or a segmented control \[pt\].
+/// Height of a row with a caption \[pt\].
 const ROW: f32 = 20.0;
+/// Height of a segmented control \[pt\].
 const SEGMENTS: f32 = 24.0;
 /// Slider handle radius relative to the slider height, as in egui.
 const HANDLE_PART: f32 = 0.4;
@@ -51,7 +52,7 @@ pub struct SettingControls<'a, 'c> {
 }
 
 impl SettingControls<'_, '_> {
-    /// Pushes the command that changes a setting.
+    /// Pushes the command that changes a setting to a value in stored units.
     pub(super) fn set(&mut self, setting: &'static Setting, value: impl Into<Value>) {
         self.commands.push(setting.to(value).into());
     }
@@ -152,7 +153,9 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the control that suits the kind of setting.
+    /// Draws the control that suits the kind of setting. An optional number with an initial value
+    /// (`on`) is a threshold that can be switched off; without one, the program determines the
+    /// number unless it is set by hand.
     pub fn control_ui(&mut self, setting: &'static Setting) {
         let value = setting.value(&self.state.study.settings);
         match (setting.kind, value) {
@@ -353,22 +356,23 @@ impl SettingControls<'_, '_> {
         initial: f64,
         range: [f64; 2],
     ) {
-        let mut counts = value != Value::Nothing;
+        let mut is_enabled = value != Value::Nothing;
         let words = setting_words(setting);
-        let response = self.explained(words.help, |ui| ui.checkbox(&mut counts, "from"));
+        let response = self.explained(words.help, |ui| ui.checkbox(&mut is_enabled, "from"));
         let name = format!("{} counts", words.caption);
-        let clicked = named_switch(response, Role::CheckBox, counts, name).changed();
+        let clicked = named_switch(response, Role::CheckBox, is_enabled, name).changed();
         let shown = match value {
             Value::Number(value) => value,
             _ => initial,
         };
         let field = number_field(setting, setting_words(setting).label, range);
         let entered = self.explained(words.help, |ui| {
-            ui.add_enabled_ui(counts, |ui| field.ui(ui, shown)).inner
+            ui.add_enabled_ui(is_enabled, |ui| field.ui(ui, shown))
+                .inner
         });
         if clicked {
-            let enabled = if counts { Some(initial) } else { None };
-            self.set(setting, enabled);
+            let threshold = if is_enabled { Some(initial) } else { None };
+            self.set(setting, threshold);
             // Each click is a separate undo step.
             self.commands.push(StudyCommand::EndEdit.into());
         }
@@ -376,12 +380,13 @@ impl SettingControls<'_, '_> {
     }
 }
 
-/// Returns the horizontal position of a value on a slider rail.
+/// Returns the horizontal position of a value on a slider rail, as egui's logarithmic slider places
+/// its handle: zero and values below [`SLIDER_START`] are at the left end.
 pub fn slider_place(rail: Rect, value: f64) -> f32 {
     let ends = [SLIDER_START.log10(), SLIDER_END.log10()];
     let log = value.max(SLIDER_START).log10().clamp(ends[0], ends[1]);
-    let part = (log - ends[0]) / (ends[1] - ends[0]);
-    rail.left() + part as f32 * rail.width()
+    let share = (log - ends[0]) / (ends[1] - ends[0]);
+    rail.left() + share as f32 * rail.width()
 }
 
 /// Creates a setting's number field in display units; the limits are in stored units.

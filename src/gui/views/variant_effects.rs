@@ -46,7 +46,8 @@ enum Effect {
     Cost(Pair),
     /// Gain objective in the displayed condition.
     Objective,
-    /// Mean change in J with the schedule, over all on-axis responses and conditions.
+    /// Mean change in J with the schedule, over all conditions and the responses in the objective:
+    /// the on-axis responses, or all if none is on-axis.
     MeanChange,
 }
 
@@ -96,8 +97,8 @@ impl Effect {
     }
 }
 
-/// Computes the nominal models' mean change in J with the schedule, over the on-axis responses in
-/// all assessed conditions; `None` without an assessed response.
+/// Computes the nominal models' mean change in J with the schedule, over the responses in the
+/// objective in all assessed conditions; `None` without an assessed response.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
     let mut changes = Vec::new();

@@ -138,6 +138,7 @@ fn declarations(rules: &Rules, scope: &FileScope) -> ChannelDeclarations {
     }
 }
 
+/// Returns the command that replaces the units; a channel with a unit loses its factor.
 fn units_change(
     assembly: &AssemblyState,
     scope: &FileScope,
@@ -152,6 +153,7 @@ fn units_change(
     })
 }
 
+/// Returns the command that replaces the factors; a channel with a factor loses its unit.
 fn factors_change(
     assembly: &AssemblyState,
     scope: &FileScope,

@@ -1,4 +1,5 @@
-//! Model table: a row per model, sortable by every column.
+//! Model table: a row per model, sortable by every column. A *part* is a model that was found in
+//! the files, with what the rules say about it.
 
 use egui::{Color32, Rect, Role, ScrollArea, Sense, Ui, vec2};
 

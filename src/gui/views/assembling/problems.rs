@@ -14,7 +14,9 @@ const MOST_LINES: usize = 200;
 /// models.
 const MOST_TABLES: usize = 5;
 
-/// Shows a line for each incomplete item; a click displays its model.
+/// Shows, from top to bottom: how many items are incomplete; if none, the conditions without
+/// identified models; then in a scroll area the cautions, a line for each incomplete item, tables
+/// without models, and unused content. A click on a line displays its model.
 pub(super) fn problems_ui(
     ui: &mut Ui,
     state: &AssemblyState,

@@ -68,8 +68,8 @@ fn reading_ui(
         let parts = assembly.assembly().parts();
         let included = parts.iter().filter(|part| !part.row.left_out).count();
         if !parts.is_empty() {
-            let all = counted(parts.len(), "model");
-            ui.label(palette.small(format!("{included} of {all} included")));
+            let models = counted(parts.len(), "model");
+            ui.label(palette.small(format!("{included} of {models} included")));
         }
         return;
     };

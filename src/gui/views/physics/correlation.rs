@@ -13,6 +13,8 @@ use crate::gui::widgets::palette::{Palette, small};
 
 /// Least correlation whose number is written into its cell.
 const WRITTEN: f64 = 0.3;
+/// Cell side above which a number fits into the cell \[pt\].
+const WRITABLE_CELL: f32 = 18.0;
 /// Maximum cell side \[pt\].
 const LARGEST_CELL: f32 = 26.0;
 /// Room for row and column numbers \[pt\].
@@ -27,7 +29,12 @@ pub(super) struct CorrelationMatrix<'a> {
 }
 
 impl CorrelationMatrix<'_> {
-    /// Draws the matrix in ranking order; a click on a row selects its parameter.
+    /// Draws the matrix; a click on a cell selects the parameter of its row.
+    ///
+    /// Rows and columns are the fitted parameters in ranking order, with their numbers at the left
+    /// and at the top. Row `k` has the correlations with the parameters `1 … k − 1` (the lower
+    /// triangle), and behind a gap the share of its effect that the channels can take. Cells are as
+    /// large as width and height allow.
     pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let ranked = self.fitted();
         let count = ranked.len();
@@ -67,6 +74,7 @@ impl CorrelationMatrix<'_> {
             room.top() + 8.0,
         );
         self.text(ui, channel_at, "channels");
+        // In the empty upper triangle.
         let title_at = pos2(corner.x + 0.62 * side * count as f32, corner.y + 6.0);
         ui.painter().text(
             title_at,
@@ -87,22 +95,21 @@ impl CorrelationMatrix<'_> {
         ranked
     }
 
+    /// Returns the correlation of two parameters, given by their indices in the findings; 0 if one
+    /// is not fitted.
     fn correlation(&self, parameter: usize, other: usize) -> f64 {
         let diagnosis = &self.findings.diagnosis;
-        let place = |wanted: usize| {
-            diagnosis
-                .fit
-                .fitted
-                .iter()
-                .position(|fitted| *fitted == wanted)
-        };
-        match (place(parameter), place(other)) {
+        let fitted = &diagnosis.fit.fitted;
+        let row = fitted.iter().position(|fitted| *fitted == parameter);
+        let column = fitted.iter().position(|fitted| *fitted == other);
+        match (row, column) {
             (Some(row), Some(column)) => diagnosis.identifiability.correlation[(row, column)],
             _ => 0.0,
         }
     }
 
-    /// Paints a cell, brighter for a stronger correlation; orange above `limit`.
+    /// Paints a cell with a correlation or a share: brighter for a larger magnitude, orange above
+    /// `limit`.
     fn cell_ui(&self, ui: &Ui, place: Rect, value: f64, limit: f64) {
         let inner = place.shrink(1.0);
         let strength = value.abs().clamp(0.0, 1.0) as f32;
@@ -113,7 +120,7 @@ impl CorrelationMatrix<'_> {
             self.palette.text.gamma_multiply(0.06 + 0.4 * strength)
         };
         ui.painter().rect_filled(inner, 2.0, color);
-        if value.abs() >= WRITTEN && place.width() > 18.0 {
+        if value.abs() >= WRITTEN && place.width() > WRITABLE_CELL {
             let text = short_number(value);
             let color = if is_strong {
                 self.palette.background
@@ -126,7 +133,7 @@ impl CorrelationMatrix<'_> {
     }
 
     /// Gives a cell an accessible name, explains it under the pointer, and selects its parameter on
-    /// a click.
+    /// a click. The cell is that of the correlation with `other`; `None` for the channels' share.
     fn words_ui(
         &self,
         ui: &mut Ui,

@@ -219,6 +219,7 @@ impl Evidence<'_> {
     }
 }
 
+/// Returns the command for a decision about a parameter.
 fn decision(name: &str, decision: ParameterDecision) -> Command {
     Edit::DecideParameter {
         name: name.to_owned(),
@@ -227,6 +228,8 @@ fn decision(name: &str, decision: ParameterDecision) -> Command {
     .into()
 }
 
+/// Tabulates what the diagnosis knows about a parameter; a row is omitted if its quantity is
+/// undefined, as for a value set by hand.
 fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings) -> Table {
     let diagnosis = diagnosed.diagnosis;
     let mut table = Table::new("Evidence", ["quantity", "value"]);
@@ -275,7 +278,9 @@ fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings
     table
 }
 
-/// Returns the variance sources with their shares \[%\].
+/// Returns the sources of the value's variance with their shares \[%\]: how much the value changes
+/// when a condition, an output, an input or a third of the band is left out, and the prior (M18.3).
+/// A source with a single member is omitted; without variance there are none.
 fn variance_shares(variance: ValueVariance) -> Vec<(&'static str, f64)> {
     let total = variance.total();
     let sources = [
@@ -286,11 +291,11 @@ fn variance_shares(variance: ValueVariance) -> Vec<(&'static str, f64)> {
         ("the prior", Some(variance.prior)),
     ];
     let mut shares = Vec::new();
-    for (source, part) in sources {
-        if let Some(part) = part
+    for (source, variance) in sources {
+        if let Some(variance) = variance
             && total > 0.0
         {
-            shares.push((source, 100.0 * part / total));
+            shares.push((source, 100.0 * variance / total));
         }
     }
     shares

@@ -1,5 +1,6 @@
 //! Physics parameters: which would have to change, and by how much, so that the physics models
-//! match flight in all conditions at once (M18).
+//! match flight in all conditions at once (M18, docs/physics.md). A parameter is *fitted* if it is
+//! switched on and not set by hand, and *named* if the diagnosis proposes its change.
 //!
 //! | file | content |
 //! |---|---|
@@ -50,6 +51,8 @@ pub use use_parameters::{physics_header_ui, physics_job, unused_named};
 
 /// Height of the verdict sentence's box \[pt\].
 const SENTENCE: f32 = 52.0;
+/// Margin above and below the verdict sentence \[pt\].
+const SENTENCE_MARGIN: i8 = 8;
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 120.0);
 /// Width for the correlation matrix, as a share of the view width.
@@ -60,7 +63,8 @@ const CONDITIONS_PART: f32 = 0.46;
 /// Minimum view height for showing everything at once \[pt\].
 const LEAST_WHOLE: f32 = 640.0;
 
-/// Returns the pages; none in a window that shows everything at once.
+/// Returns the pages; none in a window that shows everything at once, as [`physics_view_ui`]
+/// decided in the last frame.
 pub fn physics_pages(state: &State) -> Vec<PageEntry> {
     if state.display.physics.shows_everything {
         return Vec::new();
@@ -98,8 +102,14 @@ pub fn physics_pages(state: &State) -> Vec<PageEntry> {
     pages
 }
 
-/// Draws verdict, ranking, correlation and plots; in a low window, only the part on the selected
-/// page.
+/// Draws verdict, ranking, correlation and plots.
+///
+/// 1. Whether the window is wide and high enough for everything at once.
+/// 2. Exits with a message: the diagnosis failed; there is none yet, or the study selects no
+///    parameters; all values are set by hand.
+/// 3. The verdict, in every window.
+/// 4. Everything at once: ranking beside correlation, below them the selected parameter in each
+///    condition, at the bottom the plots before and after; else the part on the selected page.
 pub fn physics_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -186,10 +196,11 @@ fn sentence_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
     let frame = Frame::new()
         .fill(palette.raised)
         .corner_radius(6.0)
-        .inner_margin(Margin::symmetric(12, 8));
+        .inner_margin(Margin::symmetric(12, SENTENCE_MARGIN));
     frame.show(ui, |ui| {
-        ui.set_min_size(vec2(ui.available_width(), SENTENCE - 16.0));
-        ui.set_max_height(SENTENCE - 16.0);
+        let height = SENTENCE - 2.0 * f32::from(SENTENCE_MARGIN);
+        ui.set_min_size(vec2(ui.available_width(), height));
+        ui.set_max_height(height);
         let text = verdict_text(findings);
         let label = Label::new(RichText::new(&text).size(BODY_SIZE)).wrap();
         ui.add(label).on_hover_text(text);
@@ -218,6 +229,7 @@ fn conditions_ui(
     commands: &mut Vec<Command>,
 ) {
     let selected = state.selected_parameter(findings);
+    // The scene borrows the state: take the view out while the figure is drawn.
     let figure =
         physics_figure(findings, state.dataset(), assessment.level, selected).unwrap_or_default();
     let mut view = state

@@ -1,5 +1,6 @@
 //! Ranking of the physics parameters: change with its interval, position on an axis of plausible
-//! changes, share of the misfit that each explains, and verdict (M18.4).
+//! changes, share of the misfit that each explains, and verdict (M18.4). The unit of that axis is
+//! the parameter's plausible standard deviation, the engineer's prior for its change.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 
@@ -145,6 +146,7 @@ impl Ranking<'_> {
         painted_text(ui, row, columns.bar, "explained, %", small(), color);
     }
 
+    /// Draws the row of the parameter with this index; `place` is its rank, counted from 1.
     fn row_ui(
         &self,
         ui: &mut Ui,
@@ -169,7 +171,8 @@ impl Ranking<'_> {
             .asks(DisplayCommand::ShowParameter(name.clone()), commands);
         if self.has_boxes {
             let left = row.left() + columns.check;
-            fit_box_ui(ui, row, left, name, true, self.palette, commands);
+            let is_on = true;
+            fit_box_ui(ui, row, left, name, is_on, self.palette, commands);
         }
         let is_named = diagnosed.diagnosis.is_named();
         let color = if is_named {
@@ -214,7 +217,8 @@ impl Ranking<'_> {
         row_text_within(ui, row, columns.verdict, words, BODY_SIZE, color);
     }
 
-    /// Draws the axis in plausible standard deviations with the value and its interval.
+    /// Draws the axis in plausible standard deviations: shaded within one of them, and with the
+    /// value and its interval. A parameter that is named has a filled dot, another a ring.
     fn axis_ui(&self, ui: &Ui, row: Rect, columns: Columns, diagnosed: &DiagnosedParameter<'_>) {
         let axis = SdAxis::new(row, columns);
         let plausible = Rect::from_x_y_ranges(
@@ -263,8 +267,10 @@ impl Ranking<'_> {
         full
     }
 
-    /// Draws the share of the misfit that a parameter explains: alone (pale), and by its step in
-    /// the stepwise list (solid).
+    /// Draws the share of the misfit that a parameter explains: alone (pale, and in numbers), and
+    /// by its step in the stepwise list, in which each step adds the parameter that explains most
+    /// of the rest (solid). Nothing for a parameter without a share: its value is set by hand, or
+    /// there are too few conditions.
     fn explained_ui(&self, ui: &Ui, row: Rect, columns: Columns, index: usize) {
         let diagnosis = &self.findings.diagnosis.parameters[index];
         let Some(ratio_alone) = diagnosis.ratio_alone else {
@@ -291,7 +297,8 @@ impl Ranking<'_> {
         let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
         if self.has_boxes {
             let left = row.left() + columns.check;
-            fit_box_ui(ui, row, left, name, false, self.palette, commands);
+            let is_on = false;
+            fit_box_ui(ui, row, left, name, is_on, self.palette, commands);
         }
         let color = self.palette.dim_text;
         row_text_within(ui, row, columns.name, name, BODY_SIZE, color);

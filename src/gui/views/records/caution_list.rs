@@ -1,5 +1,5 @@
-//! Cautions about the identified models, each in two lines with a button; further remedies are in a
-//! menu.
+//! Cautions about the identified models, each in two lines with a button for its first remedy;
+//! further remedies (`caution_remedies`) are in a menu.
 
 use std::sync::Arc;
 

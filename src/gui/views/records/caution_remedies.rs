@@ -1,4 +1,6 @@
-//! Buttons that remove a caution's cause.
+//! Buttons that remove a caution's cause: [`caution_remedies`] for each kind of caution, and
+//! [`band_remedy`] for a failed identification. The first is the button beside the caution, the
+//! others are in a menu.
 
 use egui::Ui;
 
@@ -188,7 +190,9 @@ fn contradiction_remedies(
     remedies
 }
 
-/// Returns a remedy that repairs a record's identified fault, in addition to earlier remedies.
+/// Returns a remedy that repairs a record's identified fault (a late channel or a wrong factor), in
+/// addition to the corrections that already apply to its channels; `None` without an identified
+/// fault.
 fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Option<Remedy> {
     let row = records.row_of_record(contradicting.record)?;
     let fault = contradicting.fault.as_ref()?;

@@ -1,4 +1,7 @@
-//! Channel assignment in a record: column, factor, time skew.
+//! Page Columns: assignment of the displayed record's columns to the channels, with factor and time
+//! skew (the delay with which a channel is logged). Columns and factors apply to all records with
+//! the same columns, the common skew to all records, and the last two fields (a remedy) to this
+//! record.
 
 use egui::{Grid, ScrollArea, Ui};
 
@@ -209,8 +212,9 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Shows the conversion factor to the dataset's unit. If the file does not give the unit, shows
-    /// the possible units, with the assumed one selected.
+    /// Shows the conversion factor to the dataset's unit. If the file does not give the unit,
+    /// shows the plausible units instead: "rad/s?" if the dataset's unit is assumed, "unit?"
+    /// if none is.
     fn factor_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
         let open_units = match self.column_use {

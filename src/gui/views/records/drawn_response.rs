@@ -1,4 +1,7 @@
 //! Curves for an identified response: measured points, models and their confidence bands.
+//!
+//! Unwrapped phases are known up to whole turns. All curves are shifted by whole turns to the
+//! branch of the *anchor*, the first trusted measured point: there each is within half a turn.
 
 use nalgebra::Complex;
 
@@ -132,8 +135,13 @@ impl DrawnResponse {
         }
     }
 
-    /// Returns an identification's curves. The models' phases are on the branch of the first
-    /// trusted measured point, the anchor.
+    /// Returns an identification's curves.
+    ///
+    /// 1. Measured points, and the anchor.
+    /// 2. Intervals in which the model deviates from the points and, with references, in which the
+    ///    input was not excited.
+    /// 3. Refined model on its own frequencies, and on those of its confidence band.
+    /// 4. Phase residuals of the measured points, with the model at their frequencies.
     pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
         let points = &found.measured.points;
         let measured = measured_points(points, pair);
@@ -174,8 +182,9 @@ impl DrawnResponse {
         drawn
     }
 
-    /// Returns the points on a curve from another source, with its phase shifted to the branch of
-    /// these curves.
+    /// Returns the finite points on a curve from another source, with its phase shifted to the
+    /// branch of these curves: first that of the anchor, else that of the refined model's first
+    /// point.
     pub(super) fn aligned(&self, curve: &BodeCurve) -> Vec<CurvePoint> {
         let anchor = self
             .measured

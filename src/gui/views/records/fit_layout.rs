@@ -1,5 +1,15 @@
 //! Layout of the page Fit: time charts above the response. Texts have fixed heights, charts share
-//! the remaining height.
+//! the remaining height in proportion to their usual heights.
+//!
+//! ```text
+//! chips
+//! lane with the parts
+//! charts over time: input, output in focus, further outputs
+//! ----------------------------------------------------------
+//! heading of the response
+//! magnitude          | phase
+//! partial coherence  | phase residual (in a low window: the phase goes down to here)
+//! ```
 
 use egui::{Rect, pos2};
 
@@ -67,7 +77,8 @@ pub(super) struct CaptionedChart {
 }
 
 impl FitLayout {
-    /// Divides an area; `more_outputs` outputs are to be drawn below the output in focus.
+    /// Divides an area; `more_outputs` outputs are to be drawn below the output in focus, of which
+    /// a low area draws none. Charts keep at least 0.3 times their usual heights.
     pub(super) fn new(area: Rect, more_outputs: usize) -> Self {
         let is_full = area.height() >= LEAST_FULL;
         let more = if is_full {

@@ -1,5 +1,5 @@
-//! Summary of the displayed condition's identification: the recommended model's costs and order,
-//! its use, and progress or failure.
+//! Summary of the displayed condition's identification, at the top of the right panel: the
+//! recommended model's costs and order, its use, and progress or failure.
 
 use egui::{Color32, Label, ProgressBar, Rect, RichText, Role, Sense, Ui, UiBuilder, vec2};
 
@@ -39,6 +39,9 @@ pub(super) fn fit_summary_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     });
 }
 
+/// Draws the heading, and below it: first, the progress of a running identification; else the
+/// reason for a failure, with the band that would let it succeed; else the figures of the finished
+/// one (or that there is none), its use in the study, and the band.
 fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -105,7 +108,9 @@ struct Figure<'a> {
     hint: String,
 }
 
-/// Shows costs, order and Laguerre pole in two lines.
+/// Shows costs, order and Laguerre pole in two lines. The held-out records' cost is that of the
+/// model as it is; its colour judges the cost of the model adapted within its uncertainty, if that
+/// is known.
 fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     let held_out = match (found.held_out_cost, found.held_out_normalised) {
         (Some(raw), Some(normalised)) => Figure {

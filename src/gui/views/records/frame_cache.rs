@@ -16,8 +16,9 @@ struct CachedValue<T> {
     value: Arc<T>,
 }
 
-/// Returns the result of `compute`, cached for these sources (compared by address) and `key`;
-/// recomputes it when either changes.
+/// Returns the result of `compute`, cached under `name` for these sources (compared by address) and
+/// `key`; recomputes it when either changes. A name holds one value, that of the last sources and
+/// key.
 pub fn cached<T: Send + Sync + 'static>(
     ui: &Ui,
     name: &str,

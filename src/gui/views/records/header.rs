@@ -66,7 +66,8 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
         .asks(RecordsCommand::TakeAll(OfferedModels::REFINED), commands);
 }
 
-/// Draws the command that identifies all conditions with records.
+/// Draws the command that identifies all conditions with records, or only those whose fit is
+/// missing or outdated; with several conditions, a menu offers the displayed one alone.
 fn identify_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();

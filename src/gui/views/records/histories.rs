@@ -44,7 +44,14 @@ pub(super) struct TimeView {
 }
 
 /// Draws the charts into their places; the first is the excited input, the second the output in
-/// focus. Returns `None` without places.
+/// focus. Returns `None` without a chart.
+///
+/// 1. The channels, in the order of the places, and the place of the spectrogram, if it is switched
+///    on.
+/// 2. A chart in each place that the spectrogram leaves: models below, samples in use above,
+///    samples outside the parts in use pale.
+/// 3. The spectrogram on the same time axis.
+/// 4. The common cursor with its values in every chart, and the unit at the lower left corner.
 pub(super) fn histories_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -286,8 +293,9 @@ impl<'a> TimeCharts<'a> {
         rounded_range(range)
     }
 
-    /// Returns the time under the pointer \[s\]; without a pointer, the time at which the output in
-    /// focus deviates most from its mean.
+    /// Returns the cursor's time \[s\]: first, under the pointer if it is over a chart that nothing
+    /// covers; else where the output in focus (without outputs, the input) deviates most from its
+    /// mean; else the record's start.
     fn cursor_s(&self, ui: &Ui, places: &[Rect], drawn: &[DrawnChart<'_>]) -> f64 {
         let pointer = ui.input(|input| input.pointer.hover_pos());
         if let Some(pointer) = pointer

@@ -72,7 +72,9 @@ fn median_of(values: impl Iterator<Item = f64>) -> Option<f64> {
     Some(median(&mut finite))
 }
 
-/// Draws the grid within `room` \[pt\]; a click on a cell focuses its response.
+/// Draws the grid within a height of `room` \[pt\]; a click on a cell focuses its response. Cells
+/// share height and width between the limits of [`CELL`] and [`LEAST_WIDTH`]; what does not fit
+/// scrolls, with at least three rows visible.
 pub(super) fn identified_grid_ui(
     ui: &mut Ui,
     page: Page<'_>,

@@ -1,4 +1,5 @@
-//! Identified poles: over the model order, and in the s-plane.
+//! Identified poles: over the model order (stabilisation diagram), and in the s-plane. A pole that
+//! stays where it is while the order grows is probably one of the aircraft, not of the noise.
 
 use gdcm_model::response::pole_estimate::{POLE_INTERVAL, PoleEstimate};
 use gdcm_sysid::identification::Identification;

@@ -68,6 +68,7 @@ struct InputCharts<'a> {
 }
 
 impl InputCharts<'_> {
+    /// Draws the charts row by row, as high as the page allows.
     fn show(&self, ui: &mut Ui) {
         let count = self.page.state.dataset().inputs().len();
         let columns = if count > 1 { 2 } else { 1 };

@@ -1,5 +1,9 @@
 //! Lane above the time charts with the displayed record's parts: their ends can be dragged, and a
-//! drag over free space makes a new part.
+//! drag over free space makes a new part. Without parts, the bar is the whole record, and dragging
+//! one of its ends makes the first part.
+//!
+//! A drag lasts several frames: it is kept in egui's memory ([`LaneDrag`]), drawn in each frame,
+//! and becomes a command when the pointer is released.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{
@@ -222,7 +226,8 @@ impl Lane<'_> {
         self.follow(ui, &response, commands);
     }
 
-    /// Moves the dragged end to the pointer, and pushes the command when the drag ends.
+    /// Moves the dragged end to the pointer, and pushes the command when the drag ends: moves the
+    /// end of a part, or adds a part. A drag shorter than [`LEAST_PART_S`] changes nothing.
     fn follow(&self, ui: &Ui, response: &egui::Response, commands: &mut Vec<Command>) {
         if !response.dragged() && !response.drag_stopped() {
             return;

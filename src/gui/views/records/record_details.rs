@@ -1,5 +1,5 @@
-//! Three lines about the displayed record: manoeuvre and length; gaps and limits; fit to the other
-//! records.
+//! Three lines about the displayed record: manoeuvre and what it excites; length and quality; fit
+//! of the other records. Above them its name and its problems.
 
 use std::sync::Arc;
 

@@ -1,5 +1,6 @@
-//! The displayed condition's records: a row for each record and each part, with its use, its length
-//! and the model's fit.
+//! The displayed condition's records: a row for each record and each part. From left to right: box
+//! that takes it into use, name, length \[s\], cost of the model's fit (χ²/dof), caution sign, lock
+//! that holds it out of the fit, and for a part the button that removes it.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! Recorded references: signals that drove a closed loop from outside.
+//! Recorded references: signals that drove a closed loop from outside. With them, gusts fed back
+//! into the inputs do not bias the identified response (M14.15).
 
 use std::sync::Arc;
 

@@ -42,8 +42,15 @@ const RESIDUAL_LIMITS: [f64; 2] = [4.0, 10.0];
 /// Share of the curves' range within the band by which error bars may extend the axis.
 const MOST_EXTENSION: f64 = 0.3;
 
-/// Draws the heading, magnitude and phase, and the coherence and residual strips below; without a
-/// response, the reason.
+/// Draws the response in focus; `curves` are those of the Bode view.
+///
+/// 1. Heading: the name at the left, marks for cautions at the right, an explanation of bands and
+///    bars between them.
+/// 2. Without a response, the reason instead of the charts.
+/// 3. Magnitude and phase: models (physics, corrected), identified curve with its 95 % band, strips
+///    along it where it deviates from the measured points or was not excited, measured points with
+///    error bars (hollow if not trusted).
+/// 4. Partial coherence; in a high window, also the phase residual.
 pub(super) fn response_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -283,7 +290,9 @@ impl ResponseCharts<'_> {
         lines
     }
 
-    /// Returns the value range within the band; trusted points and their bars may extend it.
+    /// Returns the value range within the band: of models, identified curve and trusted points;
+    /// bars of trusted points extend it by at most [`MOST_EXTENSION`]. Then rounded; ± 1 without
+    /// values.
     fn value_range(&self, part: BodePart, models: &[ChartLine]) -> Range {
         let [low, high] = self.band;
         let is_inside = |omega: f64| (low..=high).contains(&omega);
@@ -394,8 +403,11 @@ impl ResponseCharts<'_> {
     }
 }
 
-/// Returns short marks for the cautions about the displayed response: about its pair, its input or
-/// output, or all responses.
+/// Returns short marks for the cautions about the displayed response.
+///
+/// First, a caution with a pair concerns that response; else one with a channel the responses to or
+/// of that channel, unless it is about single records; else only feedback and a narrowed band
+/// concern all responses.
 fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
     let dataset = page.state.dataset();
     let pair = page.state.display.selection.pair;
@@ -427,7 +439,8 @@ fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// Adds the identified model's curve and bands to a chart.
+/// Adds the identified model's curve and bands to a chart, unless its role is hidden: the refined
+/// model, or dashed the first one while it is refined. The strips along the curve always remain.
 fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, page: Page<'_>) {
     let palette = page.palette;
     if !page

@@ -100,8 +100,8 @@ pub(super) fn settings_summary(page: Page<'_>) -> FoldSummary {
     }
 }
 
-/// Draws the settings; with an empty field, the identification chooses the values. Focuses the
-/// requested field.
+/// Draws the settings; with an empty field, the identification chooses the values. If a caution's
+/// button has requested a field, scrolls to it and focuses it, once.
 pub(super) fn search_settings_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let palette = page.palette;
     let focused = page.state.records.advanced_field;

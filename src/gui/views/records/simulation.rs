@@ -1,4 +1,6 @@
-//! Models compared with a record over time: simulation jobs and responses.
+//! Models compared with a record over time: the jobs that simulate them in the background, and
+//! their responses, found again by comparing jobs. The record is divided into windows, and each is
+//! simulated from its own initial state.
 
 use std::sync::Arc;
 
@@ -163,8 +165,9 @@ pub(super) fn simulated(state: &State) -> Vec<Simulated<'_>> {
     models
 }
 
-/// Returns a model's state space; `None` if the model is unavailable, in discrete time, or has
-/// delays.
+/// Returns the state space of the identified model, the physics representative, or that with the
+/// correction (delays as Padé approximants); `None` if it is unavailable, or a physics model is in
+/// discrete time or has delays.
 fn state_space(state: &State, records: &ConditionRecords, role: TimeRole) -> Option<StateSpace> {
     if role == TimeRole::Identified {
         return records.identification()?.refined.state_space().cloned();

@@ -82,7 +82,8 @@ fn small_chart(title: &str) -> Chart<'_> {
     chart
 }
 
-/// Returns ranges of real and imaginary part that contain the determined poles.
+/// Returns ranges of real and imaginary part that contain the determined poles and the origin's
+/// real part, symmetric about the real axis; `None` without determined poles.
 fn pole_ranges(found: &Identification) -> Option<[Range; 2]> {
     let determined: Vec<_> = found.poles.iter().filter(|pole| pole.determined).collect();
     let real = Range::spanning(determined.iter().map(|pole| pole.pole.re))?.including(0.0);

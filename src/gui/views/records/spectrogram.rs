@@ -1,4 +1,6 @@
-//! Spectrogram of an input on the charts' time axis.
+//! Spectrogram of an input (power over time and frequency) on the charts' time axis. It is computed
+//! and uploaded to the graphics card once, and cached while record, input, frequencies and theme
+//! stay.
 
 use std::sync::Arc;
 

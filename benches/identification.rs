@@ -21,7 +21,7 @@ use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::identify::identify;
 use gdcm_sysid::identification::{Options, Preparation};
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeSettings};
 
 struct Silent;
 
@@ -80,7 +80,7 @@ fn main() {
         .tables;
     let records: Vec<LaidOutRecord> = tables
         .into_iter()
-        .map(|table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0)
+        .map(|table| LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0)
         .collect();
     let (inputs, outputs) = dataset.names_of_channels();
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));

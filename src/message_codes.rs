@@ -30,7 +30,7 @@ pub fn layout_problem_code(problem: &LayoutProblem) -> &'static str {
         LayoutProblem::SeveralColumns { .. } => "several-columns",
         LayoutProblem::Unnamed { .. } => "columns-without-names",
         LayoutProblem::Sign { .. } => "unknown-sign",
-        LayoutProblem::UnsaidUnit { .. } => "unknown-unit",
+        LayoutProblem::UnitNotGiven { .. } => "unknown-unit",
         LayoutProblem::Conversion { .. } => "no-conversion",
         LayoutProblem::OneColumn { .. } => "shared-column",
         LayoutProblem::Empty { .. } => "empty-column",

@@ -22,7 +22,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_sysid::identification::CautionNote;
 use gdcm_sysid::records::layout_problem::LayoutCaution;
 use gdcm_sysid::records::{
-    LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
+    LaidOutRecord, RecordChannels, RecordTable, TimeSettings, leave_out_copies, with_topics_joined,
 };
 
 use super::failure::Failure;
@@ -131,7 +131,7 @@ pub(super) fn laid_out_records(
 /// Assigns record columns to channels, and reports notes, cautions and problems.
 struct RecordLayouts<'a> {
     dataset: Option<&'a Dataset>,
-    wish: TimeWish,
+    wish: TimeSettings,
     reported: Reported,
 }
 
@@ -158,7 +158,7 @@ impl RecordLayouts<'_> {
             return LaidOutRecord::proposed(table, channels, &self.wish);
         };
         let (mut record, notes) =
-            LaidOutRecord::as_dataset_says(table, channels, dataset, &self.wish);
+            LaidOutRecord::proposed_for_dataset(table, channels, dataset, &self.wish);
         record.used = true;
         (record, notes)
     }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_study::decisions::adopted_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::AdoptionChoice;
 use gdcm_sysid::identification::SearchSpace;
-use gdcm_sysid::records::TimeWish;
-use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
+use gdcm_sysid::records::TimeSettings;
+use gdcm_sysid::records::channel_list::{ChannelList, RequestedChannel};
 
 use super::channel_values::{
     ChannelValue, channel_delay, channel_factor, channel_topic, channel_unit,
@@ -122,7 +122,7 @@ pub struct IdentifyArguments {
 
 impl RecordArguments {
     /// Returns the recorded references; empty if none are given.
-    pub fn references(&self) -> &[SaidChannel] {
+    pub fn references(&self) -> &[RequestedChannel] {
         match &self.reference {
             Some(list) => &list.channels,
             None => &[],
@@ -139,8 +139,8 @@ impl RecordArguments {
     }
 
     /// Returns the requested time column or sample rate.
-    pub fn time_wish(&self) -> TimeWish {
-        TimeWish {
+    pub fn time_wish(&self) -> TimeSettings {
+        TimeSettings {
             column: self.time.clone(),
             sample_time_s: self.sample_rate.map(|rate| 1.0 / rate),
         }
@@ -162,11 +162,11 @@ pub enum OfferedChoice {
 
 impl OfferedChoice {
     /// Returns the corresponding choice of identified models.
-    pub fn offered(self) -> OfferedModels {
+    pub fn offered(self) -> AdoptionChoice {
         match self {
-            Self::Refined => OfferedModels::REFINED,
-            Self::WithUnrefined => OfferedModels::WITH_UNREFINED,
-            Self::Measured => OfferedModels::MEASURED,
+            Self::Refined => AdoptionChoice::REFINED,
+            Self::WithUnrefined => AdoptionChoice::WITH_UNREFINED,
+            Self::Measured => AdoptionChoice::MEASURED,
         }
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn apply_record_remedies(
             }
             applied.push(key);
             let mut layout = record.layout.clone();
-            layout.put_right(&BTreeMap::from([(channel.to_owned(), remedy)]), channels);
+            layout.add_remedies(&BTreeMap::from([(channel.to_owned(), remedy)]), channels);
             *record = record.laid_out(layout, channels);
             if let Some(problem) = record.problems.first() {
                 return Err(Failure::option(option, format!("{name}: {problem}")));

@@ -6,8 +6,8 @@ use gdcm_model::dataset::{Band, Dataset};
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_sysid::identification::{ChannelPreparation, Preparation};
 use gdcm_sysid::records::RecordChannels;
-use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
-use gdcm_sysid::records::record_channels::{ResamplingWish, SaidConversion};
+use gdcm_sysid::records::channel_list::{ChannelList, RequestedChannel};
+use gdcm_sysid::records::record_channels::{DeclaredConversion, ResamplingSettings};
 
 use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
@@ -56,7 +56,7 @@ pub(super) fn requested_channels(
     add_references(arguments, &mut channels)?;
     set_locations(arguments, &mut channels)?;
     check_held(arguments, &channels)?;
-    channels.resampling = ResamplingWish {
+    channels.resampling = ResamplingSettings {
         band_end: Some(band.max()),
         rate_hz: arguments.resample,
         held: arguments.held.iter().cloned().collect(),
@@ -64,13 +64,13 @@ pub(super) fn requested_channels(
     declare_conversions(
         "--unit",
         &arguments.unit,
-        SaidConversion::Unit,
+        DeclaredConversion::Unit,
         &mut channels,
     )?;
     declare_conversions(
         "--factor",
         for_all_records(&arguments.factor),
-        SaidConversion::Factor,
+        DeclaredConversion::Factor,
         &mut channels,
     )?;
     Ok(channels)
@@ -84,7 +84,7 @@ fn for_all_records<T>(declarations: &[ChannelValue<T>]) -> Vec<&ChannelValue<T>>
         .collect()
 }
 
-fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
+fn listed(list: &Option<ChannelList>) -> &[RequestedChannel] {
     match list {
         Some(list) => &list.channels,
         None => &[],
@@ -97,8 +97,8 @@ fn named_channels(arguments: &RecordArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
     RecordChannels {
-        inputs: inputs.map(SaidChannel::rule).collect(),
-        outputs: outputs.map(SaidChannel::rule).collect(),
+        inputs: inputs.map(RequestedChannel::rule).collect(),
+        outputs: outputs.map(RequestedChannel::rule).collect(),
         ..RecordChannels::default()
     }
 }
@@ -121,10 +121,10 @@ fn channels_of_dataset(
 /// Sets the column for a channel in the dataset; rejects a unit that differs from the dataset's.
 fn set_column(
     option: &'static str,
-    channel: &SaidChannel,
+    channel: &RequestedChannel,
     rules: &mut [ChannelRule],
 ) -> Result<(), Failure> {
-    let SaidChannel { name, unit, column } = channel;
+    let RequestedChannel { name, unit, column } = channel;
     let Some(index) = rules.iter().position(|rule| rule.name == *name) else {
         let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
         let reason = format!(
@@ -253,7 +253,7 @@ pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
 pub(super) fn declare_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
-    conversion: fn(T) -> SaidConversion,
+    conversion: fn(T) -> DeclaredConversion,
     channels: &mut RecordChannels,
 ) -> Result<(), Failure> {
     for ChannelValue { channel, value } in declarations {
@@ -261,7 +261,7 @@ pub(super) fn declare_conversions<'a, T: Clone + 'a>(
             return Err(unknown_channel(option, channel));
         }
         let previous = channels
-            .said
+            .declared
             .insert(channel.clone(), conversion(value.clone()));
         if previous.is_some() {
             let reason = format!("{channel} already has a unit or a factor");

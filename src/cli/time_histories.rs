@@ -9,9 +9,9 @@ use gdcm_study::results::record_simulations::time_histories_of;
 use gdcm_study::results::time_histories::{HistoryRecords, TimeHistories};
 use gdcm_study::{Analysis, Execution};
 use gdcm_sysid::identification::Preparation;
-use gdcm_sysid::records::record_channels::SaidConversion;
+use gdcm_sysid::records::record_channels::DeclaredConversion;
 use gdcm_sysid::records::{
-    LaidOutRecord, LayoutProblem, RecordChannels, RecordTable, TimeWish, leave_out_copies,
+    LaidOutRecord, LayoutProblem, RecordChannels, RecordTable, TimeSettings, leave_out_copies,
     with_topics_joined,
 };
 
@@ -71,13 +71,13 @@ pub(super) fn read_histories(
     declare_conversions(
         "--unit",
         &arguments.unit,
-        SaidConversion::Unit,
+        DeclaredConversion::Unit,
         &mut channels,
     )?;
     // The records, and at the same index each record's condition.
     let mut records: Vec<LaidOutRecord> = Vec::new();
     let mut ids: Vec<ConditionId> = Vec::new();
-    for table in with_topics_joined(tables, &channels, &TimeWish::default()) {
+    for table in with_topics_joined(tables, &channels, &TimeSettings::default()) {
         let laid_out = laid_out_record(table, dataset, &channels);
         report_record(&laid_out);
         // Counts as not read: the option `--unit` can supply what it lacks.
@@ -139,7 +139,7 @@ impl ConditionRecord {
                 .record
                 .problems
                 .iter()
-                .any(|problem| matches!(problem, LayoutProblem::UnsaidUnit { .. }))
+                .any(|problem| matches!(problem, LayoutProblem::UnitNotGiven { .. }))
     }
 }
 
@@ -154,13 +154,13 @@ fn laid_out_record(
 ) -> ConditionRecord {
     if let Some((condition, entry)) = table.entry_of_dataset(dataset) {
         let channels = channels.clone().of_named_records();
-        let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+        let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeSettings::default());
         return ConditionRecord {
             condition: Some(condition),
-            record: record.as_said(entry, &channels),
+            record: record.with_entry(entry, &channels),
         };
     }
-    let (record, _) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
+    let (record, _) = LaidOutRecord::proposed(table, channels, &TimeSettings::default());
     let condition = match dataset.conditions() {
         [only] => Some(only.id()),
         _ => record.guess.condition_of(dataset),

@@ -15,7 +15,7 @@ use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::record_guess::RecordGuess;
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordLayout, TimeWish};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordLayout, TimeSettings};
 
 use crate::commands::{Desk, Messages};
 use crate::window::records::late_dataset;
@@ -40,7 +40,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     let patterns = standard_patterns();
     let mut sweeps = [0; 12];
     for table in &found.tables {
-        let proposal = RecordLayout::proposed(table, &channels, &TimeWish::default());
+        let proposal = RecordLayout::proposed(table, &channels, &TimeSettings::default());
         assert_eq!(
             (proposal.problems, proposal.cautions),
             (vec![], vec![]),
@@ -90,7 +90,7 @@ fn order_and_cost_of_condition_10(change: f64) -> (usize, f64) {
                 }
             }
         }
-        records.push(LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0);
+        records.push(LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0);
     }
     let (inputs, outputs) = dataset.names_of_channels();
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();

@@ -22,7 +22,7 @@ use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::results::verdict::PhaseVerdict;
 use gdcm_study::{Analysis, Edit, Engine, Execution, Study};
 use gdcm_sysid::identification::Preparation;
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeSettings};
 use gdcm_words::assessment::not_assessed_text;
 use gdcm_words::remark::remark_text;
 use gdcm_words::requirements::summary_table;
@@ -255,7 +255,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         .unwrap()
         .into_iter()
         .take(1);
-    let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0;
+    let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0;
     let records: Vec<LaidOutRecord> = tables.map(proposed).collect();
     let (inputs, outputs) = FEW.dataset.names_of_channels();
     let [inputs, outputs]: [Vec<&str>; 2] =

@@ -55,7 +55,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             identified,
             responses,
         } => gains_out_of_range_text(physics, identified, responses, &pair_name),
-        Caution::NumericallyNothing { model, responses } => format!(
+        Caution::NumericallyZero { model, responses } => format!(
             "{model}: numerically zero responses are treated as zero and have no G and no D: {} \
             ({NOTHING})",
             names(responses, &pair_name)
@@ -205,7 +205,7 @@ pub fn undefined_text(why: Undefined) -> String {
             "its response was not measured: the identified model contains no values of it"
                 .to_owned()
         }
-        Undefined::NumericallyNothing(bundle) => {
+        Undefined::NumericallyZero(bundle) => {
             format!("its response is numerically zero in the {bundle} model: {NOTHING}")
         }
     }

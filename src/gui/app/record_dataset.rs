@@ -6,7 +6,7 @@ use gdcm_io::files::dataset_file::add_dataset;
 use gdcm_io::import::record_files::{read_records, relative_entry};
 use gdcm_model::dataset::{Band, Dataset};
 use gdcm_sysid::records::dataset_of_records::dataset_of_records;
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish, with_topics_joined};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeSettings, with_topics_joined};
 
 use super::GdcmApp;
 use super::document_files::DatasetOfRecords;
@@ -140,8 +140,8 @@ impl DatasetRequest {
             problems.push(Message::new("not-read", fault));
         }
         let mut entries = Vec::new();
-        for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
-            let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+        for table in with_topics_joined(read.tables, &channels, &TimeSettings::default()) {
+            let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeSettings::default());
             for problem in &row.problems {
                 let text = format!("{}: {problem}", row.table.name);
                 problems.push(Message::new(layout_problem_code(problem), text));

@@ -10,7 +10,7 @@ use super::GdcmApp;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::condition_records::ConditionRecords;
 use crate::gui::state::record_change::{ConditionRecordChange, RecordChange};
-use crate::gui::state::records::RecordsBefore;
+use crate::gui::state::records::RecordsSnapshot;
 use crate::message::Message;
 
 impl GdcmApp {
@@ -88,7 +88,7 @@ impl GdcmApp {
     }
 
     /// Adds a record edit to the undo history.
-    pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsBefore) {
+    pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsSnapshot) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, change, before);
         self.state.notices.follow_decision();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
-use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::decisions::adopted_models::{AdoptedModels, AdoptionChoice};
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 
@@ -73,7 +73,7 @@ impl GdcmApp {
     }
 
     /// Adds these conditions' identified models to the study.
-    pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
+    pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: AdoptionChoice) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {
             return self.notify_error(Message::new(
@@ -106,7 +106,7 @@ impl GdcmApp {
     fn adopted_models(
         &self,
         conditions: &[ConditionId],
-        offered: OfferedModels,
+        offered: AdoptionChoice,
     ) -> Vec<(ConditionId, Arc<AdoptedModels>)> {
         let mut adopted = Vec::new();
         for id in conditions {

@@ -58,7 +58,7 @@ impl GdcmApp {
         }
         self.state.records.example = self.files.loaded.origin.example();
         let own = self.own_records();
-        if !ids.iter().any(|id| own.has_some(*id)) {
+        if !ids.iter().any(|id| own.may_have_records(*id)) {
             for id in ids {
                 self.records_of(id);
             }

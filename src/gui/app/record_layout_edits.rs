@@ -10,7 +10,7 @@ use gdcm_sysid::records::{
 
 use super::GdcmApp;
 use crate::gui::state::record_change::RecordChange;
-use crate::gui::state::records::RecordsBefore;
+use crate::gui::state::records::RecordsSnapshot;
 
 impl GdcmApp {
     /// Sets a record's layout, and changes similar records in the same way.
@@ -55,7 +55,7 @@ impl GdcmApp {
         layout_for: impl Fn(&LaidOutRecord) -> Option<RecordLayout>,
     ) {
         let ids: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
-        let mut changed = RecordsBefore::default();
+        let mut changed = RecordsSnapshot::default();
         for id in ids {
             let channels = self.record_channels(id);
             let before = self.state.records.conditions.get(&id).cloned();

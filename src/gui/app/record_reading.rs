@@ -14,7 +14,7 @@ use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::names::standard_patterns;
 use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{
-    LaidOutRecord, RecordChannels, RecordTable, TimeWish, with_topics_joined,
+    LaidOutRecord, RecordChannels, RecordTable, TimeSettings, with_topics_joined,
 };
 
 use super::readers::SilentProgress;
@@ -49,7 +49,7 @@ struct ListedRecord<'a> {
 
 impl OwnRecords {
     /// Returns whether a condition may have its own records.
-    pub(super) fn has_some(&self, id: ConditionId) -> bool {
+    pub(super) fn may_have_records(&self, id: ConditionId) -> bool {
         match &self.origin {
             DatasetOrigin::EmbeddedExample(_) => true,
             DatasetOrigin::File(_) => !self.entries(id).is_empty(),
@@ -144,7 +144,7 @@ fn read_listed_records(
             part_s: entry.part_s,
             ..table
         };
-        let row = laid_out(table, channels, None).as_said(entry, channels);
+        let row = laid_out(table, channels, None).with_entry(entry, channels);
         found.own.entry(*condition).or_default().push(row);
     }
 }
@@ -182,7 +182,7 @@ impl AddedFiles {
         for words in read.ignored {
             found.faults.push(format!("no record: {words}"));
         }
-        for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
+        for table in with_topics_joined(read.tables, channels, &TimeSettings::default()) {
             let file = find_file(&table.source.file, &self.paths);
             if let Some(path) = &file {
                 found
@@ -272,9 +272,9 @@ fn laid_out(
     channels: &RecordChannels,
     dataset: Option<&Dataset>,
 ) -> LaidOutRecord {
-    let time = TimeWish::default();
+    let time = TimeSettings::default();
     let (mut row, notes) = match dataset {
-        Some(dataset) => LaidOutRecord::as_dataset_says(table, channels, dataset, &time),
+        Some(dataset) => LaidOutRecord::proposed_for_dataset(table, channels, dataset, &time),
         None => LaidOutRecord::proposed(table, channels, &time),
     };
     if row.layout.is_resampled(&row.table, channels) {

@@ -4,7 +4,7 @@
 use egui::{Key, Modifiers};
 
 use gdcm_plot::figure::FigureFormat;
-use gdcm_study::decisions::adopted_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::AdoptionChoice;
 use gdcm_study::decisions::setting::{Kind, Value};
 use gdcm_study::decisions::setting_table::SETTINGS;
 use gdcm_words::setting_words::setting_words;
@@ -101,7 +101,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
         Entry::new(
             "Use the identified models",
             here,
-            RecordsCommand::Take(OfferedModels::REFINED),
+            RecordsCommand::Take(AdoptionChoice::REFINED),
         )
         .enabled(is_found),
         Entry::new(

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::simulation::Signal;
-use gdcm_study::decisions::adopted_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::AdoptionChoice;
 use gdcm_sysid::identification::{Hold, SearchSpace};
 use gdcm_sysid::records::RecordLayout;
 
@@ -86,9 +86,9 @@ pub enum RecordsCommand {
     /// Stop the identification.
     Stop,
     /// Put the identified models into the displayed condition.
-    Take(OfferedModels),
+    Take(AdoptionChoice),
     /// Put the models from every finished fit that is not yet in the study into its condition.
-    TakeAll(OfferedModels),
+    TakeAll(AdoptionChoice),
     /// Restore the models from the dataset's file in the displayed condition.
     Return,
 }

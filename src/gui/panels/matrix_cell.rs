@@ -221,7 +221,7 @@ impl<'a> Cell<'a> {
         let gain = shown.wanted_gain(self.pair);
         let delay_s = shown.wanted_delay_s(self.pair);
         let (Some(gain), Some(delay_s)) = (gain, delay_s) else {
-            let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
+            let nothing = matches!(self.undefined(), Some(Undefined::NumericallyZero(_)));
             let words = if nothing { "zero" } else { "no G" };
             ui.painter().text(
                 rect.center(),

@@ -52,7 +52,7 @@ impl CachedRaster {
     /// Returns the image if `scene` has not changed since the last frame; `shapes` creates its
     /// content. `None` if the lines must be drawn instead: the scene has changed, or the image
     /// would be larger than a texture may be.
-    pub(super) fn image_of(
+    pub(super) fn image_once_static(
         &mut self,
         ctx: &Context,
         scene: RasterScene,
@@ -256,7 +256,9 @@ mod tests {
 
     /// Returns the rectangle into which the image is drawn.
     fn image(still: &mut CachedRaster, ctx: &Context, scene: RasterScene) -> Option<Rect> {
-        still.image_of(ctx, scene, Vec::new).map(|item| item.area)
+        still
+            .image_once_static(ctx, scene, Vec::new)
+            .map(|item| item.area)
     }
 
     #[test]

@@ -40,7 +40,7 @@ impl DrawnPane {
         let scene = lowest.scene(ctx, transform, &self.curves);
         let drawn = &self.curves;
         self.image
-            .image_of(ctx, scene, || lowest.shapes(transform, drawn))
+            .image_once_static(ctx, scene, || lowest.shapes(transform, drawn))
     }
 
     /// Returns an image that shows the curves at the bottom of a small plot, if these are at least

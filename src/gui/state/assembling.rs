@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use gdcm_io::formats::text::UnsaidUnit;
+use gdcm_io::formats::text::UnitNotGiven;
 use gdcm_model::assembly::{Assembly, FoundModel, Headings, Rules, proposed_rules};
 
 use super::assembly_columns::COLUMNS;
@@ -49,7 +49,7 @@ pub struct AssemblyState {
     /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
     /// Units still needed to read these tables as frequency responses, by table.
-    pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
+    pub unsaid: BTreeMap<String, Vec<UnitNotGiven>>,
     /// Progress of a running read.
     pub reading: Option<ReadingProgress>,
     /// Index of the displayed model.

@@ -10,7 +10,7 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
-use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::decisions::adopted_models::{AdoptedModels, AdoptionChoice};
 use gdcm_study::jobs::identification_jobs::{IdentificationRequest, IdentifyJob};
 use gdcm_sysid::identification::{CautionNote, ChannelPreparation, Identification, Preparation};
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels};
@@ -158,7 +158,7 @@ impl ConditionRecords {
     /// identification.
     pub fn adopted(
         &self,
-        offered: OfferedModels,
+        offered: AdoptionChoice,
         channels: &RecordChannels,
     ) -> Option<Arc<AdoptedModels>> {
         let found = self.identification()?;

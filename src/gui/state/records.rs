@@ -17,7 +17,7 @@ pub use super::wanted_dataset::WantedDataset;
 /// The records before or after an edit, which an undo or redo step restores. Only the conditions
 /// changed by the edit are included.
 #[derive(Clone, Debug, Default)]
-pub struct RecordsBefore {
+pub struct RecordsSnapshot {
     /// Records by condition; `None` for a condition without loaded records.
     pub conditions: BTreeMap<ConditionId, Option<ConditionRecords>>,
     /// The added files and folders, if the edit changes them.
@@ -74,12 +74,12 @@ pub struct RecordsState {
 
 impl RecordsState {
     /// Copies the given conditions' records, to be restored by an undo step.
-    pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
+    pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsSnapshot {
         let conditions = conditions
             .into_iter()
             .map(|id| (id, self.conditions.get(&id).cloned()))
             .collect();
-        RecordsBefore {
+        RecordsSnapshot {
             conditions,
             sources: None,
             unassigned: None,
@@ -87,8 +87,8 @@ impl RecordsState {
     }
 
     /// Restores the records before or after an edit; returns the replaced records.
-    pub fn exchange(&mut self, before: RecordsBefore) -> RecordsBefore {
-        let mut now = RecordsBefore::default();
+    pub fn exchange(&mut self, before: RecordsSnapshot) -> RecordsSnapshot {
+        let mut now = RecordsSnapshot::default();
         for (id, records) in before.conditions {
             let present = self.conditions.remove(&id);
             if let Some(records) = records {

@@ -6,8 +6,8 @@ use gdcm_model::dataset::Band;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::ChannelRule;
 use gdcm_model::units::number;
-use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
-use gdcm_sysid::records::record_channels::ResamplingWish;
+use gdcm_sysid::records::channel_list::{ChannelList, RequestedChannel};
+use gdcm_sysid::records::record_channels::ResamplingSettings;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordColumn, RecordTable};
 
 use crate::gui::widgets::number_entry::typed_number;
@@ -78,9 +78,9 @@ impl WantedDataset {
         let channels = RecordChannels {
             inputs,
             outputs,
-            resampling: ResamplingWish {
+            resampling: ResamplingSettings {
                 band_end: Some(band.max()),
-                ..ResamplingWish::default()
+                ..ResamplingSettings::default()
             },
             ..RecordChannels::default()
         };
@@ -134,7 +134,7 @@ fn parse_rules(side: &str, text: &str) -> Result<Vec<ChannelRule>, Message> {
             return Err(Message::new("wrong-channels", format!("{side}: {error}")));
         }
     };
-    Ok(list.channels.iter().map(SaidChannel::rule).collect())
+    Ok(list.channels.iter().map(RequestedChannel::rule).collect())
 }
 
 /// Parses a band limit \[rad/s\]; NaN, which no band accepts, if the text is not a number.

@@ -18,7 +18,7 @@ use super::display::Display;
 use super::forms::Forms;
 use super::notices::{MessageBar, Notices};
 use super::record_change::RecordChange;
-use super::records::{RecordsBefore, RecordsState};
+use super::records::{RecordsSnapshot, RecordsState};
 use super::settings_session::SettingsSession;
 use super::view::View;
 
@@ -34,10 +34,10 @@ pub struct RecentFile {
 }
 
 /// Undo history for the study and the flight records.
-pub type UndoHistory = History<RecordsBefore, RecordChange>;
+pub type UndoHistory = History<RecordsSnapshot, RecordChange>;
 
 /// Step in the undo history.
-pub type UndoStep = Step<RecordsBefore, RecordChange>;
+pub type UndoStep = Step<RecordsSnapshot, RecordChange>;
 
 /// Everything that the window keeps.
 #[derive(Debug)]

@@ -23,7 +23,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::simulation::Signal;
-use gdcm_study::decisions::adopted_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::AdoptionChoice;
 use gdcm_study::decisions::setting_table;
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::records::LaidOutRecord;
@@ -1653,7 +1653,10 @@ fn the_physics_model_of_the_real_aircraft_is_corrected_from_its_flights() {
                 .all(|records| records.found.is_some())
     });
     window.run_steps(2);
-    give(&mut window, RecordsCommand::TakeAll(OfferedModels::REFINED));
+    give(
+        &mut window,
+        RecordsCommand::TakeAll(AdoptionChoice::REFINED),
+    );
     settle(&mut window);
     let shown = state(&window).shown().expect("the models are compared");
     let yaw = state(&window).dataset().find_pair("R", "YAW").unwrap();

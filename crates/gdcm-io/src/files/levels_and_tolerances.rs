@@ -105,7 +105,7 @@ mod tests {
         let levels =
             read(r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
         assert_eq!(
-            levels.of_axis("P").next().unwrap().points,
+            levels.for_output("P").next().unwrap().points,
             [[2.0, 0.0], [2.5, 0.2]]
         );
         let cases = [

@@ -13,7 +13,7 @@ use super::response_tables::models_of_table;
 use crate::file_error::FileError;
 use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::text::{
-    TextTable, UnsaidUnit, read_matrices, read_matrix, read_table, split_complex,
+    TextTable, UnitNotGiven, read_matrices, read_matrix, read_table, split_complex,
 };
 use crate::formats::variables::Variable;
 use crate::formats::{
@@ -49,7 +49,7 @@ pub struct FoundModels {
     /// Tables of columns, by file, with the headings that were used.
     pub tables: Headings,
     /// Missing units without which a table cannot be read as a frequency response, by file.
-    pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
+    pub unsaid: BTreeMap<String, Vec<UnitNotGiven>>,
     pub files: usize,
 }
 

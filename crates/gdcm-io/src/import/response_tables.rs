@@ -10,7 +10,7 @@ use super::recognise::Found;
 use crate::files::model_collection::bare_draft;
 use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::text::{
-    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit,
+    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, UnitNotGiven, Unrecognised,
 };
 use crate::reading_budget::VariableFault;
 
@@ -18,7 +18,7 @@ use crate::reading_budget::VariableFault;
 pub(super) struct TableModels {
     pub(super) found: Found<FoundModel>,
     /// Units that the user must state before the table can be read as frequency responses.
-    pub(super) unsaid: Vec<UnsaidUnit>,
+    pub(super) unsaid: Vec<UnitNotGiven>,
 }
 
 /// Returns each response in a table as a model with one input and one output. A table without

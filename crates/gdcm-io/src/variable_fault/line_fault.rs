@@ -78,7 +78,7 @@ pub enum LineFault {
         "{place} has no finite number; complete it, or also empty the other part of the complex \
         number"
     )]
-    HalfNumber { place: ColumnPlace },
+    IncompleteResponse { place: ColumnPlace },
     #[error("{place} is too large for a magnitude; if it is in dB, write [dB] in the heading")]
     Magnitude { place: ColumnPlace },
     #[error("{0}: the file is damaged; save it again in Octave")]
@@ -116,7 +116,7 @@ impl LineFault {
             Self::OpenComment => "open-comment",
             Self::Json { .. } => "invalid-json",
             Self::Frequency { fault, .. } => fault.code(),
-            Self::HalfNumber { .. } => "half-number",
+            Self::IncompleteResponse { .. } => "half-number",
             Self::Magnitude { .. } => "magnitude-too-large",
             Self::Octave(_) => "invalid-octave-text",
         }

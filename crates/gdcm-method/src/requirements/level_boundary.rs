@@ -274,7 +274,7 @@ impl LevelBoundaries {
     }
 
     /// Returns the boundaries for one axis, named as the dataset names its output.
-    pub fn of_axis<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
+    pub fn for_output<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
         self.0.iter().filter(move |boundary| boundary.axis == axis)
     }
 
@@ -389,7 +389,7 @@ mod tests {
         let boundaries = read(text).unwrap();
         assert_eq!(boundaries.as_slice().len(), 2);
         assert_eq!(
-            boundaries.of_axis("Q").next().unwrap().points[1],
+            boundaries.for_output("Q").next().unwrap().points[1],
             [1.0, 0.2]
         );
         assert_eq!(boundaries.unknown_axes(&["P".to_owned()]), ["Q"]);

@@ -275,7 +275,7 @@ fn default_row(quantity: &str) -> ChannelTolerance {
         .iter()
         .find(|row| row.quantity == quantity)
         .unwrap()
-        .of_outputs(&outputs())
+        .in_output_units(&outputs())
         .unwrap()
 }
 
@@ -298,7 +298,7 @@ fn the_default_table_is_in_the_units_of_the_dataset() {
 #[test]
 fn a_tolerance_that_fits_no_channel_is_refused() {
     let bank = ToleranceTable::default().rows()[1].clone();
-    let no_channel = bank.of_outputs(&outputs()[1..]).unwrap_err();
+    let no_channel = bank.in_output_units(&outputs()[1..]).unwrap_err();
     assert_eq!(
         no_channel,
         ToleranceError::NoChannel {
@@ -308,7 +308,7 @@ fn a_tolerance_that_fits_no_channel_is_refused() {
     );
     let acceleration = [Channel::new("P", "deg/s^2")];
     assert_eq!(
-        bank.of_outputs(&acceleration).unwrap_err(),
+        bank.in_output_units(&acceleration).unwrap_err(),
         ToleranceError::NotARate {
             quantity: "bank angle".into(),
             channel: "P".into(),
@@ -321,7 +321,7 @@ fn a_tolerance_that_fits_no_channel_is_refused() {
         ..bank
     };
     assert_eq!(
-        in_g.of_outputs(&outputs()).unwrap_err(),
+        in_g.in_output_units(&outputs()).unwrap_err(),
         ToleranceError::Unit {
             quantity: "bank angle".into(),
             unit: "g".into(),

@@ -178,7 +178,7 @@ impl Tolerance {
     /// # Errors
     /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or the
     /// units cannot be converted.
-    pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
+    pub fn in_output_units(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
         let quantity = self.quantity.clone();
         let channel = self.channel.clone();
         let Some(output) = outputs

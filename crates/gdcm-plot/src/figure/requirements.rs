@@ -243,7 +243,7 @@ fn tolerance_area(name: &str, omega: [f64; 2], delay_ms: [f64; 2]) -> Envelope {
 /// boundary whose bandwidths do not ascend is not shaded.
 fn areas_beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
     let mut rising: Vec<&LevelBoundary> = levels
-        .of_axis(axis)
+        .for_output(axis)
         .filter(|boundary| boundary.points.is_sorted_by(|a, b| a[0] <= b[0]))
         .collect();
     rising.sort_by(|a, b| b.points[0][0].total_cmp(&a.points[0][0]));
@@ -273,7 +273,7 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
 /// Draws the boundaries for an attitude axis as lines.
 fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     let mut lines = Vec::new();
-    for boundary in levels.of_axis(axis) {
+    for boundary in levels.for_output(axis) {
         let points = boundary
             .points
             .iter()

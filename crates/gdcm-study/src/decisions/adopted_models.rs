@@ -9,7 +9,7 @@ use super::edit_refusal::EditRefusal;
 
 /// Selection among the models from an identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OfferedModels {
+pub struct AdoptionChoice {
     /// Whether to adopt the refined model, the models with neighbouring orders, and those fitted
     /// without one record each (M14, section 5).
     pub refined: bool,
@@ -19,7 +19,7 @@ pub struct OfferedModels {
     pub measured: bool,
 }
 
-impl OfferedModels {
+impl AdoptionChoice {
     /// The refined model, the models with neighbouring orders, and those fitted without one record
     /// each (M14, section 5).
     pub const REFINED: Self = Self {
@@ -53,7 +53,7 @@ impl AdoptedModels {
     /// first.
     pub fn from_identification(
         found: &Identification,
-        offered: OfferedModels,
+        offered: AdoptionChoice,
         records: Vec<ConditionRecord>,
     ) -> Self {
         let mut models = Vec::new();

@@ -7,14 +7,14 @@ use super::analysis::{Analysis, ConditionAnalysis};
 use super::requirement_role::RequirementRole;
 
 /// One condition with the models and results from which its requirements are computed.
-pub(crate) struct AskedCondition<'a> {
+pub(crate) struct RequestedCondition<'a> {
     pub(crate) analysis: &'a Analysis,
     pub(crate) result: &'a ConditionAnalysis,
     /// The schedule evaluated at the condition's airspeed; `None` without a schedule.
     pub(crate) scheduled: Option<ChannelCorrection>,
 }
 
-impl AskedCondition<'_> {
+impl RequestedCondition<'_> {
     pub(crate) fn id(&self) -> ConditionId {
         self.result.condition.id()
     }

@@ -60,7 +60,7 @@ pub enum Caution {
         responses: Vec<GainOutOfRange>,
     },
     /// Some responses of a representative are numerically zero, and count as zero (M6a).
-    NumericallyNothing {
+    NumericallyZero {
         model: BundleModel,
         responses: Vec<Pair>,
     },
@@ -132,7 +132,7 @@ impl Caution {
             Caution::NotFinite { .. } => "response-not-finite",
             Caution::MissingResponses { .. } => "response-missing",
             Caution::GainsOutOfRange { .. } => "gain-out-of-range",
-            Caution::NumericallyNothing { .. } => "response-numerically-nothing",
+            Caution::NumericallyZero { .. } => "response-numerically-nothing",
             Caution::NotCoherent { .. } => "not-coherent",
             Caution::CoherenceNotUsed => "coherence-not-used",
             Caution::ChannelsByPosition { .. } => "channels-by-position",
@@ -235,7 +235,7 @@ pub enum Undefined {
     /// The gain (flight over physics) is near this power of ten: above 1e50 or below 1e-50.
     GainOutOfRange(i32),
     /// Numerically zero in this bundle's representative (M6a).
-    NumericallyNothing(BundleKind),
+    NumericallyZero(BundleKind),
     /// The identified representative's response is nowhere coherent enough, or all its frequencies
     /// lie outside its valid band (M4a).
     NotCoherent,
@@ -251,7 +251,7 @@ impl Undefined {
             Self::ZeroSomewhere(_) => "response-zero-somewhere",
             Self::NotFinite(_) => "response-not-finite",
             Self::GainOutOfRange(_) => "gain-out-of-range",
-            Self::NumericallyNothing(_) => "response-numerically-nothing",
+            Self::NumericallyZero(_) => "response-numerically-nothing",
             Self::NotCoherent => "response-not-coherent",
             Self::NotMeasured => "response-not-measured",
         }

@@ -28,7 +28,7 @@ use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, BundleKind, Dynamics, Pair};
 use gdcm_model::response::GainDelay;
 
-use super::asked_condition::AskedCondition;
+use super::asked_condition::RequestedCondition;
 use super::model_swap::ModelSwap;
 use super::required_bandwidth::{
     BandwidthFinding, METRICS, MetricValues, NoBandwidth, metric_values, metrics,
@@ -37,7 +37,7 @@ use super::requirement_role::RequirementRole;
 
 /// Computes a condition's on-axis bandwidths for every role; a response without a bandwidth has the
 /// reason instead.
-pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
+pub(crate) fn bandwidth_findings(asked: &RequestedCondition<'_>) -> Vec<BandwidthFinding> {
     let models = ConditionBandwidths::new(asked);
     let mut findings = Vec::new();
     for pair in asked.analysis.study.dataset.measuring_pairs().marked() {
@@ -127,7 +127,7 @@ struct MeasuredBandwidth {
 
 /// A condition's models, prepared for bandwidths.
 struct ConditionBandwidths<'a> {
-    asked: &'a AskedCondition<'a>,
+    asked: &'a RequestedCondition<'a>,
     /// The physics representative's index.
     physics: usize,
     /// The physics representative and the models that replace it in swaps.
@@ -139,7 +139,7 @@ struct ConditionBandwidths<'a> {
 }
 
 impl<'a> ConditionBandwidths<'a> {
-    fn new(asked: &'a AskedCondition<'a>) -> Self {
+    fn new(asked: &'a RequestedCondition<'a>) -> Self {
         let band = asked.analysis.study.settings.band;
         let physics = asked.result.comparison.physics.model;
         let swaps = swaps_of(asked);
@@ -366,7 +366,7 @@ impl<'a> ConditionBandwidths<'a> {
 }
 
 /// Returns a condition's swaps; empty without error bars.
-fn swaps_of<'a>(asked: &AskedCondition<'a>) -> &'a [ModelSwap] {
+fn swaps_of<'a>(asked: &RequestedCondition<'a>) -> &'a [ModelSwap] {
     let Some(uncertainty) = asked.analysis.uncertainty.as_deref() else {
         return &[];
     };
@@ -378,7 +378,7 @@ fn swaps_of<'a>(asked: &AskedCondition<'a>) -> &'a [ModelSwap] {
 
 /// Returns a physics model with the couplings; `None` without couplings, and where they cannot be
 /// applied to it.
-fn coupled_dynamics(asked: &AskedCondition<'_>, index: usize) -> Option<Dynamics> {
+fn coupled_dynamics(asked: &RequestedCondition<'_>, index: usize) -> Option<Dynamics> {
     asked.result.coupled.as_ref()?;
     let model = &asked.result.condition.bundle(BundleKind::Physics)[index];
     let coupled = asked

@@ -138,7 +138,7 @@ impl GridSource<'_> {
         let mut known = BTreeSet::new();
         for (row, tolerance) in self.settings.tolerances.rows().iter().enumerate() {
             let is_new = known.insert((&tolerance.channel, tolerance.integrated));
-            if is_new && tolerance.of_outputs(self.dataset.outputs()).is_ok() {
+            if is_new && tolerance.in_output_units(self.dataset.outputs()).is_ok() {
                 rows.push(RowSource {
                     requirement: Requirement::PeakError(row),
                     limit: RequirementLimit::Tolerance(tolerance.clone()),

@@ -83,7 +83,7 @@ impl<'a> RecordComparison<'a> {
         let mut rows = Vec::new();
         let mut not_applied = Vec::new();
         for tolerance in tolerances.rows() {
-            match tolerance.of_outputs(dataset.outputs()) {
+            match tolerance.in_output_units(dataset.outputs()) {
                 Ok(channel) => rows.push(AppliedTolerance { tolerance, channel }),
                 Err(why) => not_applied.push(why),
             }

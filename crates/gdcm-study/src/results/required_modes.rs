@@ -15,7 +15,7 @@ use gdcm_model::response::Mode;
 use gdcm_model::response::mode::modes_of;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 
-use super::asked_condition::AskedCondition;
+use super::asked_condition::RequestedCondition;
 use super::missing_finding::NoModes;
 use super::requirement_role::RequirementRole;
 
@@ -154,7 +154,7 @@ pub struct ModeFinding {
 /// # Errors
 /// [`NoModes`] where a model has no modes.
 pub(crate) fn mode_findings(
-    asked: &AskedCondition<'_>,
+    asked: &RequestedCondition<'_>,
     known: &KnownPoles,
 ) -> Result<Vec<ModeFinding>, NoModes> {
     let [physics, identified] =
@@ -210,7 +210,7 @@ pub(crate) fn mode_findings(
 
 /// Returns a physics model's modes with the study's couplings; `None` without couplings.
 fn coupled_modes(
-    asked: &AskedCondition<'_>,
+    asked: &RequestedCondition<'_>,
     physics: &Model,
 ) -> Result<Option<Vec<Mode>>, NoModes> {
     let Some(matrices) = physics.state_space() else {

@@ -8,7 +8,7 @@ use gdcm_method::requirements::summary::{Summary, SummarySource};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::response::GainDelay;
 
-use super::asked_condition::AskedCondition;
+use super::asked_condition::RequestedCondition;
 use super::requirement_role::RequirementRole;
 
 /// Summary costs for a physics model against the identified representative (M17.4).
@@ -65,7 +65,10 @@ impl NoSummary {
 }
 
 /// Computes the summary costs for a role's model against the identified representative.
-pub(super) fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> SummaryFinding {
+pub(super) fn summary_finding(
+    asked: &RequestedCondition<'_>,
+    role: RequirementRole,
+) -> SummaryFinding {
     let study = &asked.analysis.study;
     let correction = asked.correction(role);
     let multiplier = |pair: Pair| match correction {

@@ -10,7 +10,7 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::progress::Cancelled;
 
 use super::analysis::Analysis;
-use super::asked_condition::AskedCondition;
+use super::asked_condition::RequestedCondition;
 use super::assessment_table::AssessedCorrection;
 use super::condition_bandwidths::bandwidth_findings;
 use super::missing_finding::{MissingFinding, MissingReason};
@@ -146,7 +146,7 @@ fn condition_requirements(
             return found;
         }
     };
-    let asked = AskedCondition {
+    let asked = RequestedCondition {
         analysis,
         result,
         scheduled: AssessedCorrection::Scheduled

@@ -119,7 +119,7 @@ pub(crate) fn why_undefined(
     ];
     for (bundle, model) in models {
         if model.nothing[pair] {
-            return Undefined::NumericallyNothing(bundle);
+            return Undefined::NumericallyZero(bundle);
         }
     }
     for (bundle, model) in models {

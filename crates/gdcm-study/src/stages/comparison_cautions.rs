@@ -101,7 +101,7 @@ impl ComparisonInput<'_> {
         ] {
             let responses: Vec<Pair> = model.nothing.marked().collect();
             if !responses.is_empty() {
-                cautions.push(Caution::NumericallyNothing {
+                cautions.push(Caution::NumericallyZero {
                     model: BundleModel::new(self.condition, kind, index),
                     responses,
                 });

@@ -249,7 +249,7 @@ impl<'a> RecordContrasts<'a> {
                 residual: column,
                 ..part.clone()
             };
-            with_parameters += self.systems.gradient_along(lines, model, &extra);
+            with_parameters += self.systems.products_with(lines, model, &extra);
         }
         let known = self.root.tr_mul(&with_parameters);
         let optimum = self.root.tr_mul(&self.whole.gradient);

@@ -30,7 +30,7 @@ use crate::spectra::reference_response::Instrument;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
-use crate::subspace::tried_orders::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
+use crate::subspace::tried_orders::{Extent, VALUES_PER_UNKNOWN, parameters_of_order};
 
 /// Number of frequencies at which the response is measured.
 const MEASURED_POINTS: usize = 40;
@@ -551,7 +551,7 @@ fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), Identificati
     let count: usize = lines.iter().map(|lines| lines.omega.len()).sum();
     let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments);
     let unknowns = parameters_of_order(1, inputs, outputs);
-    let needed = FIGURES_AN_UNKNOWN * unknowns;
+    let needed = VALUES_PER_UNKNOWN * unknowns;
     if figures < needed {
         return Err(IdentificationError::TooFewFigures {
             figures,

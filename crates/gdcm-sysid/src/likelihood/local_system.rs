@@ -21,7 +21,7 @@ use super::cost::{Likelihood, SegmentCost, SpectralLines};
 use super::descent::Fit;
 use super::gram_matrix::scale_columns;
 use super::local_parameters::LocalParameters;
-use super::normal_equations::{EXACT, NormalEquations, gradient_along};
+use super::normal_equations::{EXACT, NormalEquations, products_with};
 use super::schur_model::SchurModel;
 
 /// `G` and `g`: a step d in the parameters changes the cost by `-2 g'd + d'G d`.
@@ -152,12 +152,12 @@ impl LocalSystems {
     ///
     /// `extra` is the segment's cost with that column instead of its residual; the nuisance columns
     /// are already projected out of it.
-    pub(crate) fn gradient_along(
+    pub(crate) fn products_with(
         &self,
         lines: &SpectralLines,
         model: &SchurModel,
         extra: &SegmentCost,
     ) -> DVector<f64> {
-        gradient_along(lines, model, extra).select_rows(&self.parameters.places())
+        products_with(lines, model, extra).select_rows(&self.parameters.places())
     }
 }

@@ -111,7 +111,7 @@ impl NormalEquations {
 
 /// Computes the inner products of a segment's `J` with a further column, in all entries; `extra` is
 /// the segment's cost with that column instead of its residual.
-pub(super) fn gradient_along(
+pub(super) fn products_with(
     lines: &SpectralLines,
     model: &SchurModel,
     extra: &SegmentCost,

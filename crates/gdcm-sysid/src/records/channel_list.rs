@@ -9,12 +9,12 @@ use gdcm_model::names::channel_rule::ChannelRule;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelList {
     /// Channels, in order.
-    pub channels: Vec<SaidChannel>,
+    pub channels: Vec<RequestedChannel>,
 }
 
 /// A channel as specified in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SaidChannel {
+pub struct RequestedChannel {
     pub name: String,
     /// Unit; empty if not given.
     pub unit: String,
@@ -46,7 +46,7 @@ impl ChannelListError {
     }
 }
 
-impl SaidChannel {
+impl RequestedChannel {
     /// Returns the rule for this channel, column and unit.
     pub fn rule(&self) -> ChannelRule {
         ChannelRule {
@@ -60,7 +60,7 @@ impl SaidChannel {
 
 /// Parses `NAME`, `NAME [UNIT]`, `NAME=COLUMN` or `NAME [UNIT]=COLUMN`, the column with or without
 /// quotation marks. Digits in the bracket are an index, which belongs to the name.
-impl FromStr for SaidChannel {
+impl FromStr for RequestedChannel {
     type Err = ChannelListError;
 
     fn from_str(text: &str) -> Result<Self, ChannelListError> {
@@ -99,7 +99,7 @@ impl FromStr for ChannelList {
     type Err = ChannelListError;
 
     fn from_str(text: &str) -> Result<Self, ChannelListError> {
-        let mut channels: Vec<SaidChannel> = Vec::new();
+        let mut channels: Vec<RequestedChannel> = Vec::new();
         for part in split_outside_quotes(text) {
             channels.push(part.parse()?);
         }
@@ -115,7 +115,7 @@ impl FromStr for ChannelList {
 
 impl fmt::Display for ChannelList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, SaidChannel { name, unit, column }) in self.channels.iter().enumerate() {
+        for (index, RequestedChannel { name, unit, column }) in self.channels.iter().enumerate() {
             if index > 0 {
                 f.write_str(", ")?;
             }
@@ -158,8 +158,8 @@ mod tests {
         text.parse()
     }
 
-    fn channel(name: &str, unit: &str, column: Option<&str>) -> SaidChannel {
-        SaidChannel {
+    fn channel(name: &str, unit: &str, column: Option<&str>) -> RequestedChannel {
+        RequestedChannel {
             name: name.into(),
             unit: unit.into(),
             column: column.map(Into::into),

@@ -3,7 +3,7 @@
 use gdcm_model::dataset::channel::ChannelSide;
 
 use super::column_use::ColumnUse;
-use super::record_channels::{RecordChannels, SaidConversion};
+use super::record_channels::{DeclaredConversion, RecordChannels};
 use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
 
@@ -16,7 +16,7 @@ impl RecordChannels {
             let uses = side.pick(&layout.inputs, &layout.outputs);
             for (rule, used) in rules.iter_mut().zip(uses) {
                 if rule.unit.is_empty() {
-                    let conversion = self.said.get(&rule.name);
+                    let conversion = self.declared.get(&rule.name);
                     rule.unit = unit_of_samples(conversion, *used, table).unwrap_or_default();
                 }
             }
@@ -27,13 +27,13 @@ impl RecordChannels {
 /// Returns the unit in which a channel's samples are: given by the user, or else by the file;
 /// `None` if unknown, as after a user-defined factor other than ±1.
 fn unit_of_samples(
-    conversion: Option<&SaidConversion>,
+    conversion: Option<&DeclaredConversion>,
     used: Option<ColumnUse>,
     table: &RecordTable,
 ) -> Option<String> {
     match conversion {
-        Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
-        Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
+        Some(DeclaredConversion::Unit(unit)) => Some(unit.clone()),
+        Some(DeclaredConversion::Factor(factor)) if factor.abs() != 1.0 => None,
         _ => table.columns.get(used?.column)?.unit.clone(),
     }
 }

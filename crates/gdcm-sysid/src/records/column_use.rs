@@ -54,7 +54,7 @@ impl ColumnUse {
         let Some(samples) = table.columns.get(column) else {
             return Self::as_it_is(column);
         };
-        let unit_in_file = samples.said_unit();
+        let unit_in_file = samples.unit_in_file();
         if let Some(factor) = unit_in_file.and_then(|from| conversion_factor(from, unit)) {
             return Self::times(column, factor);
         }
@@ -144,7 +144,7 @@ impl ColumnUse {
 /// the units are unknown.
 fn factor_from_file(column: &RecordColumn, rule: &ChannelRule) -> f64 {
     let mut factor = 1.0;
-    if let Some(unit) = column.said_unit()
+    if let Some(unit) = column.unit_in_file()
         && !rule.unit.is_empty()
     {
         factor = conversion_factor(unit, &rule.unit).unwrap_or(1.0);

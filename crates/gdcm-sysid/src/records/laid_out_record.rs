@@ -10,7 +10,7 @@ use gdcm_model::names::standard_patterns;
 use gdcm_model::simulation::FlightRecord;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};
-use super::layout_proposal::{LayoutProposal, TimeWish, has_sign_mark};
+use super::layout_proposal::{LayoutProposal, TimeSettings, has_sign_mark};
 use super::record_channels::RecordChannels;
 use super::record_guess::RecordGuess;
 use super::record_layout::RecordLayout;
@@ -61,7 +61,7 @@ impl LaidOutRecord {
     pub fn proposed(
         table: RecordTable,
         channels: &RecordChannels,
-        time: &TimeWish,
+        time: &TimeSettings,
     ) -> (Self, Vec<String>) {
         let LayoutProposal {
             layout,
@@ -87,11 +87,11 @@ impl LaidOutRecord {
     /// Creates a record with its channels. A record named by the dataset is read with the factors
     /// and delays stored there, and in the dataset's units if the file gives none. A user-defined
     /// conversion replaces the stored factor, and an alias with a sign mark its sign.
-    pub fn as_dataset_says(
+    pub fn proposed_for_dataset(
         table: RecordTable,
         channels: &RecordChannels,
         dataset: &Dataset,
-        time: &TimeWish,
+        time: &TimeSettings,
     ) -> (Self, Vec<String>) {
         let Some((_, entry)) = table.entry_of_dataset(dataset) else {
             return Self::proposed(table, channels, time);
@@ -113,7 +113,7 @@ impl LaidOutRecord {
             remedies,
             ..entry.clone()
         };
-        (record.as_said(&entry, &channels), notes)
+        (record.with_entry(&entry, &channels), notes)
     }
 
     /// Returns the record's first and last time \[s\], on its own clock; `None` while there are
@@ -139,11 +139,11 @@ impl LaidOutRecord {
     /// Applies the record's dataset entry: its remedies, whether it is reserved for
     /// validation, and whether it is used.
     #[must_use]
-    pub fn as_said(self, entry: &ConditionRecord, channels: &RecordChannels) -> Self {
+    pub fn with_entry(self, entry: &ConditionRecord, channels: &RecordChannels) -> Self {
         let mut record = self;
         if !entry.remedies.is_empty() {
             let mut layout = record.layout.clone();
-            layout.put_right(&entry.remedies, channels);
+            layout.add_remedies(&entry.remedies, channels);
             record = record.laid_out(layout, channels);
         }
         record.guess.kind = entry.kind;
@@ -187,7 +187,7 @@ fn remaining_remedy(stored: ChannelRemedy, name: &str, channels: &RecordChannels
         .chain(&channels.outputs)
         .filter(|rule| rule.name == name)
         .any(|rule| rule.aliases.iter().any(|alias| has_sign_mark(alias)));
-    if channels.said.contains_key(name) {
+    if channels.declared.contains_key(name) {
         remedy.factor = 1.0;
     } else if is_marked {
         remedy.factor = remedy.factor.abs();
@@ -198,7 +198,7 @@ fn remaining_remedy(stored: ChannelRemedy, name: &str, channels: &RecordChannels
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::records::record_channels::SaidConversion;
+    use crate::records::record_channels::DeclaredConversion;
     use gdcm_model::names::ChannelRule;
 
     /// The sign that an alias gives is not applied a second time from the dataset.
@@ -226,8 +226,8 @@ mod tests {
         assert_eq!(remaining_remedy(stored, "NZ", &channels), expected);
 
         channels
-            .said
-            .insert("NZ".to_owned(), SaidConversion::Factor(-2.0));
+            .declared
+            .insert("NZ".to_owned(), DeclaredConversion::Factor(-2.0));
         let expected = ChannelRemedy {
             factor: 1.0,
             ..stored

@@ -6,7 +6,7 @@ use gdcm_model::dataset::condition::ChannelRemedy;
 
 use super::laid_out_record::LaidOutRecord;
 use super::layout_problem::{LayoutCaution, LayoutProblem};
-use super::layout_proposal::TimeWish;
+use super::layout_proposal::TimeSettings;
 use super::layout_tests::{channels, column, proposed, record};
 use super::record_copies::leave_out_copies;
 use super::record_guess::RecordGuess;
@@ -77,7 +77,7 @@ fn named_record(name: &str, first: f64) -> LaidOutRecord {
     let mut table = record();
     table.name = name.to_owned();
     table.columns[2].values[0] = first;
-    LaidOutRecord::proposed(table, &channels(), &TimeWish::default()).0
+    LaidOutRecord::proposed(table, &channels(), &TimeSettings::default()).0
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn remedies_apply_to_one_record_only() {
             },
         ),
     ]);
-    layout.put_right(&remedies, &channels);
+    layout.add_remedies(&remedies, &channels);
     let [before, after] =
         [&as_logged, &layout].map(|layout| layout.flight_record(&table, &channels).unwrap());
     // LON is 40 + k at 0.02 k s: 30 ms later it is larger by 1.5; beyond the end it has no value.
@@ -146,7 +146,7 @@ fn remedies_apply_to_one_record_only() {
         .with_remedies_of(&layout);
     assert_eq!(other, layout);
     // A second application of the remedies adds to the first.
-    layout.put_right(&remedies, &channels);
+    layout.add_remedies(&remedies, &channels);
     let twice = layout.flight_record(&table, &channels).unwrap();
     assert!((twice.inputs[(10, 0)] - 53.0).abs() < 1e-12 && twice.outputs == before.outputs);
 }
@@ -167,14 +167,14 @@ fn gaps_are_not_interpolated_and_long_delays_are_refused() {
     }
     let channels = channels();
     let mut layout = proposed(&table).layout;
-    layout.put_right(&delay_of_lon(0.03), &channels);
+    layout.add_remedies(&delay_of_lon(0.03), &channels);
     let flight = layout.flight_record(&table, &channels).unwrap();
     assert!(
         flight.inputs[(28, 0)].is_nan()
             && flight.inputs[(27, 0)].is_finite()
             && flight.inputs[(30, 0)].is_finite()
     );
-    layout.put_right(&delay_of_lon(1e300), &channels);
+    layout.add_remedies(&delay_of_lon(1e300), &channels);
     assert_eq!(
         layout.problems(&table, &channels),
         [LayoutProblem::Delay {

@@ -214,7 +214,7 @@ fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option
     if used.unit != UnitBasis::Open {
         return None;
     }
-    Some(LayoutProblem::UnsaidUnit {
+    Some(LayoutProblem::UnitNotGiven {
         channel: rule.name.clone(),
         column: table.quoted(used.column),
         unit: rule.unit.clone(),

@@ -102,7 +102,7 @@ pub enum LayoutProblem {
         in {}; choose the unit with --unit \"{channel}={unit}\" or on the Columns page",
         alternatives(units)
     )]
-    UnsaidUnit {
+    UnitNotGiven {
         channel: String,
         /// Column name in quotation marks.
         column: String,
@@ -188,7 +188,7 @@ impl LayoutProblem {
             Self::SeveralColumns { .. } => "several-columns",
             Self::Unnamed { .. } => "unnamed-columns",
             Self::Sign { .. } => "sign",
-            Self::UnsaidUnit { .. } => "unit-not-given",
+            Self::UnitNotGiven { .. } => "unit-not-given",
             Self::Conversion { .. } => "unit-conversion",
             Self::OneColumn { .. } => "one-column",
             Self::Empty { .. } => "empty-table",

@@ -10,7 +10,7 @@ use super::column_use::{ColumnUse, UnitBasis};
 use super::layout_note::{ColumnConversion, LayoutNote};
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::plausible_units::possible_units;
-use super::record_channels::{RecordChannels, SaidConversion};
+use super::record_channels::{DeclaredConversion, RecordChannels};
 use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
 use super::resampling::Resampling;
@@ -18,7 +18,7 @@ use super::time_base::TimeBase;
 
 /// User settings for the time in records.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TimeWish {
+pub struct TimeSettings {
     /// Time column; `None` selects the most likely column.
     pub column: Option<String>,
     /// Sample time \[s\]; replaces a column.
@@ -60,7 +60,7 @@ impl RecordLayout {
     pub fn proposed(
         table: &RecordTable,
         channels: &RecordChannels,
-        time: &TimeWish,
+        time: &TimeSettings,
     ) -> LayoutProposal {
         let mut proposer = Proposer {
             table,
@@ -116,7 +116,7 @@ enum UnitSource {
 impl Proposer<'_> {
     /// Proposes the time, then inputs and outputs. Without column names and aliases, columns cannot
     /// be assigned.
-    fn layout(&mut self, time: &TimeWish) -> RecordLayout {
+    fn layout(&mut self, time: &TimeSettings) -> RecordLayout {
         let mut layout = RecordLayout {
             time: self.time(time),
             inputs: vec![None; self.channels.inputs.len()],
@@ -139,7 +139,7 @@ impl Proposer<'_> {
     }
 
     /// Proposes the time (step 1).
-    fn time(&mut self, settings: &TimeWish) -> Option<TimeBase> {
+    fn time(&mut self, settings: &TimeSettings) -> Option<TimeBase> {
         let table = self.table;
         if table.has_topics() {
             self.notes.push(LayoutNote::TopicStamps);
@@ -277,8 +277,8 @@ impl Proposer<'_> {
     /// 4. else by the column's name; `None` if it leaves the sign open
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
         let has_factor = matches!(
-            self.channels.said.get(&rule.name),
-            Some(SaidConversion::Factor(_))
+            self.channels.declared.get(&rule.name),
+            Some(DeclaredConversion::Factor(_))
         );
         if has_factor {
             let is_reversed = marked_alias.is_some_and(|alias| {
@@ -299,13 +299,13 @@ impl Proposer<'_> {
     /// with a problem, if the unit cannot be converted.
     fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let table = self.table;
-        let unit = match self.channels.said.get(&rule.name) {
-            Some(SaidConversion::Factor(factor)) => {
+        let unit = match self.channels.declared.get(&rule.name) {
+            Some(DeclaredConversion::Factor(factor)) => {
                 self.note(rule, column, ColumnConversion::RequestedFactor(*factor));
                 return Some(ColumnUse::times(column, *factor));
             }
-            Some(SaidConversion::Unit(unit)) => Some(unit.as_str()),
-            None => table.columns[column].said_unit(),
+            Some(DeclaredConversion::Unit(unit)) => Some(unit.as_str()),
+            None => table.columns[column].unit_in_file(),
         };
         if rule.unit.is_empty() {
             let unit = unit.map(str::to_owned);

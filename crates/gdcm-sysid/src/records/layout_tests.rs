@@ -9,8 +9,8 @@ use super::column_use::ColumnUse;
 use super::laid_out_record::LaidOutRecord;
 use super::layout_note::{ColumnConversion, LayoutNote, TimeUnitReason};
 use super::layout_problem::{LayoutCaution, LayoutProblem};
-use super::layout_proposal::{LayoutProposal, TimeWish};
-use super::record_channels::{RecordChannels, SaidConversion};
+use super::layout_proposal::{LayoutProposal, TimeSettings};
+use super::record_channels::{DeclaredConversion, RecordChannels};
 use super::record_guess::RecordGuess;
 use super::record_layout::RecordLayout;
 use super::record_table::{RecordColumn, RecordSource, RecordTable};
@@ -62,12 +62,12 @@ pub(super) fn record() -> RecordTable {
 }
 
 pub(super) fn proposed(table: &RecordTable) -> LayoutProposal {
-    RecordLayout::proposed(table, &channels(), &TimeWish::default())
+    RecordLayout::proposed(table, &channels(), &TimeSettings::default())
 }
 
 /// The layout proposed for the channels, which must have no problem.
 fn accepted(table: &RecordTable, channels: &RecordChannels) -> RecordLayout {
-    let proposal = RecordLayout::proposed(table, channels, &TimeWish::default());
+    let proposal = RecordLayout::proposed(table, channels, &TimeSettings::default());
     assert_eq!(proposal.problems, []);
     proposal.layout
 }
@@ -173,7 +173,7 @@ fn with_roll_rate(unit_in_file: &str, peak: f64, unit: &str) -> LayoutProposal {
     channels.outputs[0].unit = unit.to_owned();
     let mut table = record();
     table.columns[3] = column("roll rate", unit_in_file, |k| peak * (k - 30.0) / 30.0);
-    let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+    let proposal = RecordLayout::proposed(&table, &channels, &TimeSettings::default());
     assert_eq!(
         proposal.layout.flight_record(&table, &channels).is_ok(),
         proposal.problems.is_empty()
@@ -186,7 +186,7 @@ fn an_assumed_unit_is_a_caution_until_it_is_confirmed_or_chosen() {
     let channels = channels();
     let mut table = record();
     table.columns[3] = column("roll rate", "", |k| 2.0 * (k - 30.0) / 30.0);
-    let open = RecordLayout::proposed(&table, &channels, &TimeWish::default()).layout;
+    let open = RecordLayout::proposed(&table, &channels, &TimeSettings::default()).layout;
     assert_eq!(open.problems(&table, &channels).len(), 1);
     let assumed = open.assuming_units_of_channels();
     assert_eq!(assumed.problems(&table, &channels), []);
@@ -212,7 +212,7 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
     // is not.
     assert_eq!(
         with_roll_rate("", 6.9, "deg/s").problems,
-        [LayoutProblem::UnsaidUnit {
+        [LayoutProblem::UnitNotGiven {
             channel: "P".into(),
             column: "\"roll rate\"".into(),
             unit: "deg/s".into(),
@@ -254,9 +254,9 @@ fn the_user_s_unit_of_a_channel_applies_to_files_without_units() {
     table.columns[3].unit = None;
     let mut channels = channels();
     channels
-        .said
-        .insert("P".to_owned(), SaidConversion::Unit("rad/s".to_owned()));
-    let said = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        .declared
+        .insert("P".to_owned(), DeclaredConversion::Unit("rad/s".to_owned()));
+    let said = RecordLayout::proposed(&table, &channels, &TimeSettings::default());
     assert_eq!(
         (said.problems.len(), said.layout.outputs[0].unwrap().factor),
         (0, 180.0 / std::f64::consts::PI)
@@ -266,13 +266,13 @@ fn the_user_s_unit_of_a_channel_applies_to_files_without_units() {
         .layout
         .condition_record(&table, &RecordGuess::default(), &channels);
     let again = RecordChannels {
-        said: BTreeMap::new(),
+        declared: BTreeMap::new(),
         ..channels.clone()
     }
     .of_named_records();
-    let again = LaidOutRecord::proposed(table.clone(), &again, &TimeWish::default())
+    let again = LaidOutRecord::proposed(table.clone(), &again, &TimeSettings::default())
         .0
-        .as_said(&entry, &again);
+        .with_entry(&entry, &again);
     assert_eq!(
         again.flight.as_deref(),
         Some(&said.layout.flight_record(&table, &channels).unwrap())
@@ -326,13 +326,13 @@ fn a_record_without_a_time_takes_the_sample_time_of_the_user() {
     assert_eq!(columns[..2], ["nz", "count"]);
     let mut table = record();
     table.columns.remove(1);
-    let rate = TimeWish {
+    let rate = TimeSettings {
         sample_time_s: Some(0.02),
         column: None,
     };
     let proposal = RecordLayout::proposed(&table, &channels(), &rate);
     assert_eq!(proposal.problems, []);
-    let missing = TimeWish {
+    let missing = TimeSettings {
         sample_time_s: None,
         column: Some("clock".into()),
     };
@@ -474,7 +474,11 @@ fn acceleration_channels(alias: Option<&str>) -> RecordChannels {
 /// The proposal of NZ from this column, with an optional alias.
 fn with_acceleration(name: &str, alias: Option<&str>) -> LayoutProposal {
     let channels = acceleration_channels(alias);
-    RecordLayout::proposed(&acceleration_table(name), &channels, &TimeWish::default())
+    RecordLayout::proposed(
+        &acceleration_table(name),
+        &channels,
+        &TimeSettings::default(),
+    )
 }
 
 #[test]
@@ -574,11 +578,11 @@ fn channels_without_a_unit_take_the_first_file_s_and_later_files_are_converted()
     };
     let first = record();
     let mut second = record();
-    let layout = RecordLayout::proposed(&first, &channels, &TimeWish::default()).layout;
+    let layout = RecordLayout::proposed(&first, &channels, &TimeSettings::default()).layout;
     channels.take_units(&layout, &first);
     assert_eq!(channels.outputs[0].unit, "rad/s");
     second.columns[3].unit = Some("deg/s".into());
-    let proposal = RecordLayout::proposed(&second, &channels, &TimeWish::default());
+    let proposal = RecordLayout::proposed(&second, &channels, &TimeSettings::default());
     assert_eq!(
         proposal.layout.outputs[0].unwrap().factor,
         std::f64::consts::PI / 180.0
@@ -651,7 +655,7 @@ fn with_numbers(last: &str) -> LayoutProposal {
     channels.inputs[0].aliases = vec!["#5".to_owned()];
     channels.outputs[0].aliases = vec!["#4".to_owned()];
     channels.outputs[1].aliases = vec![last.to_owned()];
-    let time = TimeWish {
+    let time = TimeSettings {
         column: Some("#2".to_owned()),
         sample_time_s: None,
     };
@@ -679,12 +683,12 @@ fn columns_without_names_are_found_by_their_numbers() {
 fn the_user_s_unit_or_factor_overrides_the_file() {
     let mut channels = channels();
     channels
-        .said
-        .insert("NZ".to_owned(), SaidConversion::Factor(-9.8));
+        .declared
+        .insert("NZ".to_owned(), DeclaredConversion::Factor(-9.8));
     channels
-        .said
-        .insert("P".to_owned(), SaidConversion::Unit("deg/s".to_owned()));
-    let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
+        .declared
+        .insert("P".to_owned(), DeclaredConversion::Unit("deg/s".to_owned()));
+    let found = RecordLayout::proposed(&record(), &channels, &TimeSettings::default());
     assert_eq!(
         found
             .layout
@@ -714,10 +718,10 @@ fn a_user_s_factor_includes_the_sign_of_the_column() {
     ] {
         let mut channels = acceleration_channels(alias);
         channels
-            .said
-            .insert("NZ".to_owned(), SaidConversion::Factor(-9.81));
+            .declared
+            .insert("NZ".to_owned(), DeclaredConversion::Factor(-9.81));
         let table = acceleration_table(name);
-        let found = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        let found = RecordLayout::proposed(&table, &channels, &TimeSettings::default());
         assert_eq!(
             found.layout.outputs[0].unwrap().factor,
             factor,
@@ -730,7 +734,7 @@ fn a_user_s_factor_includes_the_sign_of_the_column() {
 fn a_mark_before_an_alias_reverses_the_sign() {
     let mut channels = channels();
     channels.outputs[1].aliases = vec!["-nz".to_owned()];
-    let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
+    let found = RecordLayout::proposed(&record(), &channels, &TimeSettings::default());
     assert_eq!(
         found.layout.outputs[1],
         Some(ColumnUse::times(0, -9.806_65)),

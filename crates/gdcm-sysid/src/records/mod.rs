@@ -60,7 +60,7 @@ pub mod topic_tables;
 pub use column_use::ColumnUse;
 pub use laid_out_record::LaidOutRecord;
 pub use layout_problem::LayoutProblem;
-pub use layout_proposal::TimeWish;
+pub use layout_proposal::TimeSettings;
 pub use record_channels::RecordChannels;
 pub use record_copies::leave_out_copies;
 pub use record_layout::RecordLayout;

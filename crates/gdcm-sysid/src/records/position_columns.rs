@@ -28,7 +28,7 @@ pub(super) fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule
     if !has_folded_name(own, &LATITUDE) && !has_folded_name(own, &LONGITUDE) {
         return false;
     }
-    if let Some(unit) = own.said_unit() {
+    if let Some(unit) = own.unit_in_file() {
         return conversion_factor(unit, "deg").is_some_and(|factor| is_place_angle(own, factor));
     }
     let largest_change = if own.name == rule.name {

@@ -57,7 +57,7 @@ mod tests {
     use gdcm_model::names::ChannelRule;
 
     use super::*;
-    use crate::records::layout_proposal::TimeWish;
+    use crate::records::layout_proposal::TimeSettings;
     use crate::records::record_channels::RecordChannels;
     use crate::records::record_table::{RecordColumn, RecordTable};
 
@@ -91,7 +91,7 @@ mod tests {
             outputs: vec![ChannelRule::named("q")],
             ..RecordChannels::default()
         };
-        let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+        let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeSettings::default());
         assert_eq!(
             record.possible_references(),
             [

@@ -7,7 +7,7 @@ use gdcm_model::names::channel_rule::ChannelRule;
 
 /// User-defined conversion; overrides the file.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SaidConversion {
+pub enum DeclaredConversion {
     /// The samples' unit.
     Unit(String),
     /// Channel units per column unit; negative for the opposite sign.
@@ -16,7 +16,7 @@ pub enum SaidConversion {
 
 /// Settings for combining topics with separate clocks into a record.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ResamplingWish {
+pub struct ResamplingSettings {
     /// Upper band end \[rad/s\]; `None` if unknown.
     pub band_end: Option<f64>,
     /// Sample rate \[Hz\], also applied to records with a single clock. With `None`, such records
@@ -33,9 +33,9 @@ pub struct RecordChannels {
     pub inputs: Vec<ChannelRule>,
     pub outputs: Vec<ChannelRule>,
     /// User-defined conversions by channel.
-    pub said: BTreeMap<String, SaidConversion>,
+    pub declared: BTreeMap<String, DeclaredConversion>,
     /// Settings for topics with separate clocks.
-    pub resampling: ResamplingWish,
+    pub resampling: ResamplingSettings,
 }
 
 impl RecordChannels {
@@ -44,10 +44,10 @@ impl RecordChannels {
         Self {
             inputs: dataset.inputs().iter().map(rule_of_channel).collect(),
             outputs: dataset.outputs().iter().map(rule_of_channel).collect(),
-            said: BTreeMap::new(),
-            resampling: ResamplingWish {
+            declared: BTreeMap::new(),
+            resampling: ResamplingSettings {
                 band_end: Some(dataset.band().max()),
-                ..ResamplingWish::default()
+                ..ResamplingSettings::default()
             },
         }
     }

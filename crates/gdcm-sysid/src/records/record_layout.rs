@@ -73,7 +73,7 @@ impl RecordLayout {
     }
 
     /// Adds remedies to channels by name, in this record only, in addition to earlier remedies.
-    pub fn put_right(
+    pub fn add_remedies(
         &mut self,
         remedies: &BTreeMap<String, ChannelRemedy>,
         channels: &RecordChannels,

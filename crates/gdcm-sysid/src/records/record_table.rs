@@ -53,7 +53,7 @@ impl RecordColumn {
     }
 
     /// Returns the unit in the file unless it is blank.
-    pub fn said_unit(&self) -> Option<&str> {
+    pub fn unit_in_file(&self) -> Option<&str> {
         self.unit.as_deref().filter(|unit| !unit.trim().is_empty())
     }
 

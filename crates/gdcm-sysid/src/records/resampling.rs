@@ -7,7 +7,7 @@ use gdcm_model::simulation::FlightRecord;
 
 use super::common_clock::CommonClock;
 use super::layout_note::{LayoutNote, LoggedRate};
-use super::record_channels::{RecordChannels, ResamplingWish};
+use super::record_channels::{RecordChannels, ResamplingSettings};
 use super::record_layout::{ChannelUse, RecordLayout};
 use super::record_table::{RecordColumn, RecordTable};
 use super::resampling_error::ResamplingError;
@@ -176,7 +176,7 @@ impl ChannelColumn<'_> {
 
     /// Returns whether the channel is an input that is held between its samples, by request or by
     /// its repeated values.
-    fn is_held(&self, values: &[f64], settings: &ResamplingWish) -> bool {
+    fn is_held(&self, values: &[f64], settings: &ResamplingSettings) -> bool {
         self.channel.side == ChannelSide::Input
             && (settings.held.contains(&self.channel.rule.name) || is_held(values))
     }
@@ -251,7 +251,7 @@ mod tests {
 
     use super::*;
     use crate::records::layout_problem::LayoutProblem;
-    use crate::records::layout_proposal::TimeWish;
+    use crate::records::layout_proposal::TimeSettings;
     use crate::records::record_table::TopicClock;
 
     fn signal(t: f64) -> f64 {
@@ -262,9 +262,9 @@ mod tests {
         RecordChannels {
             inputs: vec![ChannelRule::named("M")],
             outputs: vec![ChannelRule::named("q")],
-            resampling: ResamplingWish {
+            resampling: ResamplingSettings {
                 band_end: Some(12.0),
-                ..ResamplingWish::default()
+                ..ResamplingSettings::default()
             },
             ..RecordChannels::default()
         }
@@ -286,7 +286,7 @@ mod tests {
     }
 
     fn flight(table: &RecordTable, channels: &RecordChannels) -> FlightRecord {
-        let proposal = RecordLayout::proposed(table, channels, &TimeWish::default());
+        let proposal = RecordLayout::proposed(table, channels, &TimeSettings::default());
         assert_eq!(proposal.problems, []);
         proposal.layout.flight_record(table, channels).unwrap()
     }
@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn topics_with_separate_clocks_become_a_record_with_a_note() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.3), topic("q", 100.0, 0.0)]);
-        let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
+        let notes = RecordLayout::proposed(&table, &channels(), &TimeSettings::default()).notes;
         let Some(LayoutNote::Resampled {
             rate_hz,
             cut_off_rad_s,
@@ -330,7 +330,7 @@ mod tests {
     fn a_topic_too_slow_for_the_band_is_refused() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.0), topic("q", 4.0, 0.0)]);
         let channels = channels();
-        let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        let proposal = RecordLayout::proposed(&table, &channels, &TimeSettings::default());
         assert!(proposal.layout.flight_record(&table, &channels).is_err());
         let [
             LayoutProblem::Topics(ResamplingError::TooSlow {
@@ -368,7 +368,7 @@ mod tests {
             RecordColumn::new("q", q),
         ];
         let table = RecordTable::new("joined", columns);
-        let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
+        let notes = RecordLayout::proposed(&table, &channels(), &TimeSettings::default()).notes;
         let resampled = notes.iter().find_map(|note| match note {
             LayoutNote::Resampled { logged, .. } => Some(logged),
             _ => None,

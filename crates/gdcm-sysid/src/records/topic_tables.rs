@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::layout_problem::LayoutProblem;
-use super::layout_proposal::TimeWish;
+use super::layout_proposal::TimeSettings;
 use super::record_channels::RecordChannels;
 use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
@@ -20,7 +20,7 @@ use super::topic_names::{log_key, logs_of_topics, topic_names};
 pub fn with_topics_joined(
     tables: Vec<RecordTable>,
     channels: &RecordChannels,
-    time: &TimeWish,
+    time: &TimeSettings,
 ) -> Vec<RecordTable> {
     let mut joiner = TopicJoiner {
         is_joined: vec![false; tables.len()],
@@ -52,7 +52,7 @@ pub fn with_topics_joined(
 struct TopicJoiner<'r> {
     tables: &'r [RecordTable],
     channels: &'r RecordChannels,
-    time: &'r TimeWish,
+    time: &'r TimeSettings,
     /// Whether each table is part of a joined record.
     is_joined: Vec<bool>,
     /// Joined records, by the index of their first topic.
@@ -172,7 +172,7 @@ mod tests {
             topic("log.mat", Some("q"), &["value"], 0.01),
             topic("log.mat", Some("acc"), &["value_1", "value_2"], 0.004),
         ];
-        let joined = with_topics_joined(tables, &channels(), &TimeWish::default());
+        let joined = with_topics_joined(tables, &channels(), &TimeSettings::default());
         assert_eq!(joined.len(), 1);
         assert_eq!(names(&joined[0]), ["M", "q", "acc.1", "acc.2"]);
         assert_eq!(joined[0].name, "log");
@@ -187,7 +187,7 @@ mod tests {
             topic("fly/log_7_rates.csv", None, &["p", "q"], 1e4),
             topic("fly/log_7_torque.csv", None, &["M"], 2e4),
         ];
-        let joined = with_topics_joined(tables, &channels(), &TimeWish::default());
+        let joined = with_topics_joined(tables, &channels(), &TimeSettings::default());
         assert_eq!(
             names(&joined[0]),
             ["status.armed", "rates.p", "rates.q", "torque.M"]
@@ -211,7 +211,7 @@ mod tests {
             topic("fly/12_41_55_vehicle_torque_0.csv", None, &["M"], 0.02),
             topic("fly/12_41_55_vehicle_status_0.csv", None, &["state"], 1.0),
         ];
-        let joined = with_topics_joined(tables.clone(), &channels(), &TimeWish::default());
+        let joined = with_topics_joined(tables.clone(), &channels(), &TimeSettings::default());
         let found: Vec<&str> = joined.iter().map(|table| table.name.as_str()).collect();
         assert_eq!(found, ["12_30_05", "12_41_55"]);
         assert_eq!(
@@ -241,7 +241,7 @@ mod tests {
             topic("b.csv", None, &["M", "q", "p"], 0.01),
         ];
         assert_eq!(
-            with_topics_joined(tables.clone(), &channels(), &TimeWish::default()),
+            with_topics_joined(tables.clone(), &channels(), &TimeSettings::default()),
             tables
         );
         let lacking = vec![
@@ -249,7 +249,7 @@ mod tests {
             topic("b.csv", None, &["q", "p"], 0.01),
         ];
         assert_eq!(
-            with_topics_joined(lacking.clone(), &channels(), &TimeWish::default()),
+            with_topics_joined(lacking.clone(), &channels(), &TimeSettings::default()),
             lacking
         );
     }

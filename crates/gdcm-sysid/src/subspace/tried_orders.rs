@@ -35,7 +35,7 @@ const LEAST_FUTURE: usize = 12;
 pub(crate) const SPACING: f64 = 1.2;
 /// Minimum number of real values ("figures") in the spectral lines per model parameter ("unknown")
 /// (M14.13).
-pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
+pub(crate) const VALUES_PER_UNKNOWN: usize = 5;
 
 /// Counts a model's parameters at this order, without those that only change the state basis:
 /// `n (m + l) + m l`.
@@ -106,7 +106,7 @@ impl Extent {
     /// Returns whether there are enough real values for the parameters at an order.
     fn carries(self, order: usize) -> bool {
         let parameters = parameters_of_order(order, self.inputs, self.outputs);
-        FIGURES_AN_UNKNOWN * parameters <= self.figures
+        VALUES_PER_UNKNOWN * parameters <= self.figures
     }
 }
 

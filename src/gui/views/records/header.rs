@@ -5,7 +5,7 @@ use egui::{Align, Button, Layout, RichText, Role, Sense, Ui, vec2};
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::counted;
-use gdcm_study::decisions::adopted_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::AdoptionChoice;
 
 use super::offered_models::OFFERS;
 use crate::gui::commands::command::Command;
@@ -63,7 +63,7 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
     let text = RichText::new(text).color(palette.on_accent());
     ui.add(Button::new(text).fill(palette.accent))
         .on_hover_text(hint)
-        .asks(RecordsCommand::TakeAll(OfferedModels::REFINED), commands);
+        .asks(RecordsCommand::TakeAll(AdoptionChoice::REFINED), commands);
 }
 
 /// Draws the command that identifies all conditions with records, or only those whose fit is

@@ -2,32 +2,32 @@
 
 use egui::Ui;
 
-use gdcm_study::decisions::adopted_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::AdoptionChoice;
 
 /// Choice of models, and its name in menus.
 #[derive(Clone, Copy)]
 pub(super) struct Offer {
     pub(super) words: &'static str,
-    pub(super) models: OfferedModels,
+    pub(super) models: AdoptionChoice,
 }
 
 pub(super) const OFFERS: [Offer; 3] = [
     Offer {
         words: "The refined models",
-        models: OfferedModels::REFINED,
+        models: AdoptionChoice::REFINED,
     },
     Offer {
         words: "The refined models, and CT-PBSID (unrefined)",
-        models: OfferedModels::WITH_UNREFINED,
+        models: AdoptionChoice::WITH_UNREFINED,
     },
     Offer {
         words: "The measured response",
-        models: OfferedModels::MEASURED,
+        models: AdoptionChoice::MEASURED,
     },
 ];
 
 /// Shows a menu button; returns the chosen models.
-pub(super) fn offered_models_ui(ui: &mut Ui, text: &str, hint: &str) -> Option<OfferedModels> {
+pub(super) fn offered_models_ui(ui: &mut Ui, text: &str, hint: &str) -> Option<AdoptionChoice> {
     let menu = ui.menu_button(text, |ui| {
         for offer in OFFERS {
             if ui.button(offer.words).clicked() {

@@ -18,7 +18,7 @@ pub(super) fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
                 columns = shortened_list(found);
                 missing.push(channel, problem);
             }
-            LayoutProblem::UnsaidUnit { channel, .. } => without_unit.push(channel, problem),
+            LayoutProblem::UnitNotGiven { channel, .. } => without_unit.push(channel, problem),
             _ => others.push(problem.to_string()),
         }
     }

@@ -14,7 +14,7 @@ use gdcm_study::decisions::named_decisions::Decisions;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};
 
 use super::json_form::{
-    ConditionText, DatasetReference, ExportText, FORMAT, StudyText, TakenText, VariantText,
+    AdoptedText, ConditionText, DatasetReference, ExportText, FORMAT, StudyText, VariantText,
 };
 use crate::content_fault::{ContentError, ContentFault};
 use crate::files::dataset_file::{ModelText, RecordText};
@@ -34,7 +34,7 @@ impl StudyText {
         }
         let mut taken = Vec::new();
         for (condition, adopted) in study.taken_models() {
-            taken.push(TakenText {
+            taken.push(AdoptedText {
                 condition: condition.0,
                 identified_models: adopted.models.iter().map(ModelText::of_model).collect(),
                 records: adopted
@@ -220,7 +220,7 @@ fn present_decisions(
 
 /// Returns the models adopted by a study, checked against its dataset.
 fn adopted_models(
-    texts: Vec<TakenText>,
+    texts: Vec<AdoptedText>,
     dataset: &Dataset,
 ) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
     let mut adopted = Vec::with_capacity(texts.len());

@@ -44,7 +44,7 @@ pub(super) struct StudyText {
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CONDITIONS, _, _>"
     )]
-    pub(super) taken: Vec<TakenText>,
+    pub(super) taken: Vec<AdoptedText>,
     /// Channels whose sign is reversed in some models.
     #[serde(
         default,
@@ -69,7 +69,7 @@ pub(super) struct StudyText {
 
 /// Identified models adopted in a condition, and their flight records.
 #[derive(Deserialize, Serialize)]
-pub(super) struct TakenText {
+pub(super) struct AdoptedText {
     #[serde(deserialize_with = "whole")]
     pub(super) condition: i64,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]

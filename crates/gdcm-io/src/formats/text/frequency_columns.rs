@@ -144,7 +144,7 @@ mod recognition_tests {
     use crate::formats::reading_reason::{QuantityReason, UnitReason};
     use crate::formats::text::response_columns::{CoherenceColumn, ResponseParts};
     use crate::formats::text::table_reader::read_table;
-    use crate::formats::text::unrecognised::UnsaidUnit;
+    use crate::formats::text::unrecognised::UnitNotGiven;
     use crate::reading_budget::ReadingBudget;
     use crate::variable_fault::column_place::ColumnPlace;
     use crate::variable_fault::found_content::{FoundContent, MissingUnit};
@@ -184,7 +184,7 @@ mod recognition_tests {
         })
     }
 
-    fn asked(text: &str) -> Vec<UnsaidUnit> {
+    fn asked(text: &str) -> Vec<UnitNotGiven> {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
         FrequencyColumns::recognise(&table).unwrap_err().unsaid
     }
@@ -273,7 +273,7 @@ mod recognition_tests {
 
     #[test]
     fn a_bare_f_rps_a_gain_and_gamma_are_asked_for_and_answered_by_a_unit() {
-        let question = |column, units| vec![UnsaidUnit { column, units }];
+        let question = |column, units| vec![UnitNotGiven { column, units }];
         assert_eq!(
             asked("f,re,im\n1,1,2\n2,3,4\n"),
             question(0, ["rad/s", "Hz"])
@@ -493,7 +493,7 @@ mod frequency_values_tests {
             values("omega,re,im\n1,1,2\n2,1,\n"),
             Err(VariableFault::Line {
                 line: 3,
-                fault: LineFault::HalfNumber { place },
+                fault: LineFault::IncompleteResponse { place },
                 ..
             }) if place.number == 3
         ));

@@ -55,8 +55,8 @@ pub(crate) use numbered_words::{NumberedText, numbered_words};
 pub(crate) use response_columns::{RecognisedResponse, ResponsePoints};
 pub(crate) use table_reader::read_table;
 pub(crate) use text_table::TextTable;
+pub use unrecognised::UnitNotGiven;
 pub(crate) use unrecognised::Unrecognised;
-pub use unrecognised::UnsaidUnit;
 
 /// Importer for MATLAB and Octave statements.
 pub(crate) const MATLAB_STATEMENTS: Importer = Importer {

@@ -67,7 +67,7 @@ impl RecognisedResponse {
     ///
     /// # Errors
     /// [`VariableFault`] with the line if only one part of a complex number is missing or a part is
-    /// infinite (both [`LineFault::HalfNumber`]), or the magnitude is too large.
+    /// infinite (both [`LineFault::IncompleteResponse`]), or the magnitude is too large.
     pub(super) fn points(
         &self,
         table: &TextTable,
@@ -92,7 +92,7 @@ impl RecognisedResponse {
                     return Err(VariableFault::line(
                         "",
                         line,
-                        LineFault::HalfNumber { place },
+                        LineFault::IncompleteResponse { place },
                     ));
                 }
             }

@@ -19,7 +19,7 @@ use crate::formats::text::response_columns::{
 };
 use crate::formats::text::response_label::ResponseLabel;
 use crate::formats::text::text_table::TextTable;
-use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
+use crate::formats::text::unrecognised::{UnitNotGiven, Unrecognised, unrecognised};
 use crate::variable_fault::found_content::ResponseLack;
 
 /// Maximum difference between a response's rectangular and polar forms, relative to its magnitude;
@@ -45,7 +45,7 @@ pub(super) struct Recognition<'t> {
     /// Notes for the user: each choice with its reason.
     pub(super) notes: Vec<ReadingNote>,
     /// Columns with a missing unit that the user must state.
-    pub(super) unsaid: Vec<UnsaidUnit>,
+    pub(super) unsaid: Vec<UnitNotGiven>,
     /// Unused column names.
     pub(super) unused: Vec<String>,
 }
@@ -78,7 +78,7 @@ impl<'t> Recognition<'t> {
             Some(KnownUnit::Hertz) => (TAU, "Hz"),
             Some(KnownUnit::RadianPerSecond) => (1.0, "rad/s"),
             _ => {
-                self.unsaid.push(UnsaidUnit {
+                self.unsaid.push(UnitNotGiven {
                     column,
                     units: ["rad/s", "Hz"],
                 });
@@ -183,7 +183,7 @@ impl<'t> Recognition<'t> {
     fn read_coherence(&mut self, column: usize) -> CoherenceColumn {
         let unit = self.meanings[column].unit;
         if unit.is_none() {
-            self.unsaid.push(UnsaidUnit {
+            self.unsaid.push(UnitNotGiven {
                 column,
                 units: ["gamma2", "gamma"],
             });
@@ -260,7 +260,7 @@ impl<'t> Recognition<'t> {
                 in_db = true;
                 reason = UnitReason::NegativeNumbers;
             }
-            None => unsaid.push(UnsaidUnit {
+            None => unsaid.push(UnitNotGiven {
                 column: magnitude,
                 units: ["dB", "abs"],
             }),
@@ -269,7 +269,7 @@ impl<'t> Recognition<'t> {
         match self.meanings[phase].unit {
             Some(KnownUnit::Degree) => in_degrees = true,
             Some(KnownUnit::Radian) => {}
-            _ => unsaid.push(UnsaidUnit {
+            _ => unsaid.push(UnitNotGiven {
                 column: phase,
                 units: ["deg", "rad"],
             }),
@@ -358,7 +358,7 @@ struct PolarColumns {
 struct PolarReading {
     parts: ResponseParts,
     /// Columns among these two with a missing unit that the user must state.
-    unsaid: Vec<UnsaidUnit>,
+    unsaid: Vec<UnitNotGiven>,
 }
 
 impl Group {

@@ -9,7 +9,7 @@ use crate::variable_fault::found_content::ResponseLack;
 
 /// A column whose unit is not given, with the two units that it may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnsaidUnit {
+pub struct UnitNotGiven {
     /// Column index, from 0.
     pub column: usize,
     /// The two possible units, as written in a heading.
@@ -21,7 +21,7 @@ pub struct UnsaidUnit {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unrecognised {
     pub(crate) fault: VariableFault,
-    pub(crate) unsaid: Vec<UnsaidUnit>,
+    pub(crate) unsaid: Vec<UnitNotGiven>,
 }
 
 /// Returns the error for a table that is not recognised as a frequency response, with a remedy.
@@ -36,9 +36,9 @@ pub(super) fn unrecognised(lacking: ResponseLack) -> Unrecognised {
 }
 
 /// Returns the error that asks for units that are neither given nor evident.
-pub(super) fn units_missing(table: &TextTable, unsaid: Vec<UnsaidUnit>) -> Unrecognised {
+pub(super) fn units_missing(table: &TextTable, unsaid: Vec<UnitNotGiven>) -> Unrecognised {
     let mut missing = Vec::with_capacity(unsaid.len());
-    for UnsaidUnit { column, units } in &unsaid {
+    for UnitNotGiven { column, units } in &unsaid {
         missing.push(MissingUnit {
             place: column_place(table, *column),
             units: *units,

@@ -4,7 +4,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_sysid::records::layout_note::LayoutNote;
 use gdcm_sysid::records::{
-    ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined,
+    ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeSettings, with_topics_joined,
 };
 
 use super::*;
@@ -47,7 +47,7 @@ fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     if table.find("az").is_some() {
         channels.outputs[1].aliases.push("az".to_owned());
     }
-    let proposal = RecordLayout::proposed(table, &channels, &TimeWish::default());
+    let proposal = RecordLayout::proposed(table, &channels, &TimeSettings::default());
     assert_eq!(proposal.problems, [], "{}", table.name);
     proposal.layout.flight_record(table, &channels).unwrap()
 }
@@ -559,8 +559,8 @@ fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentati
     assert_eq!(found.tables.len(), 1);
     let channels = sides(&["LAT", "LON", "PED"], &["P", "Q", "R", "NX"]);
     let table = found.tables.into_iter().next().unwrap();
-    let notes = RecordLayout::proposed(&table, &channels, &TimeWish::default()).notes;
-    let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+    let notes = RecordLayout::proposed(&table, &channels, &TimeSettings::default()).notes;
+    let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeSettings::default());
     assert!(record.problems.is_empty(), "{:?}", record.problems);
     let unit = |used: &Option<ColumnUse>| {
         record.table.columns[used.unwrap().column]
@@ -612,7 +612,7 @@ fn each_flight_in_a_blackbox_is_a_record() {
     let (record, _) = LaidOutRecord::proposed(
         found.tables.into_iter().next().unwrap(),
         &channels,
-        &TimeWish::default(),
+        &TimeSettings::default(),
     );
     assert!(record.problems.is_empty(), "{:?}", record.problems);
     let flight = record.flight.unwrap();
@@ -652,7 +652,11 @@ fn topic_tables_in_an_archive_are_a_single_record() {
     std::fs::write(folder.path().join("M.csv"), rows(100, "value")).unwrap();
     std::fs::write(folder.path().join("imu.csv"), rows(50, "q")).unwrap();
     let found = read_records(&[folder.path().to_owned()], &Stopped(&Arc::default())).unwrap();
-    let tables = with_topics_joined(found.tables, &sides(&["M"], &["q"]), &TimeWish::default());
+    let tables = with_topics_joined(
+        found.tables,
+        &sides(&["M"], &["q"]),
+        &TimeSettings::default(),
+    );
     assert_eq!(
         (tables.len(), found.faults),
         (1, Vec::new()),
@@ -661,7 +665,7 @@ fn topic_tables_in_an_archive_are_a_single_record() {
     let (record, _) = LaidOutRecord::proposed(
         tables[0].clone(),
         &sides(&["M"], &["q"]),
-        &TimeWish::default(),
+        &TimeSettings::default(),
     );
     let first = record.flight.unwrap();
     assert!(record.problems.is_empty() && first.time_s.len() > 900);

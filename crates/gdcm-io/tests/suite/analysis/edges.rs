@@ -217,7 +217,7 @@ fn residues_of_differencing_count_as_zero_and_are_named() {
         assert!(
             found.cautions.iter().any(|caution| matches!(
                 caution,
-                Caution::NumericallyNothing { responses, .. }
+                Caution::NumericallyZero { responses, .. }
                     if *responses == [Pair::new(0, 1), Pair::new(1, 0)]
             )),
             "{:?}",
@@ -235,7 +235,7 @@ fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
     let analysis = only(&value, &[Edit::Hold(pair, true)]);
     let found = analysis.condition(ONLY).unwrap();
     assert!(!found.held()[pair]);
-    let why = Undefined::NumericallyNothing(BundleKind::Physics);
+    let why = Undefined::NumericallyZero(BundleKind::Physics);
     assert!(
         found
             .cautions
@@ -290,7 +290,7 @@ fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_othe
     );
     assert_eq!(
         found.comparison.undefined[Pair::new(1, 1)],
-        Some(Undefined::NumericallyNothing(BundleKind::Physics))
+        Some(Undefined::NumericallyZero(BundleKind::Physics))
     );
     let alone = only(
         &two_lags([[1e-30, 0.0], [0.0, 1.0]], [[1e30, 0.0], [0.0, 0.9]]),

@@ -9,7 +9,7 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::{Identification, Preparation};
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordTable, TimeSettings};
 
 use super::common::{response, space};
 use crate::EXAMPLE;
@@ -34,7 +34,7 @@ fn identified(id: ConditionId) -> Identification {
         record.guess.condition_of(dataset) == Some(id) && record.problems.is_empty()
     };
     let laid_out = |table: &RecordTable| {
-        LaidOutRecord::proposed(table.clone(), &channels, &TimeWish::default()).0
+        LaidOutRecord::proposed(table.clone(), &channels, &TimeSettings::default()).0
     };
     let records: Vec<LaidOutRecord> = RECORDS
         .iter()

@@ -7,7 +7,7 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::{Identification, Preparation};
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeSettings};
 
 use super::common::{response, space};
 
@@ -15,7 +15,7 @@ fn identified(dataset: &Dataset, id: ConditionId) -> Identification {
     let channels = RecordChannels::of_dataset(dataset).of_named_records();
     let mut records: Vec<LaidOutRecord> = Vec::new();
     for table in example_records(Example::RealAircraft, id.0).unwrap() {
-        records.push(LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0);
+        records.push(LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0);
     }
     let (inputs, outputs) = dataset.names_of_channels();
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();

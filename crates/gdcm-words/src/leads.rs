@@ -164,11 +164,11 @@ mod tests {
         let result = EXAMPLE.condition(ConditionId(1)).unwrap();
         let study = &EXAMPLE.study;
         let words = lead_words(study, result, None);
-        // Reference values: P from LAT requires a lead of 65.4 ms, of which 24.1 ms on P and 41.2 ms on
+        // Reference values: LAT → P requires a lead of 65.4 ms, of which 24.1 ms at P and 41.2 ms at
         // LAT.
         assert!(
             words.iter().any(|of| of.starts_with(
-                "P from LAT needs 65 ms of lead over the band: 24 on P, 41 on LAT; +"
+                "LAT → P needs 65 ms of lead over the band: 24 ms at P, 41 ms at LAT; +"
             )),
             "{words:?}"
         );

@@ -27,8 +27,8 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
             inputs: [first, second],
             shares: [forth, back],
         } => format!(
-            "{} receives {} % of {}, and {} receives {} % of {}: opposite signs, as a swashplate \
-            phase would cause",
+            "{} receives {} % of {}, and {} receives {} % of {}: opposite signs, the pattern of a \
+            swashplate phase",
             inputs[*first],
             signed(100.0 * forth, 1),
             inputs[*second],

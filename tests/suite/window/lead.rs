@@ -164,6 +164,10 @@ fn the_settings_say_that_g_from_the_mean_has_no_effect_with_leads() {
     choose(&mut window, "Source of G", "mean of pairs");
     assert!(window.query_by_label("No effect with leads").is_none());
     choose_phase(&mut window, "delay or lead");
+    window
+        .get_by_role_and_label(Role::ComboBox, "Source of G")
+        .scroll_to_me();
+    window.run_steps(3);
     assert!(window.query_by_label("No effect with leads").is_some());
     choose(&mut window, "Source of G", "representatives");
     assert!(window.query_by_label("No effect with leads").is_none());

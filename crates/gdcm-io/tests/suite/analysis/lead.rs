@@ -480,8 +480,8 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let result = analysis.condition(id).unwrap();
     let words = lead_words(study, result, Some(&sure));
     let with_bar = |of: &String| {
-        of.starts_with("P ")
-            && [" LAT ", " 65 ± ", " 24 ", " 41 "]
+        of.starts_with("LAT → P ")
+            && [" 65 ± ", " 24 ms ", " 41 ms "]
                 .iter()
                 .all(|part| of.contains(part))
     };

@@ -1,5 +1,7 @@
 //! Leads in the window: enabled, displayed and undone (M15).
 
+use std::cell::Cell;
+
 use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::sheet::Sheet;
@@ -16,14 +18,22 @@ use super::*;
 
 fn choose(window: &mut Window, list: &str, choice: &str) {
     unfold_settings(window, true);
-    // The rarely changed settings may begin below the visible part of the panel.
-    window
-        .get_by_role_and_label(Role::ComboBox, list)
-        .scroll_to_me();
-    window.run_steps(3);
+    scroll_to(window, list);
     window.get_by_role_and_label(Role::ComboBox, list).click();
     window.run_steps(3);
     click(window, choice);
+}
+
+/// Scrolls to a control, which may be outside the visible part of the panel, until it stays in the
+/// window.
+fn scroll_to(window: &mut Window, label: &str) {
+    let frame = window.ctx.content_rect();
+    let before = Cell::new(egui::Rect::NOTHING);
+    window.get_by_label(label).scroll_to_me();
+    wait_until(window, label, |window| {
+        let place = window.get_by_label(label).rect();
+        before.replace(place) == place && frame.contains_rect(place)
+    });
 }
 
 /// Opens the settings and chooses a phase correction.
@@ -163,11 +173,10 @@ fn the_settings_say_that_g_from_the_mean_has_no_effect_with_leads() {
     let mut window = window();
     choose(&mut window, "Source of G", "mean of pairs");
     assert!(window.query_by_label("No effect with leads").is_none());
-    choose_phase(&mut window, "delay or lead");
-    window
-        .get_by_role_and_label(Role::ComboBox, "Source of G")
-        .scroll_to_me();
-    window.run_steps(3);
+    give(&mut window, setting_table::PHASE.to(PhaseCorrection::Lead));
+    settle(&mut window);
+    assert!(state(&window).study.settings.is_gain_source_idle());
+    scroll_to(&mut window, "Source of G");
     assert!(window.query_by_label("No effect with leads").is_some());
     choose(&mut window, "Source of G", "representatives");
     assert!(window.query_by_label("No effect with leads").is_none());

@@ -33,9 +33,14 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let (inputs, outputs) = dataset.names_of_channels();
     for caution in &schedule.cautions {
         let words = schedule_caution_text(caution, &inputs, &outputs);
-        if let ScheduleCaution::CostsMore(cost) = caution {
-            keep_caution(caution.code(), &[cost.condition], &words);
-        }
+        let conditions = match caution {
+            ScheduleCaution::CostsMore(cost) => vec![cost.condition],
+            ScheduleCaution::SignedDelayApart { condition, .. } => vec![*condition],
+            ScheduleCaution::DegreeLowered { .. }
+            | ScheduleCaution::Overshoot { .. }
+            | ScheduleCaution::NotPositive => Vec::new(),
+        };
+        keep_caution(caution.code(), &conditions, &words);
         text += &detail("caution", &sanitized(&words));
     }
     for delayed in analysis.unscheduled_delays() {

@@ -79,9 +79,9 @@ pub enum VariableFault {
         /// The limit \[million steps\].
         most_millions: u64,
     },
-    /// The log contains more flights than the limit.
-    #[error("expected at most {most} flights, found {found}; split the file")]
-    TooManyFlights { found: usize, most: usize },
+    /// The file contains more records than the limit.
+    #[error("expected at most {most} records, found {found}; split the file")]
+    TooManyRecords { found: usize, most: usize },
     /// Values are nested more deeply than the limit, or in a cycle.
     #[error(
         "{}values are nested too deeply, or contain themselves; save the inner values as separate \
@@ -108,7 +108,7 @@ impl VariableFault {
             Self::Unsupported { .. } => "unsupported-content",
             Self::TooLarge { .. } => "too-much-memory",
             Self::TooMuchWork { .. } => "too-much-work",
-            Self::TooManyFlights { .. } => "too-many-flights",
+            Self::TooManyRecords { .. } => "too-many-records",
             Self::TooDeep { .. } => "values-too-deep",
             Self::Duplicate { .. } => "duplicate-name",
             Self::Stopped => "stopped",
@@ -203,7 +203,7 @@ impl VariableFault {
                 }
             }
             Self::Format { .. }
-            | Self::TooManyFlights { .. }
+            | Self::TooManyRecords { .. }
             | Self::Duplicate { .. }
             | Self::Stopped => {}
         }
@@ -217,7 +217,7 @@ impl VariableFault {
             self,
             Self::TooLarge { .. }
                 | Self::TooMuchWork { .. }
-                | Self::TooManyFlights { .. }
+                | Self::TooManyRecords { .. }
                 | Self::Stopped
         )
     }

@@ -169,7 +169,7 @@ fn a_log_of_too_many_flights_is_refused_with_their_number() {
             matches!(
                 error,
                 FileError::Variables {
-                    fault: VariableFault::TooManyFlights {
+                    fault: VariableFault::TooManyRecords {
                         found: 1001,
                         most: 1000,
                     },

@@ -84,11 +84,12 @@ impl Subject<'_> {
     }
 }
 
-/// Formats a value with all digits; a missing value becomes an empty cell.
+/// Formats a value with all digits; a missing value, or one that is not finite, becomes an empty
+/// cell.
 fn cell(value: Option<f64>) -> String {
     match value {
-        Some(value) => value.to_string(),
-        None => String::new(),
+        Some(value) if value.is_finite() => value.to_string(),
+        _ => String::new(),
     }
 }
 

@@ -60,7 +60,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
-        return Err(VariableFault::TooManyFlights {
+        return Err(VariableFault::TooManyRecords {
             found: count,
             most: MOST_RECORDS,
         });

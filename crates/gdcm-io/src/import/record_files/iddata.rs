@@ -88,7 +88,8 @@ pub(super) fn experiments(
 
 /// Reads the experiment at `index`; `output` holds its outputs.
 ///
-/// 1. The outputs' sample count decides which dimension of the other matrices is time.
+/// 1. The outputs' sample count decides which dimension of the other matrices is time. Outputs that
+///    cannot be read: error.
 /// 2. The sampling instants are the first column. Instants that do not fit the outputs are ignored.
 /// 3. Input and output columns follow. Inputs that cannot be read are left out.
 /// 4. Columns with another sample count: error.
@@ -99,7 +100,10 @@ fn experiment(
     index: usize,
     variable: String,
 ) -> Result<Columns, RecognitionFault> {
-    let sample_count = samples_of(output, None).map(|samples| samples.rows);
+    let sample_count = match samples_of(output, None) {
+        Some(samples) => Some(samples.rows),
+        None => return Err(RecognitionFault::NoOutputData),
+    };
     let mut columns = Vec::new();
     if let Some(instants) = value_for_experiment(record, &["SamplingInstants"], index)
         && let Some(stamps) = samples_of(instants, sample_count)

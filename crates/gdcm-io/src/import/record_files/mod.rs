@@ -41,7 +41,7 @@ use crate::formats::{
     Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, with_file_name,
 };
 use crate::import::recognise::recognition_fault::{RecognitionFault, fault_messages};
-use crate::reading_budget::{MOST_MEMORY, ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub use self::dataset_entry::relative_entry;
 pub use self::embedded_example::example_records;
@@ -213,9 +213,9 @@ impl FoundRecords {
                 for (inner, contents) in files {
                     self.add_archived_file(name, &sha256, &inner, contents, budget)?;
                     if self.tables.len() > MOST_RECORDS {
-                        return Err(error(VariableFault::TooLarge {
-                            variable: inner,
-                            most_mib: MOST_MEMORY >> 20,
+                        return Err(error(VariableFault::TooManyRecords {
+                            found: self.tables.len(),
+                            most: MOST_RECORDS,
                         }));
                     }
                 }

@@ -11,6 +11,7 @@ use super::*;
 use crate::formats::reading_note::{NamedColumn, ReadingNote};
 use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use crate::import::recognise::recognition_fault::FoundFault;
+use crate::reading_budget::MOST_MEMORY;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
@@ -446,6 +447,14 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
         ],
     );
     assert_eq!(searched("z", octave).items[0].sample_time_s, Some(0.05));
+    let without_outputs = object(
+        "iddata",
+        vec![("y", texts(&["lost"])), ("u", numbers(60, 1, |k| k as f64))],
+    );
+    assert_eq!(
+        searched("z", without_outputs).faults,
+        [FoundFault::new("z", RecognitionFault::NoOutputData)]
+    );
     let over_frequency = object(
         "iddata",
         vec![

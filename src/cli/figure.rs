@@ -238,7 +238,14 @@ fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRe
 
 fn bode_options(dataset: &Dataset, arguments: &FigureArguments) -> Result<BodeOptions, Failure> {
     let zeros_of = match &arguments.zeros {
-        Some(list) => pairs_of(dataset, list, "--zeros")?.first().copied(),
+        Some(list) => {
+            let pairs = pairs_of(dataset, list, "--zeros")?;
+            let [pair] = pairs[..] else {
+                let reason = format!("expected one response, found {}", pairs.len());
+                return Err(Failure::option("--zeros", reason));
+            };
+            Some(pair)
+        }
         None => None,
     };
     // Hide the curves with couplings, which only the window can show.

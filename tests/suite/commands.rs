@@ -1267,7 +1267,21 @@ fn settings_are_printed_with_six_digits() {
 fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     let desk = Desk::new();
     let figure = ["figure", "small.json"];
-    let cases: [(&[&str], &str, &[&str]); 5] = [
+    let cases: [(&[&str], &str, &[&str]); 6] = [
+        (
+            &[
+                "--view",
+                "poles",
+                "--condition",
+                "7",
+                "--zeros",
+                "P/LAT,Q/LON",
+                "--out",
+                "a.svg",
+            ],
+            "wrong-option",
+            &["--zeros", "2"],
+        ),
         (
             &["--view", "bode", "--out", "a.svg"],
             "missing-condition",

@@ -144,11 +144,12 @@ impl ConflictText<'_> {
     /// Remedies for insufficient lead, apart from changing the bounds.
     const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
-    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT is what the
-    /// bounds allow and the entries exceed, CHANGE a sufficient change in the bounds.
+    /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT states the
+    /// limit that the bounds impose and the value that the entries require, CHANGE a bound that
+    /// would suffice.
     ///
-    /// A loop, a conflict without a known limit, and a single delay that would have to be a lead
-    /// have neither, and shorter sentences of their own.
+    /// Sentences without LIMIT and CHANGE: loops, conflicts of unclear cause, and a single delay
+    /// that would have to be a lead.
     fn sentence(&self) -> String {
         let conflict = self.conflict;
         let entries = pair_names(&conflict.entries, self.inputs, self.outputs);

@@ -259,7 +259,8 @@ fn interval_text_fine(half_db: f64) -> String {
     }
 }
 
-/// Returns a line about a way; `describe` receives the amount.
+/// Returns a line on one way to reach the target interval: the flights needed, in the words of
+/// `describe`, and the resulting interval.
 fn need_line<T: Copy>(need: &Need<T>, describe: impl Fn(T) -> String) -> String {
     match *need {
         Need::Least { amount, half_db } => {

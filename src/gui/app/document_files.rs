@@ -16,7 +16,9 @@ use super::disk_watch::DiskWatch;
 pub(super) struct SavedStudy {
     /// File path; `None` for a new study.
     pub(super) path: Option<PathBuf>,
-    /// The study as saved, or as created if it is new; `None` if it contains restored decisions.
+    /// The study as saved, or as created if it is new, to detect unsaved changes. `None` if the
+    /// study counts as unsaved from the start: decisions were restored, or some did not apply to
+    /// the dataset.
     pub(super) study: Option<Study>,
 }
 

@@ -114,7 +114,7 @@ fn page_entries() -> [Entry; 2] {
     ]
 }
 
-/// Returns an entry for each content that the program may show at its start.
+/// Returns a menu entry for each choice of what is shown if the program is started without a file.
 fn begin_entries(state: &State) -> [Entry; 3] {
     OpensWith::ALL.map(|choice| {
         Entry::new(

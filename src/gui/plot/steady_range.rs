@@ -14,7 +14,7 @@ const LEAST_STEPS: f64 = 20.0;
 
 /// Minimum number of labels on a Bode axis.
 const LEAST_LABELS: f64 = 5.0;
-/// Maximum factor by which an axis is extended to reach that number.
+/// Maximum factor by which an axis is extended to hold [`LEAST_LABELS`] labels.
 const MOST_EXTENSION: f64 = 1.25;
 /// Divisor that leads from a decimal step to the next smaller: more than 2.5, the largest ratio
 /// between neighbours in 1, 2, 5, 10.

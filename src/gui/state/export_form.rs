@@ -31,7 +31,8 @@ pub struct ExportPlanJob {
     pub uncertainty: Option<Arc<Uncertainty>>,
     pub source: ExportSource,
     pub set: ExportSet,
-    /// Number of dry runs requested by hand: files in the folder may have changed.
+    /// Number of failed attempts to write. It makes the job differ from the previous one, so that
+    /// the dry run is repeated: files in the folder may have changed.
     pub revision: u64,
 }
 
@@ -86,7 +87,8 @@ pub struct ExportForm {
     pub selected: usize,
     /// Outcome of the newest dry run, with its job.
     pub plan: Option<(ExportPlanJob, ExportPlan)>,
-    /// Number of dry runs requested by hand.
+    /// Number of failed attempts to write; each requires a new dry run, because files in the folder
+    /// may have changed.
     pub revision: u64,
     /// Whether the files are written as soon as the requested dry run has ended.
     pub is_awaited: bool,

@@ -12,7 +12,7 @@ pub enum PairSet {
     Focused,
     OnAxis,
     All,
-    /// Responses picked by the engineer.
+    /// Responses added one by one with the + button beside the list.
     Picked,
 }
 

@@ -71,7 +71,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         View::Across => Some(&display.frequency.across),
         _ => None,
     };
-    // Axis ranges that the engineer has chosen by zooming.
+    // Value ranges that the engineer has chosen by zooming, panning or typing; `None` if fitted.
     let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
     let bode = BodeOptions {
         omega: plot.and_then(BodeView::chosen_omega),

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::temporary_files::{PREFIX, SUFFIX};
 
-/// Lock for renaming a set's files in a directory: a locked file there, for which the next set
-/// waits. The lock is released when its process ends, for whatever reason.
+/// Lock on a directory while a set's files are renamed in it: two sets must not be renamed at the
+/// same time. Implemented as a file lock, which the operating system also releases if the process
+/// crashes.
 pub(super) struct SetLock {
     path: PathBuf,
     _file: File,

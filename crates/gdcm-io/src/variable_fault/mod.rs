@@ -210,8 +210,8 @@ impl VariableFault {
         self
     }
 
-    /// Returns whether the error is an exceeded limit or a cancellation; trying another format is
-    /// then pointless.
+    /// Returns whether the error is an exceeded limit on memory, work or records, or a
+    /// cancellation; trying another format is then pointless.
     pub fn is_of_the_budget(&self) -> bool {
         matches!(
             self,

@@ -14,7 +14,7 @@ pub struct Conflict {
     pub quantity: Quantity,
     /// Constrained entries; releasing any one resolves the conflict.
     pub entries: Vec<Pair>,
-    /// Bounds on the channels.
+    /// Bounds in force, in the unit of `quantity`.
     pub bounds: Bounds,
     pub kind: ConflictKind,
 }

@@ -15,7 +15,8 @@ use gdcm_model::units::db_to_ratio;
 use crate::fidelity::{CoherenceWeights, Mismatch};
 
 /// Magnitude \[dB\] beyond which a ratio (above 1e50 or below 1e-50) is regarded as infinite or
-/// zero, because the objective cannot represent its square (M6).
+/// zero, so that its square, and products of such squares in the objective, neither overflow nor
+/// underflow.
 pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
 /// Models from which G is computed; D is always computed from the representatives.

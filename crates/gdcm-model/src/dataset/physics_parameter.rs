@@ -52,7 +52,7 @@ pub struct MovedModel {
     pub moved: MovedParameters,
 }
 
-/// Error for a parameter or a change without meaning.
+/// Reason why a physics parameter, or a model's parameter change, is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     #[error("parameter number {position}: the name is empty; give it one")]

@@ -23,7 +23,7 @@ use super::drawing::Area;
 struct Direction {
     /// Fractions of the label's width and height that lie to the left of its anchor and above it.
     before: [f64; 2],
-    /// Offset between anchor and dot centre, relative to the distance between them.
+    /// Unit vector from the dot's centre to the anchor, y downwards; rounded on the diagonals.
     offset: [f64; 2],
 }
 

@@ -104,7 +104,7 @@ pub enum Digits {
     Significant,
     /// This number of decimals.
     Decimals(usize),
-    /// A gain: three decimals, or two where the third is zero.
+    /// A gain: three decimals, two if the third is zero; below 0.1, three significant digits.
     Gain,
 }
 

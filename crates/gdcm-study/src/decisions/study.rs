@@ -16,7 +16,7 @@ use super::signs::Signs;
 #[derive(Clone, Debug)]
 pub struct Study {
     pub dataset: Arc<Dataset>,
-    /// Every setting that changes a result.
+    /// Settings common to all conditions, apart from the requirement settings.
     pub settings: Settings,
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
     /// Alternative decisions about the dataset, stored under names, in order of creation. No

@@ -105,7 +105,7 @@ pub enum CostSource {
     Schedule,
 }
 
-/// J without and with couplings; off-axis J is known for both.
+/// Off-axis J without and with couplings, and the on-axis J if it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OffAxisBenefit {
     pub couplings: CouplingCorrection,

@@ -59,7 +59,8 @@ pub enum ExportNote {
         channel: Channel,
         error_percent: f64,
         airspeed_kt: f64,
-        /// Rounded airspeed \[kt\] that would reduce the error; `None` if the table has it.
+        /// Rounded airspeed \[kt\] near `airspeed_kt` at which another table row would reduce the
+        /// error; `None` if the table has rows at all candidates.
         remedy_kt: Option<f64>,
     },
     /// Maximum error in a delay, or in a lead's time constant, due to linear interpolation in a
@@ -68,7 +69,8 @@ pub enum ExportNote {
         channel: Channel,
         error_ms: f64,
         airspeed_kt: f64,
-        /// Rounded airspeed \[kt\] that would reduce the error; `None` if the table has it.
+        /// Rounded airspeed \[kt\] near `airspeed_kt` at which another table row would reduce the
+        /// error; `None` if the table has rows at all candidates.
         remedy_kt: Option<f64>,
     },
     /// Lead filters are tables over airspeed.

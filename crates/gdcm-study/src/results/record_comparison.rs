@@ -39,8 +39,9 @@ pub enum Trend {
 }
 
 impl Trend {
-    /// Returns the trend of an output that is off-axis to the input with the largest variation,
-    /// from the correlation between simulated and measured output; `None` on-axis.
+    /// Returns the trend from the correlation between simulated and measured output. `on_axis`
+    /// refers to the input with the largest variation; `None` for an on-axis output, or if either
+    /// argument is unknown.
     pub fn from_correlation(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
         let correlation = correlation?;
         if on_axis != Some(false) {

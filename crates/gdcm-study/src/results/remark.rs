@@ -63,7 +63,8 @@ pub enum Remark {
     },
     /// All constrained responses need lead, which is not requested.
     LeadsOffered(LeadOffer),
-    /// A constraint loop that agrees within the tolerance.
+    /// Constrained responses that form a loop and contradict each other by no more than the
+    /// tolerance; they are constrained to the nearest consistent values.
     LoopAgrees(Conflict),
     /// In this many responses, J, G and D are weighted by coherence, which excludes no frequency.
     CoherenceUsed { responses: usize },

@@ -76,9 +76,10 @@ pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution
     cautions
 }
 
-/// Returns a condition's J under the schedule and under its own correction: for the nominal model,
-/// or for the representative where the nominal model is rejected. `None` without a schedule, and
-/// where no on-axis response can be compared.
+/// Returns a condition's mean J over the on-axis responses (over all responses if none is on-axis),
+/// under the schedule and under its own correction. The model is the nominal one, or the
+/// representative if the nominal model is rejected. `None` without a schedule, or if no such
+/// response can be compared.
 fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<ScheduledCost> {
     let schedule = analysis.schedule.as_ref().ok()?;
     let condition = &result.condition;

@@ -225,7 +225,8 @@ impl<'a> PreparedData<'a> {
             weights,
             whole: self.likelihood.clone(),
         };
-        // A start without its fast modes has fewer states than its order.
+        // Not `top`: a start whose fast modes were removed has fewer states than the order it is
+        // listed under.
         let mut order = fit.order();
         descent.insert(fit);
         let mut rises = 0;

@@ -16,7 +16,7 @@ use super::time_base::TimeBase;
 /// [`RecordLayout::proposed`] and editable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordLayout {
-    /// Sample times; `None` while open.
+    /// Source of the sample times; `None` if not yet chosen.
     pub time: Option<TimeBase>,
     /// A column for each input; `None` while open.
     pub inputs: Vec<Option<ColumnUse>>,

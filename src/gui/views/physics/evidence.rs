@@ -278,9 +278,9 @@ fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings
     table
 }
 
-/// Returns the sources of the value's variance with their shares \[%\]: how much the value changes
-/// when a condition, an output, an input or a third of the band is left out, and the prior (M18.3).
-/// A source with a single member is omitted; without variance there are none.
+/// Returns each source's share of the value's variance \[%\]: leaving out a condition, an output,
+/// an input or a third of the band (jackknife), and the prior (M18.3). A source with a single
+/// member is omitted; the list is empty if the variance is zero.
 fn variance_shares(variance: ValueVariance) -> Vec<(&'static str, f64)> {
     let total = variance.total();
     let sources = [

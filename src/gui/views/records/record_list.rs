@@ -150,7 +150,8 @@ impl RecordRow<'_> {
         let width = ui.available_width();
         let left = NAME + self.indent();
         let is_selected = self.index == records.chosen;
-        // A long name is wrapped: cut names could look like other numbers.
+        // Wrap a long name: if its end were cut off, its number could be mistaken for another
+        // record's.
         let room = width - left - LENGTH_END - LENGTH_WIDTH;
         let galley = wrapped(
             ui,

@@ -63,7 +63,7 @@ impl Palette {
 /// Colour set for the curve roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
-    /// Red, blue, amber, green.
+    /// Nominal red, perturbed blue, identified amber, corrected green.
     #[default]
     Standard,
     /// Distinguishable without red, green or blue cones.

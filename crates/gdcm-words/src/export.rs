@@ -44,6 +44,16 @@ pub fn file_summary_text(summary: &FileSummary) -> String {
             added_states,
         } => format!("{}, +{added_states} states each", counted(*models, "model")),
         FileSummary::Checksums { files } => format!("SHA-256 of {}", counted(*files, "file")),
+        FileSummary::Report {
+            conditions,
+            figures,
+            tables,
+        } => format!(
+            "{}, {}, {}",
+            counted(*conditions, "condition"),
+            counted(*figures, "figure"),
+            counted(*tables, "table")
+        ),
     }
 }
 
@@ -127,6 +137,11 @@ pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
         ExportNote::NoSchedule { .. } => "No schedule".to_owned(),
         ExportNote::NoErrorBars => "No error bars".to_owned(),
         ExportNote::NoPhysicsParameters => "Physics parameters: none".to_owned(),
+        ExportNote::NoFlightRecords => "Time histories: no flight records".to_owned(),
+        ExportNote::ConditionsNotDrawn { conditions } => {
+            format!("{} without figures", counted(conditions.len(), "condition"))
+        }
+        ExportNote::ReportOfAllConditions => "Report: all conditions".to_owned(),
     }
 }
 
@@ -175,10 +190,13 @@ pub fn export_note_detail(
         }
         ExportNote::ConditionsNotChosen { conditions }
         | ExportNote::ConditionsNotScheduled { conditions }
-        | ExportNote::ConditionsWithoutResult { conditions } => listed(conditions),
+        | ExportNote::ConditionsWithoutResult { conditions }
+        | ExportNote::ConditionsNotDrawn { conditions } => listed(conditions),
         ExportNote::NoSchedule { why } => why.to_string(),
         ExportNote::NoErrorBars => "still being computed, or stopped".to_owned(),
         ExportNote::NoPhysicsParameters => "the table has only its headings".to_owned(),
+        ExportNote::NoFlightRecords => "add records in the view Records".to_owned(),
+        ExportNote::ReportOfAllConditions => "including those left out of the export".to_owned(),
     }
 }
 

@@ -17,7 +17,7 @@
 //! | long   | variants, proofs                       | complete the displayed results      |
 //! | long   | couplings, physics parameters          | views that show their progress      |
 //! | long   | responses to all records               | a view that shows its progress      |
-//! | long   | report                                 | requested explicitly; seconds       |
+//! | long   | report, and its dry run                | requested explicitly; seconds       |
 //! | long   | error bars                             | repeated after every change         |
 //! | long   | identification                         | minutes; occupies a thread longest  |
 
@@ -230,6 +230,12 @@ fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     )
     .with_report(|queue, background| background.time_histories = queue.progress());
     kinds.add(LaneClass::Long, cores, time_histories);
+    let report_contents = JobKind::new(
+        |app| app.report_contents_job().into_iter().collect(),
+        GdcmApp::take_report_contents,
+    )
+    .with_report(|queue, background| background.report_contents = queue.progress());
+    kinds.add(LaneClass::Long, engines.sharing(), report_contents);
     let reports = JobKind::new(
         |app| app.work.report_job.iter().cloned().collect(),
         GdcmApp::report_written,

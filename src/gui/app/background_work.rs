@@ -61,8 +61,8 @@ impl GdcmApp {
     pub(super) fn compute_again(&mut self) {
         self.work.newest_request = None;
         self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Fault(_)));
+            .notices
+            .close_bars(|bar| matches!(bar, MessageBar::Fault(_)));
         self.work.jobs.resume();
     }
 }

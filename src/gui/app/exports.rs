@@ -8,6 +8,7 @@ use gdcm_io::FileError;
 use gdcm_io::export::ExportSource;
 use gdcm_io::export::export_set::ExportPlan;
 use gdcm_io::output_set::OutputSet;
+use gdcm_io::report::Report;
 use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
@@ -46,6 +47,7 @@ impl GdcmApp {
     /// Stores a dry run's outcome; writes the files if the engineer has asked for it meanwhile.
     pub(super) fn take_export_plan(&mut self, job: ExportPlanJob, plan: ExportPlan) {
         self.state.forms.export.plan = Some((job, plan));
+        self.state.forms.export.join_report_notes();
         if std::mem::take(&mut self.state.forms.export.is_awaited) {
             self.export();
         }
@@ -106,12 +108,13 @@ impl GdcmApp {
     /// starts the report if it is among the files.
     fn exported(&mut self, plan: &ExportPlan, folder: PathBuf, count: usize, existing: Existing) {
         self.state.forms.shown = None;
+        let report = self.current_report();
         let form = &self.state.forms.export;
         if form.remembers {
             self.state.study.exports = Arc::new(form.all_choices());
             self.study_changed();
         }
-        self.state.forms.export.plan = None;
+        self.state.forms.export.drop_contents();
         self.files.last_folder = Some(folder.clone());
         if count > 0 {
             let text = format!(
@@ -124,12 +127,18 @@ impl GdcmApp {
             self.notify_written_to(Activity::Export, Message::new("exported", text), &any_file);
         }
         if let Some(name) = &plan.report {
-            self.start_report(folder.join(name), existing);
+            self.start_report(folder.join(name), existing, report);
         }
     }
 
-    /// Carries out a remedy that the dialog offers; if it changes the study, a new analysis starts,
-    /// and a new dry run follows.
+    /// Returns the report that the dialog has composed of the displayed analysis, if any.
+    fn current_report(&self) -> Option<Arc<Report>> {
+        let analysis = self.state.results.analysis.as_ref()?;
+        self.state.forms.export.report_of(analysis).map(Arc::clone)
+    }
+
+    /// Carries out a remedy that the dialog offers; a change of the study starts a new analysis, and
+    /// a new dry run follows.
     pub(super) fn apply_export_remedy(&mut self, remedy: ExportRemedy) {
         if self.state.forms.export.apply_remedy(remedy) {
             return;

@@ -2,7 +2,7 @@
 
 use super::GdcmApp;
 use crate::gui::commands::form::FormCommand;
-use crate::gui::state::forms::FormKind;
+use crate::gui::state::forms::{FormKind, PaletteForm};
 
 impl GdcmApp {
     pub(super) fn carry_out_form(&mut self, command: FormCommand) {
@@ -23,7 +23,7 @@ impl GdcmApp {
             FormCommand::DismissToast(number) => self.state.notices.dismiss(number),
             FormCommand::ListToasts(is_open) => self.state.notices.is_list_open = is_open,
             FormCommand::HoldToasts => self.state.notices.is_held = true,
-            FormCommand::CloseBar(bar) => self.state.message_bars.retain(|shown| *shown != bar),
+            FormCommand::CloseBar(bar) => self.state.notices.close_bars(|shown| *shown == bar),
             FormCommand::Overwrite => self.overwrite(),
             FormCommand::SaveAndGoOn => self.save_and_go_on(),
             FormCommand::DiscardAndGoOn => {
@@ -36,8 +36,12 @@ impl GdcmApp {
     fn show_form(&mut self, form: Option<FormKind>) {
         match form {
             Some(FormKind::Export) => self.open_export_form(),
-            // Drop the dry run, because it holds all files' bytes.
-            _ => self.state.forms.export.plan = None,
+            // The dry run holds the bytes of all files.
+            _ => self.state.forms.export.drop_contents(),
+        }
+        // The keys of the palette, pressed while it is open, begin a new search.
+        if form == Some(FormKind::Palette) {
+            self.state.forms.palette = PaletteForm::default();
         }
         // Keep the postponed action if it is to continue after this form, which asks for a path to
         // save to.

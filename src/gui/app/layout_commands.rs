@@ -2,7 +2,9 @@
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::view::View;
 use crate::gui::state::view_arrangement::Arrangement;
+use crate::gui::views::compare::VARIANT_NAME;
 use crate::gui::views::view_content;
 use crate::gui::widgets::number_field::focus_field;
 use crate::gui::widgets::page_switch::neighbouring_page;
@@ -12,9 +14,25 @@ use crate::gui::widgets::window_regions::leave_region;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextFocus {
     /// The field with this name.
-    Field(&'static str),
+    Field {
+        name: &'static str,
+        /// Number of frames to wait for a field that has not been drawn yet.
+        frames: u8,
+    },
     /// The next or the previous window region.
     Region { forward: bool },
+}
+
+impl NextFocus {
+    /// Number of frames in which a newly opened section draws its fields.
+    const FRAMES: u8 = 3;
+
+    fn field(name: &'static str) -> Self {
+        Self::Field {
+            name,
+            frames: Self::FRAMES,
+        }
+    }
 }
 
 impl GdcmApp {
@@ -48,7 +66,11 @@ impl GdcmApp {
                 // Open the collapsed sections: a hidden field cannot receive the focus.
                 display.layout.show_settings(true);
                 display.layout.advanced_open = true;
-                self.focus_next(NextFocus::Field(name));
+                self.focus_next(NextFocus::field(name));
+            }
+            LayoutCommand::NameVariant => {
+                display.layout.arrangement.show(View::Compare);
+                self.focus_next(NextFocus::field(VARIANT_NAME));
             }
             LayoutCommand::LeaveRegion { forward } => {
                 self.focus_next(NextFocus::Region { forward })
@@ -86,7 +108,13 @@ impl GdcmApp {
             return;
         }
         match self.next_focus.take() {
-            Some(NextFocus::Field(name)) => focus_field(&self.ctx, name),
+            Some(NextFocus::Field { name, frames }) => {
+                // A section that has just been opened draws its fields in this frame.
+                if !focus_field(&self.ctx, name) && frames > 0 {
+                    let frames = frames - 1;
+                    self.focus_next(NextFocus::Field { name, frames });
+                }
+            }
             Some(NextFocus::Region { forward }) => leave_region(&self.ctx, forward),
             None => {}
         }

@@ -120,10 +120,9 @@ impl GdcmApp {
             version: gdcm_io::software::version(),
             fault: fault.words(),
         };
-        self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Fault(_)));
-        self.state.message_bars.push(MessageBar::Fault(report));
+        let notices = &mut self.state.notices;
+        notices.close_bars(|bar| matches!(bar, MessageBar::Fault(_)));
+        notices.add_bar(MessageBar::Fault(report));
     }
 }
 

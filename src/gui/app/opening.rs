@@ -70,10 +70,9 @@ impl GdcmApp {
         state.notices.follow_decision();
         Preferences::from_display(&self.state.display).apply(&mut state.display);
         // Keep the offers to restore lost decisions; the other bars concern the previous study.
-        state.message_bars = std::mem::take(&mut self.state.message_bars);
         state
-            .message_bars
-            .retain(|bar| matches!(bar, MessageBar::Recovery(_)));
+            .notices
+            .close_bars(|bar| !matches!(bar, MessageBar::Recovery(_)));
         self.state = state;
         self.readers.record_reader.give_up();
         // Request numbers continue, so that late replies about the old dataset can be recognised.

@@ -204,7 +204,8 @@ impl GdcmApp {
         if !added.is_empty() || !unassigned.is_empty() {
             self.store_added_records(added, unassigned, start);
         } else if own_count > 0 {
-            self.notify_done(Message::new("records-read", counted(own_count, "record")));
+            let text = format!("read {} of the dataset", counted(own_count, "record"));
+            self.notify_done(Message::new("records-read", text));
         }
     }
 

@@ -47,7 +47,7 @@ impl GdcmApp {
         for lost in lost {
             let number = self.recovery.offers.len();
             let offer = recovery_offer(&lost, number, &TimeZone::system());
-            self.state.message_bars.push(MessageBar::Recovery(offer));
+            self.state.notices.add_bar(MessageBar::Recovery(offer));
             self.recovery.offers.push(Some(lost));
         }
     }
@@ -111,8 +111,8 @@ impl GdcmApp {
 
     fn close_offer(&mut self, closed: usize) {
         self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Recovery(offer) if offer.number == closed));
+            .notices
+            .close_bars(|bar| matches!(bar, MessageBar::Recovery(offer) if offer.number == closed));
     }
 }
 

@@ -23,7 +23,7 @@ impl GdcmApp {
         }
         self.keep_open();
         if changed.sha256 != self.files.loaded.sha256 {
-            self.state.message_bars.push(MessageBar::Changed {
+            self.state.notices.add_bar(MessageBar::Changed {
                 name: self.files.loaded.file_name(),
             });
         }
@@ -32,8 +32,8 @@ impl GdcmApp {
     /// Closes the offer to reload; the open dataset remains until its file changes again.
     pub(super) fn keep_open(&mut self) {
         self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Changed { .. }));
+            .notices
+            .close_bars(|bar| matches!(bar, MessageBar::Changed { .. }));
     }
 
     /// Reads the dataset's file again; the open dataset is replaced once the file has been read.
@@ -55,8 +55,8 @@ impl GdcmApp {
         }
         self.keep_open();
         self.state
-            .message_bars
-            .retain(|bar| !matches!(bar, MessageBar::Differences { .. }));
+            .notices
+            .close_bars(|bar| matches!(bar, MessageBar::Differences { .. }));
         let name = loaded.file_name();
         let (study, differences) = self.state.study.reconciled(Arc::clone(&loaded.dataset));
         let before = std::mem::replace(&mut self.state.study, study);
@@ -69,8 +69,8 @@ impl GdcmApp {
             self.notify_done_with(Activity::Other, message, Some(NoticeAction::Undo));
         } else {
             self.state
-                .message_bars
-                .push(MessageBar::Differences { name, differences });
+                .notices
+                .add_bar(MessageBar::Differences { name, differences });
         }
     }
 

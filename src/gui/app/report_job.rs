@@ -4,13 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::report::{ReportSource, ReportSubject, report, save_report};
+use gdcm_io::report::{Report, ReportSource, save_report};
 use gdcm_io::{Existing, FileError};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::jobs::job::Job;
-use gdcm_study::results::required_modes::KnownPoles;
-use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::{Analysis, Engine};
 
 use super::GdcmApp;
@@ -19,6 +17,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::Activity;
+use crate::gui::state::report_contents::{ReportContentsJob, ReportInputs};
 use crate::message::Message;
 
 impl GdcmApp {
@@ -38,11 +37,17 @@ impl GdcmApp {
     /// Starts writing the report; asks before overwriting a file.
     pub(super) fn write_report(&mut self, path: PathBuf) {
         let path = self.files.at_home(path);
-        self.start_report(path, self.postponed.existing);
+        self.start_report(path, self.postponed.existing, None);
     }
 
-    /// Starts writing the report to a path; `existing` states how an existing file is treated.
-    pub(super) fn start_report(&mut self, path: PathBuf, existing: Existing) {
+    /// Starts writing the report to a path; `existing` is the treatment of an existing file, and
+    /// `composed` the report if it is already composed.
+    pub(super) fn start_report(
+        &mut self,
+        path: PathBuf,
+        existing: Existing,
+        composed: Option<Arc<Report>>,
+    ) {
         let Some(analysis) = self.value_or_notify(self.analysis_to_write()) else {
             return;
         };
@@ -55,18 +60,65 @@ impl GdcmApp {
         self.work.report_number += 1;
         self.work.report_job = Some(ReportJob {
             number: self.work.report_number,
-            // `asked_with`: the live analysis ignores the requirements and may contain older ones.
-            analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
-            records: self.state.records.history_records(),
-            known: self.state.records.known_poles(),
-            source: ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref()),
+            contents: self.report_inputs(analysis),
+            composed,
             path,
             existing,
             inputs: self.files.inputs(),
         });
     }
 
-    /// Shows a notice with the written report's path, or handles the error.
+    /// Collects what a report on an analysis is made of.
+    fn report_inputs(&self, analysis: Arc<Analysis>) -> Arc<ReportInputs> {
+        let source = self.report_source();
+        Arc::new(ReportInputs {
+            // `asked_with`: the live analysis ignores the requirements and may contain older ones.
+            analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
+            shown: analysis,
+            records: self.state.records.history_records(),
+            known: self.state.records.known_poles(),
+            source,
+        })
+    }
+
+    /// Returns the names of the open files, as the report states them.
+    fn report_source(&self) -> ReportSource {
+        ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref())
+    }
+
+    /// Returns the job that composes the report which the open export dialog describes; `None`
+    /// without a report, and while results are being computed.
+    pub(super) fn report_contents_job(&mut self) -> Option<ReportContentsJob> {
+        let is_open = self.state.forms.shown == Some(FormKind::Export);
+        if !(is_open && self.state.forms.export.has_report())
+            || self.state.incomplete_results().is_some()
+        {
+            return None;
+        }
+        let analysis = self.state.results.analysis.clone()?;
+        let known = self.state.forms.export.report_inputs.as_ref();
+        let inputs = match known {
+            // Saving the study in the dialog changes its name in the report.
+            Some(inputs)
+                if Arc::ptr_eq(&inputs.shown, &analysis)
+                    && inputs.source == self.report_source() =>
+            {
+                Arc::clone(inputs)
+            }
+            _ => self.report_inputs(analysis),
+        };
+        self.state.forms.export.report_inputs = Some(Arc::clone(&inputs));
+        Some(ReportContentsJob { inputs })
+    }
+
+    /// Stores the composed report, whose size and notes the export dialog shows.
+    pub(super) fn take_report_contents(&mut self, job: ReportContentsJob, report: Arc<Report>) {
+        let form = &mut self.state.forms.export;
+        form.report = Some((job, report));
+        form.join_report_notes();
+    }
+
+    /// Shows a notice with the path of the written report, or handles the error.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.work.report_job = None;
         match outcome {
@@ -97,17 +149,14 @@ impl GdcmApp {
     }
 }
 
-/// Job that builds and writes a report; takes seconds, because it draws every plot.
+/// Job that composes and writes a report.
 #[derive(Clone, Debug)]
 pub struct ReportJob {
-    /// Report number in this session, which distinguishes jobs: records may contain NaN, and would
-    /// then differ from themselves.
+    /// Number of the report in the session, by which jobs are told apart.
     pub number: u64,
-    pub analysis: Arc<Analysis>,
-    /// Open flight records for the time-history comparison.
-    pub records: Vec<HistoryRecords>,
-    pub known: KnownPoles,
-    pub source: ReportSource,
+    pub contents: Arc<ReportInputs>,
+    /// The report, if it is already composed.
+    pub composed: Option<Arc<Report>>,
     pub path: PathBuf,
     /// Treatment of an existing file.
     pub existing: Existing,
@@ -127,22 +176,16 @@ impl Job for ReportJob {
     type Output = Result<(), FileError>;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let histories = match self.records.as_slice() {
-            [] => None,
-            records => Some(engine.time_histories(&self.analysis, records, progress)?),
+        let report = match &self.composed {
+            Some(report) => Arc::clone(report),
+            None => Arc::new(self.contents.compose(engine, progress)?),
         };
-        let subject = ReportSubject {
-            analysis: &self.analysis,
-            histories: histories.as_ref(),
-            known: &self.known,
-        };
-        let report = report(subject, &self.source, engine, progress)?;
         // A stopped job must not write the file.
         if progress.cancelled() {
             return Err(Cancelled);
         }
         let outputs = OutputSet::new(self.existing, self.inputs.clone());
-        Ok(save_report(&report, &self.path, outputs))
+        Ok(save_report(&report.html, &self.path, outputs))
     }
 }
 

@@ -9,7 +9,6 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::panels::menu_bar::menu_bar_ui;
-use crate::gui::panels::message_bars::message_bars_ui;
 use crate::gui::panels::sheet_frame::sheet_ui;
 use crate::gui::panels::{
     centre, conditions_panel, derivation_sheet, models_panel, rail, record_conditions, right_panel,
@@ -42,12 +41,6 @@ pub(super) fn panels_ui(
     state.display.layout.is_wide = ui.ctx().content_rect().width() >= WIDE;
     let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
     top.show(ui, |ui| menu_bar_ui(ui, state, palette, commands));
-    if !state.message_bars.is_empty() {
-        let frame = bar.inner_margin(Margin::symmetric(12, 4));
-        Panel::top("bars").frame(frame).show(ui, |ui| {
-            message_bars_ui(ui, &state.message_bars, palette, commands)
-        });
-    }
     let status = Panel::bottom("status bar").frame(bar).exact_size(24.0);
     status.show(ui, |ui| {
         status_bar::status_bar_ui(ui, state, palette, commands)

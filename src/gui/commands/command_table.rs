@@ -4,9 +4,10 @@
 use egui::{Key, Modifiers};
 
 use gdcm_plot::figure::FigureFormat;
+use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::adopted_models::AdoptionChoice;
 use gdcm_study::decisions::setting::{Kind, Value};
-use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting_table::{self, SETTINGS};
 use gdcm_words::setting_words::setting_words;
 
 use super::command::Command;
@@ -38,9 +39,22 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     for kind in TableKind::ALL {
         entries.extend(table_entries(kind));
     }
+    let has_leads = state.study.settings.phase == PhaseCorrection::Lead;
     for view in views_with_figure() {
-        entries.extend(figure_entries(view));
+        let is_drawn = view != View::Leads || has_leads;
+        entries.extend(figure_entries(view).map(|entry| entry.enabled(is_drawn)));
     }
+    let use_leads = Entry::new(
+        "Use leads",
+        "Corrects phases up to the top of the band, at the price of gains above it",
+        setting_table::PHASE.to(PhaseCorrection::Lead),
+    );
+    entries.push(use_leads.enabled(!has_leads));
+    entries.push(Entry::new(
+        "Keep the decisions as a variant…",
+        "Moves the focus to the field for its name",
+        LayoutCommand::NameVariant,
+    ));
     entries.extend(help_entries());
     entries
 }

@@ -12,6 +12,7 @@ use super::layout::LayoutCommand;
 use super::output::OutputCommand;
 use super::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::MessageBar;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::window_state::State;
 
@@ -25,7 +26,44 @@ pub(super) fn file_entries(state: &State) -> Vec<Entry> {
         .chain(group(Menu::File, 3, page_entries()))
         .chain(group(Menu::File, 4, begin_entries(state)))
         .chain(group(Menu::File, 5, quit))
+        .chain(message_entries(state))
         .collect()
+}
+
+/// Returns the answers to the message bars, for the palette.
+fn message_entries(state: &State) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for bar in state.notices.bars() {
+        match bar {
+            MessageBar::Changed { name } => {
+                entries.push(Entry::new(
+                    format!("Reload {name}"),
+                    "Its file has changed; the decisions that still apply are kept",
+                    FileCommand::Reload,
+                ));
+                entries.push(Entry::new(
+                    format!("Keep {name} as it is open"),
+                    "Its file has changed",
+                    FileCommand::KeepOpen,
+                ));
+            }
+            MessageBar::Recovery(offer) => {
+                entries.push(Entry::new(
+                    format!("Restore unsaved decisions of {}", offer.kept_at),
+                    "Opens them with their dataset",
+                    FileCommand::RestoreRecovery(offer.number),
+                ));
+                entries.push(Entry::new(
+                    format!("Discard unsaved decisions of {}", offer.kept_at),
+                    "Removes their recovery file",
+                    FileCommand::DiscardRecovery(offer.number),
+                ));
+            }
+            // Its answers are commands of their own.
+            MessageBar::Fault(_) | MessageBar::Differences { .. } => {}
+        }
+    }
+    entries
 }
 
 fn open_entries() -> [Entry; 6] {

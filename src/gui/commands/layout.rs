@@ -43,6 +43,8 @@ pub enum LayoutCommand {
     BeginWith(OpensWith),
     /// Focuses the field with this accessible name.
     FocusField(&'static str),
+    /// Shows the variants, with the focus in the field for the name of a new one.
+    NameVariant,
     /// Moves the focus to the next or to the previous window region.
     LeaveRegion { forward: bool },
     /// Shows the first step in the guided tour.

@@ -19,7 +19,8 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, entries_ui, named};
+use crate::gui::widgets::controls::{Asks, entries_ui, named, tooltip_right_of};
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::list_row::RowLook;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
@@ -49,10 +50,33 @@ struct RowLayout {
     height: f32,
 }
 
+impl RowLayout {
+    /// Returns the room between the condition number, or its mark, and the right edge of the
+    /// airspeed \[pt\].
+    fn airspeed_room(&self) -> f32 {
+        let left = match self.mark_center {
+            Some(center) => center + MARK_RADIUS,
+            None => self.number_end + AIRSPEED_GAP,
+        };
+        self.airspeed_end - left
+    }
+}
+
+/// Returns the airspeed \[kt\], rounded to whole knots if it does not fit into `room` \[pt\] and would
+/// touch the number of the condition.
+fn airspeed_text(ui: &Ui, airspeed_kt: f64, room: f32) -> String {
+    let exact = airspeed_kt.to_string();
+    if text_width(ui, &exact, body()) <= room {
+        exact
+    } else {
+        format!("{airspeed_kt:.0}")
+    }
+}
+
 const LIST: RowLayout = RowLayout {
     number_end: 20.0,
     mark_center: Some(33.0),
-    airspeed_end: 70.0,
+    airspeed_end: 78.0,
     cells_left: 88.0,
     height: 20.0,
 };
@@ -71,6 +95,10 @@ const MOST_PITCH: f32 = 26.0;
 pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
 /// Minimum gap between two cells \[pt\].
 const LEAST_GAP: f32 = 3.0;
+/// Distance of the airspeed from the centre of a mark of the flight state \[pt\].
+const MARK_RADIUS: f32 = 6.5;
+/// Minimum gap between the number and the airspeed of a condition \[pt\].
+const AIRSPEED_GAP: f32 = 6.0;
 /// Width of the frame around the cell in focus \[pt\].
 const FOCUS_WIDTH: f32 = 1.5;
 /// Cell height \[pt\].
@@ -263,7 +291,7 @@ impl<'a> ConditionRows<'a> {
             ui,
             row.with_max_x(row.left() + self.layout.airspeed_end),
             AT_RIGHT_END,
-            &flight_state.airspeed_kt.to_string(),
+            &airspeed_text(ui, flight_state.airspeed_kt, self.layout.airspeed_room()),
             body(),
             color,
         );
@@ -275,7 +303,9 @@ impl<'a> ConditionRows<'a> {
         marks.paint(ui, row, palette);
         response.asks(SelectionCommand::SelectCondition(id), commands);
         response.context_menu(|ui| marks.menu_ui(ui, commands));
-        response.on_hover_ui(|ui| marks.tooltip_ui(ui, condition, palette));
+        tooltip_right_of(&response, row, |ui| {
+            marks.tooltip_ui(ui, condition, palette)
+        });
     }
 
     /// Draws a condition's cells; a click on a cell shows the condition and the response.
@@ -407,5 +437,17 @@ mod tests {
                 assert!(rows.cell(row, last).right() <= row.right() - MARK_ROOM + 1.0);
             }
         }
+    }
+
+    #[test]
+    fn a_long_airspeed_is_rounded_in_the_rail_and_exact_in_the_list() {
+        let ctx = egui::Context::default();
+        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let [rail, list] = [RAIL, LIST].map(|layout| layout.airspeed_room());
+            assert_eq!(airspeed_text(ui, 120.5, rail), "120");
+            assert_eq!(airspeed_text(ui, 120.5, list), "120.5");
+            assert_eq!(airspeed_text(ui, 140.0, rail), "140");
+        });
+        output.drop_without_applying_deltas();
     }
 }

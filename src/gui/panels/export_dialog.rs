@@ -206,7 +206,7 @@ fn foot_ui(
     let plan = state.current_export_plan();
     let is_possible = plan.is_some_and(|plan| plan.first_fault().is_none());
     let count = match plan {
-        Some(plan) => plan.files.len() + usize::from(plan.report.is_some()),
+        Some(plan) => plan.file_count(),
         None => form.choices.formats.len(),
     };
     in_line_ui(ui, inner, true, |ui| {

@@ -1,11 +1,10 @@
-//! Message bars below the menu: each states a fact about the program or its files, and offers what
-//! can be done.
+//! Message bars: each states a fact about the program or its files, and offers what can be done. They
+//! are shown in the place of the toasts, so that they cover no plot and move nothing.
 
-use egui::{
-    Align, Button, CollapsingHeader, Frame, Label, Layout, Margin, RichText, ScrollArea, Ui,
-};
+use egui::Ui;
 
 use gdcm_model::number_format::counted;
+use gdcm_study::decisions::dataset_differences::Difference;
 use gdcm_words::dataset_differences::dataset_difference_text;
 
 use crate::gui::commands::command::Command;
@@ -14,47 +13,80 @@ use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::notices::{FaultReport, MessageBar, RecoveryOffer};
-use crate::gui::widgets::controls::button_ui;
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::elision::{elided, end_elided, text_width};
+use crate::gui::widgets::palette::{BODY_SIZE, body};
 
-/// Draws every message bar, oldest first.
-pub fn message_bars_ui(
-    ui: &mut Ui,
-    bars: &[MessageBar],
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    for bar in bars {
-        let frame = Frame::new()
-            .fill(palette.raised)
-            .inner_margin(Margin::symmetric(10, 5));
-        frame
-            .corner_radius(3.0)
-            .show(ui, |ui| bar_ui(ui, bar, palette, commands));
+/// Button of a message bar.
+pub(super) struct BarButton {
+    pub(super) text: &'static str,
+    /// Accessible name.
+    pub(super) name: &'static str,
+    pub(super) command: Command,
+}
+
+impl BarButton {
+    fn new(text: &'static str, command: impl Into<Command>) -> Self {
+        Self {
+            text,
+            name: text,
+            command: command.into(),
+        }
+    }
+
+    fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
     }
 }
 
-fn bar_ui(ui: &mut Ui, bar: &MessageBar, palette: &Palette, commands: &mut Vec<Command>) {
-    row_ui(ui, &bar_sentence(bar), bar_buttons(bar), palette, commands);
-    if let MessageBar::Differences { differences, .. } = bar {
-        let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
-        list_ui(ui, &sentences);
-    }
-}
-
-fn bar_sentence(bar: &MessageBar) -> String {
+/// Returns the whole sentence of a message bar.
+pub(super) fn bar_sentence(bar: &MessageBar) -> String {
     match bar {
         MessageBar::Fault(report) => fault_sentence(report),
         MessageBar::Recovery(offer) => recovery_sentence(offer),
-        MessageBar::Changed { name } => format!("{name} has changed on disk."),
+        MessageBar::Changed { name } => format!("{name}{CHANGED}"),
         MessageBar::Differences { name, differences } => {
-            let number = counted(differences.len(), "difference");
-            format!("{name} was reloaded: {number}.")
+            format!("{name}{}", difference_count(differences))
         }
     }
 }
 
-/// States which work was interrupted, that the decisions are kept, and which details to send.
+/// Returns the sentence on a line of `room` \[pt\]: the name of a file is elided in its middle, other
+/// sentences at their end.
+pub(super) fn bar_line(ui: &Ui, bar: &MessageBar, room: f32) -> String {
+    match bar {
+        MessageBar::Fault(_) | MessageBar::Recovery(_) => {
+            end_elided(ui, &bar_sentence(bar), room, BODY_SIZE)
+        }
+        MessageBar::Changed { name } => line_with_name(ui, name, CHANGED, room),
+        MessageBar::Differences { name, differences } => {
+            line_with_name(ui, name, &difference_count(differences), room)
+        }
+    }
+}
+
+/// Continues the name of a file that has changed.
+const CHANGED: &str = " has changed on disk";
+
+fn line_with_name(ui: &Ui, name: &str, rest: &str, room: f32) -> String {
+    let room = room - text_width(ui, rest, body());
+    format!("{}{rest}", elided(ui, name, room, BODY_SIZE))
+}
+
+/// Continues the name of a reloaded file: " reloaded: 3 differences, 1 decision lost".
+fn difference_count(differences: &[Difference]) -> String {
+    let count = counted(differences.len(), "difference");
+    let lost = differences
+        .iter()
+        .filter(|difference| matches!(difference, Difference::NotApplied { .. }))
+        .count();
+    if lost == 0 {
+        format!(" reloaded: {count}")
+    } else {
+        format!(" reloaded: {count}, {} lost", counted(lost, "decision"))
+    }
+}
+
+/// States the interrupted work, that the decisions are kept, and the details to send.
 fn fault_sentence(report: &FaultReport) -> String {
     let FaultReport {
         work,
@@ -68,96 +100,50 @@ fn fault_sentence(report: &FaultReport) -> String {
     )
 }
 
-/// Formats "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were
-/// not saved."
+/// "Unsaved decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json)".
 fn recovery_sentence(offer: &RecoveryOffer) -> String {
     let study = match &offer.study {
         Some(name) => format!(" (study {name})"),
         None => String::new(),
     };
     format!(
-        "Decisions of {} for {}{study} were not saved.",
+        "Unsaved decisions of {} for {}{study}",
         offer.kept_at, offer.dataset
     )
 }
 
-fn bar_buttons(bar: &MessageBar) -> Vec<(&'static str, Command)> {
-    let close = Command::Form(FormCommand::CloseBar(bar.clone()));
+/// Returns the sentences that a list below the line adds to it.
+pub(super) fn bar_details(bar: &MessageBar) -> Vec<String> {
+    match bar {
+        MessageBar::Fault(report) => vec![fault_sentence(report)],
+        MessageBar::Differences { differences, .. } => {
+            differences.iter().map(dataset_difference_text).collect()
+        }
+        MessageBar::Recovery(_) | MessageBar::Changed { .. } => Vec::new(),
+    }
+}
+
+/// Returns the buttons, from left to right.
+pub(super) fn bar_buttons(bar: &MessageBar) -> Vec<BarButton> {
+    let close = FormCommand::CloseBar(bar.clone());
     match bar {
         MessageBar::Fault(report) => vec![
-            (
-                "Compute again",
-                Command::Computing(ComputingCommand::Compute),
-            ),
-            (
-                "Copy this message",
-                Command::Output(OutputCommand::CopyText(fault_sentence(report))),
-            ),
-            ("Close message", close),
+            BarButton::new("Compute again", ComputingCommand::Compute),
+            BarButton::new("Copy", OutputCommand::CopyText(fault_sentence(report)))
+                .named("Copy this message"),
+            BarButton::new("×", close).named("Close message"),
         ],
         MessageBar::Recovery(offer) => vec![
-            (
-                "Restore",
-                Command::File(FileCommand::RestoreRecovery(offer.number)),
-            ),
-            (
-                "Discard",
-                Command::File(FileCommand::DiscardRecovery(offer.number)),
-            ),
-            ("Later", close),
+            BarButton::new("Restore", FileCommand::RestoreRecovery(offer.number)),
+            BarButton::new("Discard", FileCommand::DiscardRecovery(offer.number)),
+            BarButton::new("Later", close),
         ],
         MessageBar::Changed { .. } => vec![
-            ("Reload", Command::File(FileCommand::Reload)),
-            (
-                "Keep the open dataset",
-                Command::File(FileCommand::KeepOpen),
-            ),
+            BarButton::new("Reload", FileCommand::Reload),
+            BarButton::new("Keep", FileCommand::KeepOpen).named("Keep the open dataset"),
         ],
-        MessageBar::Differences { .. } => vec![("Close list", close)],
-    }
-}
-
-/// Draws a wrapping sentence with its buttons beside it.
-fn row_ui(
-    ui: &mut Ui,
-    sentence: &str,
-    buttons: Vec<(&str, Command)>,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
-        for (text, command) in buttons.into_iter().rev() {
-            button_ui(ui, Button::new(text).small(), "", command, commands);
+        MessageBar::Differences { .. } => {
+            vec![BarButton::new("×", close).named("Close list")]
         }
-        ui.with_layout(Layout::left_to_right(Align::Min), |ui| {
-            ui.label(palette.small_warning("●"));
-            ui.add(Label::new(sentence).wrap());
-        });
-    });
-}
-
-/// Draws the first few sentences and folds the others, so that the plots keep their space.
-fn list_ui(ui: &mut Ui, sentences: &[String]) {
-    const SHOWN: usize = 4;
-    let (first, rest) = sentences.split_at(sentences.len().min(SHOWN));
-    for sentence in first {
-        sentence_ui(ui, sentence);
     }
-    if rest.is_empty() {
-        return;
-    }
-    let header = RichText::new(format!("{} more", rest.len())).size(SMALL_SIZE);
-    CollapsingHeader::new(header)
-        .id_salt("differences")
-        .show(ui, |ui| {
-            ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
-                for sentence in rest {
-                    sentence_ui(ui, sentence);
-                }
-            });
-        });
-}
-
-fn sentence_ui(ui: &mut Ui, sentence: &str) {
-    ui.label(RichText::new(format!("    {sentence}")).size(SMALL_SIZE));
 }

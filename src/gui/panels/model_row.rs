@@ -16,7 +16,7 @@ use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, entries_ui, named, named_switch};
+use crate::gui::widgets::controls::{Asks, entries_ui, named, named_switch, tooltip_right_of};
 use crate::gui::widgets::elision::elided_among;
 use crate::gui::widgets::list_row::ROW_HEIGHT;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text, row_text};
@@ -154,7 +154,7 @@ impl<'a> ModelRow<'a> {
             commands.push(SelectionCommand::Hover(self.id.clone()).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
-        response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
+        tooltip_right_of(&response, rect, |ui| self.tooltip_ui(ui, palette));
     }
 
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {

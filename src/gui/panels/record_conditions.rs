@@ -13,7 +13,7 @@ use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::condition_fit::{BAD_FIT, ConditionFit, FitStatus};
 use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::Asks;
+use crate::gui::widgets::controls::{Asks, hint_right_of};
 use crate::gui::widgets::list_row::{ROW_HEIGHT, RowLook};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -203,11 +203,8 @@ impl RecordsRow<'_> {
         self.paint_status(ui, row, palette);
         response.asks(SelectionCommand::SelectCondition(id), commands);
         response.context_menu(|ui| marks.menu_ui(ui, commands));
-        response.on_hover_text(format!(
-            "{}\n{}",
-            flight_state.name,
-            status_words(&self.fit)
-        ));
+        let hint = format!("{}\n{}", flight_state.name, status_words(&self.fit));
+        hint_right_of(response, row, &hint);
     }
 
     fn paint_cell(&self, ui: &Ui, row: Rect, end: f32, words: &str, color: Color32) {

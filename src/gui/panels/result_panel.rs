@@ -21,6 +21,7 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
 use crate::gui::views::error_bars::error_bar_words;
 use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
@@ -30,6 +31,8 @@ const ROW: f32 = 18.0;
 const GAIN_END: f32 = 0.5;
 /// Right edge of the delays, as a share of the side's width.
 const DELAY_END: f32 = 0.85;
+/// Least gap between the error bar of a gain and the delay beside it \[pt\].
+const LEAST_GAP: f32 = 5.0;
 
 /// Opacity of error bars that belong to earlier settings.
 pub(super) const OLDER: f32 = 0.5;
@@ -201,9 +204,9 @@ impl Side<'_> {
             let row = self.row(index + 1);
             painted_text(ui, row, 0.0, &channel.name, body(), palette.text);
             let gain = self.gain(index, &channel.name);
-            self.value_ui(ui, row, gain, commands);
+            let gain_end = self.value_ui(ui, row, gain, row.left(), commands);
             let delay = self.delay(index, &channel.name);
-            self.value_ui(ui, row, delay, commands);
+            self.value_ui(ui, row, delay, gain_end + LEAST_GAP, commands);
         }
     }
 
@@ -303,8 +306,16 @@ impl Side<'_> {
         }
     }
 
-    /// Draws a value with its error bar's half-width; a click opens its derivation.
-    fn value_ui(&self, ui: &mut Ui, row: Rect, value: ChannelValue, commands: &mut Vec<Command>) {
+    /// Draws a value, which begins at `least_left` or to the right of it, with the half-width of its
+    /// error bar; a click opens its derivation. Returns the right end.
+    fn value_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        value: ChannelValue,
+        least_left: f32,
+        commands: &mut Vec<Command>,
+    ) -> f32 {
         let ChannelValue {
             text,
             half,
@@ -314,17 +325,21 @@ impl Side<'_> {
             scalar,
             ..
         } = value;
-        let place = painted_upto(ui, row, value.end, &text, value.font, value.color);
+        let least_end = least_left + text_width(ui, &text, value.font.clone()) - row.left();
+        let end = value.end.max(least_end / row.width());
+        let place = painted_upto(ui, row, end, &text, value.font, value.color);
         let beside = place.right() - row.left() + 3.0;
+        let mut right_end = place.right();
         if let Some(was) = &was {
-            painted_text(ui, row, beside, was, small(), self.palette.dim_text);
+            let shown = painted_text(ui, row, beside, was, small(), self.palette.dim_text);
+            right_end = shown.right();
         } else if let Some(half) = &half {
             let color = if self.state.older_uncertainty().is_some() {
                 self.palette.dim_text.gamma_multiply(OLDER)
             } else {
                 self.palette.dim_text
             };
-            painted_text(ui, row, beside, half, small(), color);
+            right_end = painted_text(ui, row, beside, half, small(), color).right();
         }
         let area = row
             .with_min_x(place.left() - 4.0)
@@ -345,6 +360,7 @@ impl Side<'_> {
             .on_hover_cursor(CursorIcon::Help)
             .on_hover_text(hint);
         response.asks(SelectionCommand::Explain(Some(value.asked)), commands);
+        right_end
     }
 }
 

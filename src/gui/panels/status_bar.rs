@@ -172,6 +172,9 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     if let Some(steps) = background.report {
         return format!("writing the report, {} % …", steps.percent());
     }
+    if let Some(steps) = background.report_contents {
+        return format!("preparing the report, {} % …", steps.percent());
+    }
     if let Some(steps) = background.identification {
         return identification_words(records, steps.percent());
     }

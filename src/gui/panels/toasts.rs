@@ -1,36 +1,42 @@
-//! Toasts: messages in the middle of the top bar, over the dataset name, so that they cover no
-//! curve and move nothing. The newest is shown; the others are in a list below it.
+//! Messages in the middle of the top bar, over the name of the dataset, so that they cover no curve
+//! and move nothing: toasts, and message bars that wait for an answer. The newest is shown; the
+//! others are in a list below it.
 
 use egui::{
-    Area, Button, Frame, Id, Label, Margin, Order, Rect, RichText, Role, ScrollArea, Sense, Stroke,
-    StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Area, Button, Color32, Frame, Id, Label, Margin, Order, Rect, RichText, Role, ScrollArea,
+    Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
 use gdcm_model::number_format::counted;
 
+use super::message_bars::{bar_buttons, bar_details, bar_line, bar_sentence};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::study::StudyCommand;
-use crate::gui::state::notices::{Notice, NoticeAction, NoticeKind, Notices};
+use crate::gui::state::notices::{
+    MessageBar, Notice, NoticeAction, NoticeKind, Notices, TopMessage,
+};
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body};
 use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Toast width in a wide and in a narrow window \[pt\].
+/// Width of a message in a wide and in a narrow window \[pt\].
 const WIDTHS: [f32; 2] = [560.0, 400.0];
-/// Toast height \[pt\].
+/// Height of a message \[pt\].
 const HEIGHT: f32 = 28.0;
 /// Width of the coloured edge \[pt\].
 const EDGE: f32 = 3.0;
-/// Maximum height of the toast list \[pt\].
+/// Space at the left and right of the list of messages \[pt\].
+const LIST_PADDING: f32 = 12.0;
+/// Maximum height of the list of messages \[pt\].
 const LIST_HEIGHT: f32 = 280.0;
 
-/// The toasts' area in the top bar, and the notices that they show.
+/// Place of the messages in the top bar, and what they show.
 pub(super) struct ToastBar<'a> {
     /// The whole top bar.
     pub(super) bar: Rect,
@@ -41,23 +47,49 @@ pub(super) struct ToastBar<'a> {
     pub(super) palette: &'a Palette,
 }
 
+/// Older messages, counted and listed.
+#[derive(Clone, Copy)]
+struct MoreMessages {
+    /// Number of messages below the newest.
+    count: usize,
+    /// Whether the newest has details, which are listed too.
+    has_details: bool,
+}
+
+impl MoreMessages {
+    fn is_listed(self) -> bool {
+        self.count > 0 || self.has_details
+    }
+}
+
 impl ToastBar<'_> {
-    /// Returns whether a toast covers the dataset name.
+    /// Returns whether a message covers the name of the dataset.
     pub(super) fn is_shown(&self) -> bool {
-        self.notices.toasts().next().is_some()
+        !self.notices.shown().is_empty()
     }
 
-    /// Draws the newest toast in the middle of the bar.
+    /// Draws the newest message in the middle of the bar.
     pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let Some(newest) = self.notices.toasts().next() else {
+        let shown = self.notices.shown();
+        let Some((newest, older)) = shown.split_first() else {
             return;
         };
-        let more = self.notices.toasts().count() - 1;
+        let more = MoreMessages {
+            count: older.len(),
+            has_details: matches!(newest, TopMessage::Bar(bar) if !bar_details(bar).is_empty()),
+        };
         let place = self.place();
-        self.newest_ui(ui, &newest.notice, more, commands);
+        match newest {
+            TopMessage::Toast(toast) => self.toast_ui(ui, &toast.notice, more, commands),
+            TopMessage::Bar(bar) => self.bar_ui(ui, bar, more, commands),
+        }
         let mut is_held = ui.rect_contains_pointer(place);
-        if self.notices.is_list_open && more > 0 {
-            is_held |= self.list_ui(ui, commands);
+        if self.notices.is_list_open && more.is_listed() {
+            let details = match newest {
+                TopMessage::Bar(bar) => bar_details(bar),
+                TopMessage::Toast(_) => Vec::new(),
+            };
+            is_held |= self.list_ui(ui, &details, older, commands);
         }
         if is_held {
             commands.push(FormCommand::HoldToasts.into());
@@ -74,22 +106,33 @@ impl ToastBar<'_> {
         Rect::from_min_size(pos2(left, top), vec2(width, HEIGHT))
     }
 
-    /// Draws the newest toast: the coloured edge, the sentence, the action, the count of other
-    /// toasts, and the button that closes it.
-    fn newest_ui(&self, ui: &mut Ui, notice: &Notice, more: usize, commands: &mut Vec<Command>) {
-        let palette = self.palette;
+    /// Returns the place of sentence and buttons.
+    fn inner(&self) -> Rect {
         let place = self.place();
-        frame_ui(ui, place, notice, palette);
-        let inner = place
+        place
             .shrink2(vec2(8.0, 2.0))
-            .with_min_x(place.left() + 12.0);
+            .with_min_x(place.left() + 12.0)
+    }
+
+    /// Draws the newest toast: the coloured edge, the sentence, the action, the count of the
+    /// others, and the button that closes it.
+    fn toast_ui(
+        &self,
+        ui: &mut Ui,
+        notice: &Notice,
+        more: MoreMessages,
+        commands: &mut Vec<Command>,
+    ) {
+        let palette = self.palette;
+        frame_ui(ui, self.place(), edge_color(notice.kind, palette), palette);
+        let inner = self.inner();
         let buttons = in_line_ui(ui, inner, true, |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let close = ui.add(Button::new("×").frame(false));
             let close = named(close, Role::Button, "Dismiss");
             close.asks(FormCommand::DismissToast(notice.number), commands);
             let mut left = close.rect.left();
-            if more > 0 {
+            if more.is_listed() {
                 left = self.more_ui(ui, more, commands);
             }
             match &notice.action {
@@ -99,31 +142,64 @@ impl ToastBar<'_> {
         });
         let text_place = inner.with_max_x(buttons.inner - 8.0);
         let shown = elided(ui, &notice.text, text_place.width(), BODY_SIZE);
-        painted_text(ui, text_place, 0.0, &shown, body(), palette.text);
         let id = ui.scope_id().with(("toast", notice.number));
-        let label = ui.interact(text_place, id, Sense::hover());
-        let label = named(label, Role::Label, &notice.text);
-        if shown != notice.text {
-            label.on_hover_text(&notice.text);
-        }
+        sentence_ui(ui, text_place, id, &shown, &notice.text, palette);
     }
 
-    /// Draws the button that opens the list of other toasts; returns its left edge.
-    fn more_ui(&self, ui: &mut Ui, more: usize, commands: &mut Vec<Command>) -> f32 {
-        let text = RichText::new(format!("{more} more"))
+    /// Draws the newest message bar: the edge, the sentence, its buttons, and the count of the
+    /// others.
+    fn bar_ui(
+        &self,
+        ui: &mut Ui,
+        bar: &MessageBar,
+        more: MoreMessages,
+        commands: &mut Vec<Command>,
+    ) {
+        let palette = self.palette;
+        frame_ui(ui, self.place(), palette.warning, palette);
+        let inner = self.inner();
+        let buttons = in_line_ui(ui, inner, true, |ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            let left = bar_buttons_ui(ui, bar, palette, commands);
+            if more.is_listed() {
+                self.more_ui(ui, more, commands)
+            } else {
+                left
+            }
+        });
+        let text_place = inner.with_max_x(buttons.inner - 8.0);
+        let shown = bar_line(ui, bar, text_place.width());
+        let id = ui.scope_id().with(("message bar", bar.code()));
+        sentence_ui(ui, text_place, id, &shown, &bar_sentence(bar), palette);
+    }
+
+    /// Draws the button that opens the list of the other messages; returns its left edge.
+    fn more_ui(&self, ui: &mut Ui, more: MoreMessages, commands: &mut Vec<Command>) -> f32 {
+        let (text, name) = if more.count > 0 {
+            let count = counted(more.count, "message");
+            (format!("{} more", more.count), format!("{count} more"))
+        } else {
+            ("Details".to_owned(), "Details of the message".to_owned())
+        };
+        let text = RichText::new(text)
             .size(SMALL_SIZE)
             .color(self.palette.accent);
         let list = ui.add(Button::new(text).frame(false));
-        let name = format!("{} more", counted(more, "message"));
         let is_opened = !self.notices.is_list_open;
         let list = named(list, Role::Button, name);
         list.asks(FormCommand::ListToasts(is_opened), commands);
         list.rect.left()
     }
 
-    /// Draws the older toasts below the newest, with uncut sentences; returns whether the pointer
-    /// is on them.
-    fn list_ui(&self, ui: &Ui, commands: &mut Vec<Command>) -> bool {
+    /// Draws the details of the newest message and the older messages with whole sentences below
+    /// it; returns whether the pointer is on them.
+    fn list_ui(
+        &self,
+        ui: &Ui,
+        details: &[String],
+        older: &[TopMessage<'_>],
+        commands: &mut Vec<Command>,
+    ) -> bool {
         let newest = self.place();
         let palette = self.palette;
         let area = Area::new(Id::unique("older toasts"))
@@ -140,8 +216,18 @@ impl ToastBar<'_> {
                 ScrollArea::vertical()
                     .max_height(LIST_HEIGHT)
                     .show(ui, |ui| {
-                        for toast in self.notices.toasts().skip(1) {
-                            listed_ui(ui, &toast.notice, palette, commands);
+                        for fact in details {
+                            fact_ui(ui, fact);
+                        }
+                        for message in older {
+                            match message {
+                                TopMessage::Toast(toast) => {
+                                    listed_ui(ui, &toast.notice, palette, commands);
+                                }
+                                TopMessage::Bar(bar) => {
+                                    listed_bar_ui(ui, bar, palette, commands);
+                                }
+                            }
                         }
                     });
             });
@@ -150,12 +236,50 @@ impl ToastBar<'_> {
     }
 }
 
-/// Draws a toast's background and edge: green for a success, orange for a failure.
-fn frame_ui(ui: &Ui, place: Rect, notice: &Notice, palette: &Palette) {
-    let color = match notice.kind {
+/// Draws a sentence on one line; the whole one is its accessible name, and its tooltip if it is
+/// shortened.
+fn sentence_ui(ui: &Ui, place: Rect, id: Id, shown: &str, whole: &str, palette: &Palette) {
+    painted_text(ui, place, 0.0, shown, body(), palette.text);
+    let label = ui.interact(place, id, Sense::hover());
+    let label = named(label, Role::Label, whole);
+    if shown != whole {
+        label.on_hover_text(whole);
+    }
+}
+
+/// Draws the buttons of a message bar from right to left; returns the left edge of the leftmost.
+fn bar_buttons_ui(
+    ui: &mut Ui,
+    bar: &MessageBar,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) -> f32 {
+    let mut left = ui.max_rect().right();
+    for button in bar_buttons(bar).into_iter().rev() {
+        let text = RichText::new(button.text);
+        let text = if button.text == "×" {
+            text
+        } else {
+            text.color(palette.accent)
+        };
+        let response = ui.add(Button::new(text).frame(false));
+        let response = named(response, Role::Button, button.name);
+        response.asks(button.command, commands);
+        left = response.rect.left();
+    }
+    left
+}
+
+/// Returns the colour of the edge: green for a success, orange for a failure.
+fn edge_color(kind: NoticeKind, palette: &Palette) -> Color32 {
+    match kind {
         NoticeKind::Done => palette.good,
         NoticeKind::Trouble => palette.warning,
-    };
+    }
+}
+
+/// Draws the ground of a message with its edge.
+fn frame_ui(ui: &Ui, place: Rect, edge_color: Color32, palette: &Palette) {
     ui.painter().rect(
         place,
         6.0,
@@ -164,7 +288,7 @@ fn frame_ui(ui: &Ui, place: Rect, notice: &Notice, palette: &Palette) {
         StrokeKind::Inside,
     );
     let edge = place.with_max_x(place.left() + EDGE);
-    ui.painter().rect_filled(edge, 2.0, color);
+    ui.painter().rect_filled(edge, 2.0, edge_color);
 }
 
 /// Draws an action's button; returns its left edge.
@@ -204,7 +328,7 @@ fn action_command(action: &NoticeAction) -> Command {
 fn listed_ui(ui: &mut Ui, notice: &Notice, palette: &Palette, commands: &mut Vec<Command>) {
     let top = ui.cursor().top();
     let whole = ui.available_rect_before_wrap();
-    let row = whole.shrink2(vec2(12.0, 0.0));
+    let row = whole.shrink2(vec2(LIST_PADDING, 0.0));
     let buttons_width = if notice.action.is_some() { 140.0 } else { 28.0 };
     let words = row.with_max_x(row.right() - buttons_width);
     let text = ui.scope_builder(UiBuilder::new().max_rect(words), |ui| {
@@ -223,14 +347,34 @@ fn listed_ui(ui: &mut Ui, notice: &Notice, palette: &Palette, commands: &mut Vec
             action_ui(ui, action, palette, commands);
         }
     });
-    let color = match notice.kind {
-        NoticeKind::Done => palette.good,
-        NoticeKind::Trouble => palette.warning,
-    };
     let edge = Rect::from_min_size(pos2(whole.left(), top), vec2(EDGE, height));
-    ui.painter().rect_filled(edge, 2.0, color);
+    ui.painter()
+        .rect_filled(edge, 2.0, edge_color(notice.kind, palette));
     ui.advance_cursor_after_rect(Rect::from_min_size(
         pos2(whole.left(), top),
         vec2(whole.width(), height + 2.0),
     ));
+}
+
+/// Draws an older message bar: its sentence wrapped, its buttons in a line below it.
+fn listed_bar_ui(ui: &mut Ui, bar: &MessageBar, palette: &Palette, commands: &mut Vec<Command>) {
+    let whole = ui.available_rect_before_wrap();
+    fact_ui(ui, &bar_sentence(bar));
+    let row = Rect::from_min_size(ui.cursor().min, vec2(whole.width() - LIST_PADDING, 24.0));
+    in_line_ui(ui, row, true, |ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        bar_buttons_ui(ui, bar, palette, commands);
+    });
+    let edge = Rect::from_min_max(whole.min, pos2(whole.left() + EDGE, row.bottom()));
+    ui.painter().rect_filled(edge, 2.0, palette.warning);
+    ui.advance_cursor_after_rect(row);
+}
+
+/// Draws a wrapped sentence in the list.
+fn fact_ui(ui: &mut Ui, text: &str) {
+    let row = ui.available_rect_before_wrap();
+    let row = row.shrink2(vec2(LIST_PADDING, 0.0));
+    ui.scope_builder(UiBuilder::new().max_rect(row), |ui| {
+        ui.add(Label::new(text).wrap());
+    });
 }

@@ -7,6 +7,8 @@ use egui::{Color32, Id, TextureId};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::FrequencyUnit;
 
+use super::curve_style::CurveStyle;
+
 /// Quantity along the horizontal axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChartAxis {
@@ -36,7 +38,27 @@ pub struct ChartLine {
     pub color: Color32,
     /// Width \[pt\].
     pub width: f32,
-    pub dashed: bool,
+    /// Length of the dashes \[pt\]; `None` for a solid line.
+    pub dash: Option<f32>,
+}
+
+/// Length of short dashes \[pt\].
+pub const DENSE_DASH: f32 = 5.0;
+
+impl ChartLine {
+    /// Creates a line with the style of a curve; dots are drawn as dashes.
+    pub fn styled(points: Arc<[[f64; 2]]>, style: CurveStyle) -> Self {
+        Self {
+            points,
+            color: style.color,
+            width: style.width,
+            dash: if style.is_broken() {
+                Some(style.length)
+            } else {
+                None
+            },
+        }
+    }
 }
 
 /// Area between two lines over the same x values.

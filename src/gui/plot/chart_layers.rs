@@ -54,10 +54,9 @@ pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Pal
     let ends_across = visible_ends(plot);
     for line in &chart.lines {
         let points = visible_points(plot, chart.across, line, ends_across);
-        let style = if line.dashed {
-            LineStyle::dashed_dense()
-        } else {
-            LineStyle::Solid
+        let style = match line.dash {
+            Some(length) => LineStyle::Dashed { length },
+            None => LineStyle::Solid,
         };
         plot.line(
             Line::new("", PlotPoints::from(points))

@@ -1,18 +1,25 @@
-//! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns,
-//! all over the same frequencies.
+//! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns.
+//! The axes are labelled at the left of the rows and below the columns.
 
-use egui::{Align2, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
+use egui::{Align2, Pos2, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::Range;
 
-use super::overview_cell::PlacedCell;
+use super::overview_axes::AxisRange;
+use super::overview_cell::{CellLayout, PlacedCell};
 use super::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
 use super::panel_text::{caption_font, message_ui};
-use crate::gui::widgets::palette::Palette;
+use super::ticks::Ticks;
+use crate::gui::widgets::elision::elided;
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Width for the row names and height for the column names \[pt\].
-const HEADER: Vec2 = vec2(52.0, 22.0);
+/// Width of row names and value labels, and height of the column names \[pt\].
+const HEADER: Vec2 = vec2(76.0, 22.0);
+/// Width of the row names \[pt\].
+const NAMES: f32 = 42.0;
+/// Height of the frequency labels \[pt\].
+const FOOT: f32 = 16.0;
 /// Gap between two cells \[pt\].
 const GAP: f32 = 4.0;
 
@@ -35,16 +42,23 @@ pub fn overview_ui(
         columns: scene.inputs.len(),
         rows: scene.outputs.len(),
     };
+    let frequencies = AxisRange {
+        ticks: Ticks::Frequency(scene.unit),
+        range: log_omega,
+    };
+    view.ranges.follow(scene.cells, scene.band, scene.update);
     let mut events = Vec::new();
     ui.scope_builder(UiBuilder::new().id_salt("overview").max_rect(rect), |ui| {
         table.paint_names(ui, scene, palette);
+        table.paint_axes(ui, scene, frequencies, view, palette);
         for cell in scene.cells {
             let placed = PlacedCell {
                 cell,
                 place: table.cell(cell.pair),
                 name: cell_name(scene, cell),
                 band: scene.band,
-                log_omega,
+                frequencies,
+                cursor: scene.cursor,
                 palette,
             };
             events.extend(placed.ui(ui, view));
@@ -86,7 +100,7 @@ struct Table {
 
 impl Table {
     fn cell(&self, pair: Pair) -> Rect {
-        let area = Rect::from_min_max(self.rect.min + HEADER, self.rect.max);
+        let area = Rect::from_min_max(self.rect.min + HEADER, self.rect.max - vec2(0.0, FOOT));
         let size = vec2(
             area.width() / self.columns as f32,
             area.height() / self.rows as f32,
@@ -98,19 +112,73 @@ impl Table {
 
     /// Paints input names above the columns and output names beside the rows.
     fn paint_names(&self, ui: &Ui, scene: &OverviewScene<'_>, palette: &Palette) {
-        let mut names = Vec::new();
+        let column = self.cell(Pair::new(0, 0)).width();
         for (input, name) in scene.inputs.iter().enumerate() {
             let x = self.cell(Pair::new(0, input)).center().x;
-            names.push((pos2(x, self.rect.top() + 0.5 * HEADER.y - 1.0), name));
+            let at = pos2(x, self.rect.top() + 0.5 * HEADER.y - 1.0);
+            paint_name(ui, at, name, column, palette);
         }
         for (output, name) in scene.outputs.iter().enumerate() {
             let y = self.cell(Pair::new(output, 0)).center().y;
-            names.push((pos2(self.rect.left() + 0.5 * HEADER.x - 2.0, y), name));
-        }
-        for (place, name) in names {
-            let font = caption_font();
-            ui.painter()
-                .text(place, Align2::CENTER_CENTER, name, font, palette.dim_text);
+            let at = pos2(self.rect.left() + 0.5 * NAMES, y);
+            paint_name(ui, at, name, NAMES, palette);
         }
     }
+
+    /// Paints the labels of the values at the left of each row, those of the frequencies below each
+    /// column, and the units of both.
+    fn paint_axes(
+        &self,
+        ui: &Ui,
+        scene: &OverviewScene<'_>,
+        frequencies: AxisRange,
+        view: &OverviewView,
+        palette: &Palette,
+    ) {
+        let painter = ui.painter();
+        for output in 0..self.rows {
+            let cell = self.cell(Pair::new(output, 0));
+            for (pane, rect) in CellLayout::new(cell, view.show_phase).panes {
+                if let Some(values) = view.ranges.values(output, pane) {
+                    AxisRange::of_values(pane, values).paint_beside(painter, rect, palette);
+                }
+            }
+        }
+        let last = self.rows.saturating_sub(1);
+        for input in 0..self.columns {
+            let cell = self.cell(Pair::new(last, input)).shrink2(vec2(2.0, 0.0));
+            frequencies.paint_below(painter, cell, palette);
+        }
+        let right = self.cell(Pair::new(0, 0)).left() - 4.0;
+        let units = [
+            (
+                self.rect.top() + 0.5 * HEADER.y - 1.0,
+                values_unit(view.show_phase),
+            ),
+            (self.rect.bottom() - 0.5 * FOOT - 1.0, scene.unit.symbol()),
+        ];
+        for (y, unit) in units {
+            let font = caption_font();
+            painter.text(
+                pos2(right, y),
+                Align2::RIGHT_CENTER,
+                unit,
+                font,
+                palette.dim_text,
+            );
+        }
+    }
+}
+
+/// Returns the units of the values.
+fn values_unit(show_phase: bool) -> &'static str {
+    if show_phase { "dB, deg" } else { "dB" }
+}
+
+/// Paints the name of a row or column, shortened to `room` \[pt\].
+fn paint_name(ui: &Ui, center: Pos2, name: &str, room: f32, palette: &Palette) {
+    let name = elided(ui, name, room, SMALL_SIZE);
+    let font = caption_font();
+    ui.painter()
+        .text(center, Align2::CENTER_CENTER, name, font, palette.dim_text);
 }

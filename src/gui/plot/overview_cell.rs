@@ -4,15 +4,13 @@ use egui::{
     CursorIcon, Painter, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 
-use gdcm_plot::figure::Range;
-
 use super::curve_menu::model_actions_ui;
 use super::drawn_curves::{BodeCurve, Pane};
+use super::overview_axes::AxisRange;
 use super::overview_scene::{MenuCurve, OverviewCell, OverviewEvent, OverviewView};
 use super::panel_painter::paint_frame;
 use super::panel_text::AT_RIGHT;
-use super::sketch::{Sketch, range_text};
-use crate::gui::widgets::elision::elided;
+use super::sketch::Sketch;
 use crate::gui::widgets::painted_text::row_text;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
@@ -22,6 +20,8 @@ const MAGNITUDE_PART: f32 = 0.58;
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
 /// Line height above a cell's curves \[pt\].
 const CELL_HEAD: f32 = 16.0;
+/// Opacity of the line at the frequency under the pointer.
+const POINTED: f32 = 0.55;
 
 /// Response at its position in the table.
 pub(super) struct PlacedCell<'a> {
@@ -31,9 +31,31 @@ pub(super) struct PlacedCell<'a> {
     pub(super) name: String,
     /// Lower and upper end of the comparison band \[rad/s\].
     pub(super) band: (f64, f64),
-    /// Visible range of `log10 omega`.
-    pub(super) log_omega: Range,
+    /// Frequency axis, of `log10 omega`.
+    pub(super) frequencies: AxisRange,
+    /// Frequency under the pointer in any plot \[rad/s\].
+    pub(super) cursor: Option<f64>,
     pub(super) palette: &'a Palette,
+}
+
+/// Parts of a cell.
+pub(super) struct CellLayout {
+    /// Line above the curves; empty in a small cell.
+    head: Rect,
+    pub(super) panes: Vec<(Pane, Rect)>,
+}
+
+impl CellLayout {
+    pub(super) fn new(place: Rect, show_phase: bool) -> Self {
+        let has_head = place.width() >= LEAST_WITH_TEXT.x && place.height() >= LEAST_WITH_TEXT.y;
+        let inner = place.shrink(2.0);
+        let head_height = if has_head { CELL_HEAD } else { 0.0 };
+        let head = inner.with_max_y(inner.top() + head_height);
+        Self {
+            head,
+            panes: pane_rects(inner.with_min_y(head.bottom()), show_phase),
+        }
+    }
 }
 
 impl PlacedCell<'_> {
@@ -66,65 +88,66 @@ impl PlacedCell<'_> {
         paint_frame(ui, self.place, fill, outline);
     }
 
-    /// Draws the curves, and the texts above them if there is room.
+    /// Draws the curves, and the note above them if there is room.
     fn paint_content(&self, ui: &Ui, view: &mut OverviewView) {
-        let clip = self.place.shrink(1.5).intersect(ui.clip_rect());
-        let painter = ui.painter().with_clip_rect(clip);
-        let has_texts =
-            self.place.width() >= LEAST_WITH_TEXT.x && self.place.height() >= LEAST_WITH_TEXT.y;
-        let inner = self.place.shrink(2.0);
-        let head_height = if has_texts { CELL_HEAD } else { 0.0 };
-        let head = inner.with_max_y(inner.top() + head_height);
-        let mut ranges = Vec::new();
-        for (pane, rect) in pane_rects(inner.with_min_y(head.bottom()), view.show_phase) {
-            self.paint_band(&painter, rect);
+        let layout = CellLayout::new(self.place, view.show_phase);
+        for (pane, rect) in layout.panes {
+            let Some(values) = view.ranges.values(self.cell.pair.output, pane) else {
+                continue;
+            };
+            let painter = ui.painter_at(rect.intersect(ui.clip_rect()));
+            self.paint_ground(&painter, rect, AxisRange::of_values(pane, values));
             let drawn = view.sketches.entry((self.cell.pair, pane)).or_default();
             let sketch = Sketch {
                 curves: self.cell.curves,
                 pane,
                 rect,
-                log_omega: self.log_omega,
+                log_omega: self.frequencies.range,
+                values,
                 palette: self.palette,
             };
             sketch.paint(&painter, drawn);
-            ranges.push(range_text(drawn, pane));
+            self.paint_cursor(&painter, rect);
         }
-        if has_texts {
-            self.paint_head(ui, head, &ranges.join(" · "));
+        if layout.head.height() > 0.0 {
+            let head = layout.head.shrink2(vec2(3.0, 0.0));
+            let note = &self.cell.note;
+            row_text(ui, head, AT_RIGHT, note, SMALL_SIZE, self.palette.text);
         }
     }
 
-    /// Paints the vertical ranges and the note above the curves, because the cell has no axes.
-    fn paint_head(&self, ui: &Ui, head: Rect, ranges: &str) {
-        let palette = self.palette;
-        let head = head.shrink2(vec2(3.0, 0.0));
-        let note = row_text(
-            ui,
-            head,
-            AT_RIGHT,
-            &self.cell.note,
-            SMALL_SIZE,
-            palette.text,
-        );
-        let room = note.left() - head.left() - 6.0;
-        let ranges = elided(ui, ranges, room, SMALL_SIZE);
-        row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
-    }
-
-    /// Shades the comparison band, and draws a pane's lower edge.
-    fn paint_band(&self, painter: &Painter, rect: Rect) {
+    /// Shades the comparison band, and draws the grid and the lower edge of a pane.
+    fn paint_ground(&self, painter: &Painter, rect: Rect, values: AxisRange) {
         let (min, max) = self.band;
         let ends = self.place_across(rect, min)..=self.place_across(rect, max);
         let band = Rect::from_x_y_ranges(ends, rect.y_range());
         painter.rect_filled(band, 0.0, self.palette.accent.gamma_multiply(0.06));
-        let line = Stroke::new(1.0, self.palette.grid);
+        values.paint_levels(painter, rect, self.palette);
+        self.frequencies
+            .paint_verticals(painter, rect, self.palette);
+        let line = Stroke::new(1.0, self.palette.line);
         painter.hline(rect.x_range(), rect.bottom(), line);
     }
 
-    /// Returns the horizontal screen position for a frequency \[rad/s\], limited to the pane.
+    /// Draws the line at the frequency under the pointer.
+    fn paint_cursor(&self, painter: &Painter, rect: Rect) {
+        if let Some(omega) = self.cursor {
+            let line = Stroke::new(0.8, self.palette.text.gamma_multiply(POINTED));
+            painter.vline(self.place_across(rect, omega), rect.y_range(), line);
+        }
+    }
+
+    /// Returns the horizontal screen position of a frequency \[rad/s\], limited to the pane.
     fn place_across(&self, rect: Rect, omega: f64) -> f32 {
-        let fraction = (omega.log10() - self.log_omega.min) / self.log_omega.width();
-        rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
+        self.frequencies.across_in(rect, omega.log10())
+    }
+
+    /// Returns the frequency at a horizontal screen position \[rad/s\].
+    fn omega_at(&self, x: f32) -> f64 {
+        let inner = self.place.shrink(2.0);
+        let share = f64::from((x - inner.left()) / inner.width());
+        let range = self.frequencies.range;
+        10f64.powf(range.min + share.clamp(0.0, 1.0) * range.width())
     }
 
     /// Handles the events in the cell:
@@ -144,6 +167,9 @@ impl PlacedCell<'_> {
                 Some(curve) => format!("{} · {}", self.name, curve.label),
                 None => self.name.clone(),
             }));
+            if let Some(pointer) = pointer {
+                events.push(OverviewEvent::PointedAt(self.omega_at(pointer.x)));
+            }
         }
         if response.clicked() {
             let has_alt = response.ctx.input(|input| input.modifiers.alt);

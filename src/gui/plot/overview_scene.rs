@@ -6,11 +6,16 @@ use egui::Pos2;
 use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::Range;
+use gdcm_plot::figure::axis::FrequencyUnit;
 
 use super::bode_event::CurveAction;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::drawn_pane::DrawnPane;
 use super::nearest_curve::{Hit, nearest_curve};
+use super::overview_ranges::SharedRanges;
+use super::steady_range::AxisUpdate;
+use super::viewed_range::ranges_of;
 
 /// Response in an overview cell.
 #[derive(Clone, Debug)]
@@ -36,16 +41,24 @@ pub struct OverviewScene<'a> {
     pub cells: &'a [OverviewCell<'a>],
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
+    /// Unit of the frequency labels.
+    pub unit: FrequencyUnit,
+    /// Frequency under the pointer in any plot \[rad/s\].
+    pub cursor: Option<f64>,
+    /// How far the displayed results have come, which the axes follow.
+    pub update: AxisUpdate,
     /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,
 }
 
 /// Event in the overview.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum OverviewEvent {
     PairClicked(Pair),
     /// A curve is under the pointer.
     Hovered(CurveId),
+    /// Frequency under the pointer \[rad/s\].
+    PointedAt(f64),
     /// Status text for the element under the pointer.
     StatusText(String),
     /// A curve was clicked with Alt pressed.
@@ -66,6 +79,8 @@ pub(super) struct MenuCurve {
 pub struct OverviewView {
     /// Whether phases are shown below magnitudes.
     pub show_phase: bool,
+    /// Visible values of the rows.
+    pub(super) ranges: SharedRanges,
     /// Panes as last drawn.
     pub(super) sketches: BTreeMap<(Pair, Pane), DrawnPane>,
     pub(super) menu_curve: Option<MenuCurve>,
@@ -100,7 +115,12 @@ impl OverviewView {
         cell.curves.get(best?.curve)
     }
 
-    /// Returns where a magnitude, given as `log10 omega` and decibels, lies on the screen.
+    /// Returns the visible range of `log10 omega` and of the values in a cell as last drawn.
+    pub fn ranges_in(&self, pair: Pair, pane: Pane) -> Option<[Range; 2]> {
+        Some(ranges_of(self.transform(pair, pane)?.bounds()))
+    }
+
+    /// Returns the screen position of a magnitude, given as `log10 omega` and decibels.
     pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))

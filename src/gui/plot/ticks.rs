@@ -68,6 +68,14 @@ pub(super) enum Ticks {
     Ratio,
 }
 
+/// Label of a tick.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct TickLabel {
+    /// Axis coordinate.
+    pub(super) place: f64,
+    pub(super) text: String,
+}
+
 impl Ticks {
     /// Converts an axis coordinate to the displayed value.
     pub(super) fn number(self, place: f64) -> f64 {
@@ -136,6 +144,21 @@ impl Ticks {
             });
         }
         marks
+    }
+
+    /// Returns the labels of an axis of `length_pt`.
+    pub(super) fn labels(self, range: Range, length_pt: f64) -> Vec<TickLabel> {
+        let units_per_point = range.width() / length_pt;
+        let mut labels = Vec::new();
+        for mark in self.marks((range.min, range.max), units_per_point) {
+            if mark.step_size > 0.5 * (LABELLED + MINOR) * units_per_point {
+                labels.push(TickLabel {
+                    place: mark.value,
+                    text: self.text(mark),
+                });
+            }
+        }
+        labels
     }
 
     /// Returns the usual minimum distance between two labels \[pt\].
@@ -227,6 +250,15 @@ mod tests {
     fn values(ticks: Ticks, bounds: (f64, f64), points: f64) -> Vec<f64> {
         let marks = ticks.marks(bounds, (bounds.1 - bounds.0) / points);
         marks.into_iter().map(|mark| mark.value).collect()
+    }
+
+    #[test]
+    fn labels_are_the_labelled_marks() {
+        let range = Range::new(-1.0, 1.0);
+        let labels = Ticks::Frequency(FrequencyUnit::RadPerSecond).labels(range, 100.0);
+        let texts: Vec<&str> = labels.iter().map(|label| label.text.as_str()).collect();
+        assert_eq!(texts, ["0.1", "1", "10"]);
+        assert_eq!(labels[0].place, -1.0);
     }
 
     #[test]

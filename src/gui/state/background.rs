@@ -42,7 +42,9 @@ pub struct Background {
     pub views: usize,
     /// Report, by condition.
     pub report: Option<Steps>,
-    /// Identification.
+    /// Progress of the report that the export dialog describes, by condition.
+    pub report_contents: Option<Steps>,
+    /// Progress of the identification.
     pub identification: Option<Steps>,
     /// Whether some work was stopped, by the engineer or by a fault.
     pub stopped: bool,
@@ -60,6 +62,7 @@ impl Background {
             || self.physics.is_some()
             || self.views > 0
             || self.report.is_some()
+            || self.report_contents.is_some()
             || self.identification.is_some()
     }
 }

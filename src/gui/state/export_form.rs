@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use gdcm_io::export::export_set::{ExistingNames, ExportPlan, ExportSet, proposed_prefix};
 use gdcm_io::export::{ExportRequest, ExportSource, ExportedRole};
+use gdcm_io::report::Report;
 use gdcm_io::user_paths::at_home;
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::{ConditionId, Dataset};
@@ -18,6 +19,7 @@ use gdcm_study::results::export_note::ExportRemedy;
 use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::{Analysis, AssessedCorrection};
 
+use super::report_contents::{ReportContentsJob, ReportInputs};
 use crate::message::Message;
 
 /// Name for the report among the dialog's formats.
@@ -87,6 +89,10 @@ pub struct ExportForm {
     pub selected: usize,
     /// Outcome of the newest dry run, with its job.
     pub plan: Option<(ExportPlanJob, ExportPlan)>,
+    /// Inputs of the report, if it is among the files.
+    pub report_inputs: Option<Arc<ReportInputs>>,
+    /// The composed report, with its job.
+    pub report: Option<(ReportContentsJob, Arc<Report>)>,
     /// Number of failed attempts to write; each requires a new dry run, because files in the folder
     /// may have changed.
     pub revision: u64,
@@ -230,6 +236,39 @@ impl ExportForm {
     /// Returns the folder as a path.
     pub fn folder_path(&self) -> PathBuf {
         at_home(Path::new(self.folder.trim()), self.home.as_deref())
+    }
+
+    /// Drops the bytes of the dry run and of the report.
+    pub fn drop_contents(&mut self) {
+        self.plan = None;
+        self.report_inputs = None;
+        self.report = None;
+    }
+
+    /// Returns the composed report of an analysis; `None` while it is being composed.
+    pub fn report_of(&self, analysis: &Arc<Analysis>) -> Option<&Arc<Report>> {
+        let (job, report) = self.report.as_ref()?;
+        let inputs = self.report_inputs.as_ref()?;
+        if Arc::ptr_eq(&job.inputs, inputs) && Arc::ptr_eq(&inputs.shown, analysis) {
+            Some(report)
+        } else {
+            None
+        }
+    }
+
+    /// Adds the notes of the report to those of the dry run, once both are known.
+    pub fn join_report_notes(&mut self) {
+        let Some((job, _)) = &self.plan else {
+            return;
+        };
+        let Some(report) = self.report_of(&job.analysis).map(Arc::clone) else {
+            return;
+        };
+        if let Some((_, plan)) = &mut self.plan
+            && plan.report.is_some()
+        {
+            plan.add_report_notes(&report.notes);
+        }
     }
 
     /// Returns whether the report is among the files.

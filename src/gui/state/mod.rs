@@ -37,6 +37,7 @@ pub mod preferences;
 pub mod record_change;
 pub mod records;
 pub mod records_page;
+pub mod report_contents;
 pub mod requirements_display;
 pub mod selection;
 pub mod settings_changes;

@@ -1,10 +1,11 @@
-//! Messages to the engineer: toasts in the top bar, and bars that remain until closed.
+//! Messages to the engineer in the top bar: toasts about completed and failed actions, and bars,
+//! which remain until they are answered.
 
 use std::path::PathBuf;
 
 use gdcm_study::decisions::dataset_differences::Difference;
 
-/// Message about the program or its files, shown until it is closed.
+/// Message about the program or its files, shown in the top bar until it is answered.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MessageBar {
     /// A computation panicked.
@@ -123,14 +124,30 @@ pub struct Toast {
     pub remaining_s: Option<f64>,
 }
 
-/// All messages from the session, and those that the top bar shows.
+/// Message bar with its number among the notices of the session.
+#[derive(Clone, Debug, PartialEq)]
+struct NumberedBar {
+    number: u64,
+    bar: MessageBar,
+}
+
+/// Message that the top bar shows or lists.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TopMessage<'a> {
+    Toast(&'a Toast),
+    Bar(&'a MessageBar),
+}
+
+/// Messages of the session, and those of them that the top bar shows.
 #[derive(Debug, Default)]
 pub struct Notices {
     /// Oldest first.
     messages: Vec<Notice>,
     /// Oldest first.
     toasts: Vec<Toast>,
-    /// Whether the toast list is open below the newest toast.
+    /// Oldest first.
+    bars: Vec<NumberedBar>,
+    /// Whether the list of messages is open below the newest.
     pub is_list_open: bool,
     /// Whether the pointer is on a toast, which pauses the timers.
     pub is_held: bool,
@@ -186,12 +203,30 @@ impl Notices {
     /// Removes a notice from the top bar.
     pub fn dismiss(&mut self, number: u64) {
         self.toasts.retain(|toast| toast.notice.number != number);
-        if self.toasts.len() < 2 {
+        self.close_empty_list();
+    }
+
+    /// Shows a message bar.
+    pub fn add_bar(&mut self, bar: MessageBar) {
+        let number = self.next_number;
+        self.next_number += 1;
+        self.bars.push(NumberedBar { number, bar });
+    }
+
+    /// Removes the message bars for which `is_closed` is true.
+    pub fn close_bars(&mut self, is_closed: impl Fn(&MessageBar) -> bool) {
+        self.bars.retain(|shown| !is_closed(&shown.bar));
+        self.close_empty_list();
+    }
+
+    /// Closes the list when nothing is left that it would show.
+    fn close_empty_list(&mut self) {
+        if self.bars.is_empty() && self.toasts.len() < 2 {
             self.is_list_open = false;
         }
     }
 
-    /// Removes all notices from the top bar.
+    /// Removes all toasts from the top bar; message bars remain until they are answered.
     pub fn dismiss_all(&mut self) {
         self.toasts.clear();
         self.is_list_open = false;
@@ -215,15 +250,31 @@ impl Notices {
         }
         self.toasts
             .retain(|toast| toast.remaining_s.is_none_or(|left_s| left_s > 0.0));
-        if self.toasts.len() < 2 {
-            self.is_list_open = false;
-        }
+        self.close_empty_list();
         next_s
     }
 
     /// Returns the toasts, newest first.
     pub fn toasts(&self) -> impl Iterator<Item = &Toast> {
         self.toasts.iter().rev()
+    }
+
+    /// Returns the message bars, oldest first.
+    pub fn bars(&self) -> impl Iterator<Item = &MessageBar> {
+        self.bars.iter().map(|shown| &shown.bar)
+    }
+
+    /// Returns the toasts and the message bars, newest first.
+    pub fn shown(&self) -> Vec<TopMessage<'_>> {
+        let mut numbered = Vec::new();
+        for toast in &self.toasts {
+            numbered.push((toast.notice.number, TopMessage::Toast(toast)));
+        }
+        for shown in &self.bars {
+            numbered.push((shown.number, TopMessage::Bar(&shown.bar)));
+        }
+        numbered.sort_by_key(|(number, _)| std::cmp::Reverse(*number));
+        numbered.into_iter().map(|(_, message)| message).collect()
     }
 
     /// Returns the newest message, whether or not it is still shown.
@@ -301,6 +352,38 @@ mod tests {
         notices.follow_decision();
         assert_eq!(shown(&notices), [""; 0]);
         assert_eq!(notices.messages().len(), 2);
+    }
+
+    #[test]
+    fn a_bar_stays_until_it_is_answered_and_is_listed_in_order_with_the_toasts() {
+        let changed = MessageBar::Changed {
+            name: "data.json".to_owned(),
+        };
+        let mut notices = Notices::default();
+        notices.pass_time(0.0);
+        notices.add(notice(NoticeKind::Trouble, Activity::Saving, "not-saved"));
+        notices.add_bar(changed.clone());
+        notices.add(notice(NoticeKind::Done, Activity::Other, "done"));
+        let codes = |notices: &Notices| -> Vec<&'static str> {
+            let shown = notices.shown();
+            let mut codes = Vec::new();
+            for message in shown {
+                codes.push(match message {
+                    TopMessage::Toast(toast) => toast.notice.code,
+                    TopMessage::Bar(bar) => bar.code(),
+                });
+            }
+            codes
+        };
+        let all = ["done", "dataset-changed-on-disk", "not-saved"];
+        assert_eq!(codes(&notices), all);
+        notices.is_list_open = true;
+        notices.dismiss_all();
+        assert_eq!(codes(&notices), ["dataset-changed-on-disk"]);
+        notices.is_list_open = true;
+        notices.close_bars(|bar| *bar == changed);
+        assert_eq!(codes(&notices), [""; 0]);
+        assert!(!notices.is_list_open, "nothing is left to list");
     }
 
     #[test]

@@ -3,7 +3,9 @@
 use egui::Color32;
 
 use gdcm_plot::figure::Role;
+use gdcm_plot::figure::drawing::Dash;
 
+use crate::gui::plot::curve_style::CurveStyle;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
 
@@ -64,48 +66,75 @@ pub enum TimeRole {
     Identified,
     /// The corrected physics representative.
     Corrected,
-    /// The recorded samples.
+    /// The physics representative, corrected by the schedule.
+    Scheduled,
+    /// The samples of the record.
     Measured,
 }
 
 impl TimeRole {
     /// All roles, in display order.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Physics,
         Self::Identified,
         Self::Corrected,
+        Self::Scheduled,
         Self::Measured,
     ];
 
-    /// Models' roles; their responses to the recorded inputs are simulated.
-    pub const MODELS: [Self; 3] = [Self::Physics, Self::Identified, Self::Corrected];
+    /// Roles of the models, whose responses to the recorded inputs are simulated.
+    pub const MODELS: [Self; 4] = [
+        Self::Physics,
+        Self::Identified,
+        Self::Corrected,
+        Self::Scheduled,
+    ];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
             Self::Identified => "identified",
             Self::Corrected => "corrected",
+            Self::Scheduled => "scheduled",
             Self::Measured => "measured",
         }
     }
 
-    /// Returns the role's colour, which is the same as in the Bode view.
-    pub fn color(self, palette: &Palette) -> Color32 {
-        let role = match self {
-            Self::Physics => Role::Representative,
-            Self::Identified => Role::IdentifiedRepresentative,
-            Self::Corrected => Role::Corrected,
-            Self::Measured => return palette.text,
-        };
-        palette.role_style(role, false).color
+    /// Returns the role of the same model in the Bode view; `None` for the samples.
+    pub fn bode_role(self) -> Option<Role> {
+        match self {
+            Self::Physics => Some(Role::Representative),
+            Self::Identified => Some(Role::IdentifiedRepresentative),
+            Self::Corrected => Some(Role::Corrected),
+            Self::Scheduled => Some(Role::Scheduled),
+            Self::Measured => None,
+        }
     }
 
-    /// Returns the line width over time \[pt\].
-    pub fn width(self) -> f32 {
-        match self {
+    /// Returns the style of the role: colour and dashes as in the Bode view, with a line width for
+    /// plots over time.
+    pub fn style(self, palette: &Palette) -> CurveStyle {
+        let width = match self {
             Self::Identified => 2.0,
-            Self::Physics | Self::Corrected | Self::Measured => 1.3,
+            Self::Physics | Self::Corrected | Self::Scheduled | Self::Measured => 1.3,
+        };
+        match self.bode_role() {
+            Some(role) => CurveStyle {
+                width,
+                ..palette.role_style(role, false)
+            },
+            None => CurveStyle {
+                color: palette.text,
+                width,
+                dash: Dash::Solid,
+                length: 0.0,
+            },
         }
+    }
+
+    /// Returns the colour of the role, which is that of the same role in the Bode view.
+    pub fn color(self, palette: &Palette) -> Color32 {
+        self.style(palette).color
     }
 }
 
@@ -123,9 +152,20 @@ mod tests {
                     palette.perturbed,
                     palette.identified,
                     palette.corrected,
+                    palette.corrected,
                     palette.text
                 ]
             );
         }
+    }
+
+    #[test]
+    fn the_scheduled_model_is_drawn_and_named_as_in_the_bode_view() {
+        let palette = Palette::dark();
+        let style = TimeRole::Scheduled.style(&palette);
+        let bode = palette.role_style(Role::Scheduled, false);
+        assert_eq!((style.dash, style.length), (bode.dash, bode.length));
+        assert!(style.is_broken());
+        assert_eq!(TimeRole::Scheduled.name(), Role::Scheduled.name());
     }
 }

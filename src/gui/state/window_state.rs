@@ -16,7 +16,7 @@ use super::assembling::AssemblyState;
 use super::computed_results::Results;
 use super::display::Display;
 use super::forms::Forms;
-use super::notices::{MessageBar, Notices};
+use super::notices::Notices;
 use super::record_change::RecordChange;
 use super::records::{RecordsSnapshot, RecordsState};
 use super::settings_session::SettingsSession;
@@ -64,10 +64,8 @@ pub struct State {
     pub file_cautions: Vec<FileCaution>,
     /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
-    /// The session's messages, and toasts.
+    /// Messages of the session, and those in the top bar.
     pub notices: Notices,
-    /// Persistent messages, in bars below the menu.
-    pub message_bars: Vec<MessageBar>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<RecentFile>,
     /// Name of the file being read.
@@ -111,7 +109,6 @@ impl State {
             file_cautions,
             differences: Vec::new(),
             notices: Notices::default(),
-            message_bars: Vec::new(),
             recent: Vec::new(),
             opening: None,
             forms: Forms::default(),

@@ -16,6 +16,7 @@ use crate::gui::state::view_pages::{ComparePage, ViewPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::Toggle;
 use crate::gui::widgets::controls::named;
+use crate::gui::widgets::number_field::remember_field;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
@@ -55,17 +56,15 @@ pub fn compare_pages(state: &State) -> Vec<PageEntry> {
         .into()
 }
 
+/// Accessible name of the field for the name of a new variant.
+pub const VARIANT_NAME: &str = "Name of the variant";
+
 /// Draws the name field and the button that stores the current decisions under that name.
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = &mut state.display.judging.variant_name;
-        let field = text_field_ui(
-            ui,
-            "Name of the variant",
-            name,
-            "name of the variant",
-            200.0,
-        );
+        let field = text_field_ui(ui, VARIANT_NAME, name, "name of the variant", 200.0);
+        remember_field(ui, VARIANT_NAME, field.id);
         let entered = is_entered(ui, &field);
         let keep = ui.add_enabled(!name.trim().is_empty(), Button::new("Keep as variant"));
         if keep

@@ -21,7 +21,7 @@ use crate::gui::plot::{FigureEvent, FigureScene, FigureWords};
 use crate::gui::state::window_state::State;
 
 /// Minimum plot size \[pt\].
-pub const LEAST_PLOT: Vec2 = vec2(110.0, 84.0);
+pub const LEAST_PLOT: Vec2 = vec2(100.0, 84.0);
 
 /// Gain or delay plots, with their quantities.
 pub struct GainPlots<'a> {

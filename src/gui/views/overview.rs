@@ -5,11 +5,13 @@ use egui::Ui;
 use gdcm_model::dataset::Pair;
 
 use super::PageEntry;
+use super::axis_updates::axis_update;
 use super::frequency_curves::bode_curves;
 use super::frequency_plot::action_command;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::overview::overview_ui;
 use crate::gui::plot::overview_scene::{OverviewCell, OverviewEvent, OverviewScene};
 use crate::gui::plot::{BodeCurve, CurveId};
@@ -57,6 +59,9 @@ pub fn overview_view_ui(
         outputs: &outputs,
         cells: &cells,
         band: (band.min(), band.max()),
+        unit: state.display.curves.unit,
+        cursor: state.display.curves.cursor,
+        update: axis_update(ui, state),
         message: Some(state.results.absence()),
     };
     for event in overview_ui(ui, &scene, &mut state.display.frequency.overview, palette) {
@@ -68,6 +73,7 @@ pub fn overview_view_ui(
             OverviewEvent::Hovered(CurveId::Model(id)) => {
                 commands.push(SelectionCommand::Hover(id).into())
             }
+            OverviewEvent::PointedAt(omega) => commands.push(CurveCommand::PointAt(omega).into()),
             OverviewEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
             OverviewEvent::Isolated(CurveId::Model(id)) => {
                 commands.push(SelectionCommand::Isolate(id).into())

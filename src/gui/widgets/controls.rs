@@ -53,6 +53,26 @@ pub fn tooltip_left_of(response: &Response, subject: Rect, add: impl FnOnce(&mut
     tooltip.show(add);
 }
 
+/// Adds a tooltip at the right of `subject`, a row of a list or table, so that it covers no other
+/// row.
+pub fn hint_right_of(response: Response, subject: Rect, hint: &str) -> Response {
+    tooltip_right_of(&response, subject, |ui| {
+        ui.set_max_width(BESIDE_ROW);
+        ui.label(hint);
+    });
+    response
+}
+
+/// Width of a text beside a row \[pt\]: the panel at the right of a table has room for it.
+const BESIDE_ROW: f32 = 270.0;
+
+/// Like [`hint_right_of`], with content of its own.
+pub fn tooltip_right_of(response: &Response, subject: Rect, add: impl FnOnce(&mut Ui)) {
+    let mut tooltip = Tooltip::for_enabled(response);
+    tooltip.popup = tooltip.popup.anchor(subject).align(RectAlign::RIGHT_START);
+    tooltip.show(add);
+}
+
 /// Adds a tooltip above a control whose subject lies below it, such as a curve.
 pub fn hint_above(response: Response, hint: &str) -> Response {
     let mut tooltip = Tooltip::for_enabled(&response);

@@ -101,7 +101,7 @@ impl<'a> NumberField<'a> {
         let enabled = response.enabled();
         response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, enabled, self.name));
         self.note_escape(ui, &response);
-        ui.data_mut(|data| data.insert_temp(field_key(self.name), response.id));
+        remember_field(ui, self.name, response.id);
         let outcome = self.outcome(value, edited, unparsed.into_inner(), &response);
         hint_ui(response, self.hint);
         outcome
@@ -212,11 +212,19 @@ fn field_key(name: &str) -> Id {
     Id::unique(("field", name))
 }
 
-/// Focuses the field with this name if it is in the window.
-pub fn focus_field(ctx: &Context, name: &str) {
-    if let Some(id) = ctx.data(|data| data.get_temp::<Id>(field_key(name))) {
+/// Stores the id of the field with this name, so that a command can focus it.
+pub fn remember_field(ui: &Ui, name: &str, id: Id) {
+    ui.data_mut(|data| data.insert_temp(field_key(name), id));
+}
+
+/// Focuses the field with this name; returns whether it has been drawn before, so that its id is
+/// known.
+pub fn focus_field(ctx: &Context, name: &str) -> bool {
+    let known = ctx.data(|data| data.get_temp::<Id>(field_key(name)));
+    if let Some(id) = known {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
+    known.is_some()
 }
 
 /// Parses a finite number with or without its unit, which the field shows and which is therefore

@@ -108,13 +108,15 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     let mut window = window_with(example(), trap.warm_setup());
     wait_for_idle(&mut window);
     let before = state(&window).results.received;
+    let places = fixed_places(&window);
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the fault is told", |window| {
         bar_codes(window).contains(&"fault")
     });
-    let Some(MessageBar::Fault(report)) = state(&window).message_bars.first() else {
-        panic!("{:?}", state(&window).message_bars)
+    assert_eq!(fixed_places(&window), places, "the fault moves nothing");
+    let Some(MessageBar::Fault(report)) = state(&window).notices.bars().next() else {
+        panic!("{:?}", bar_codes(&window))
     };
     assert!(
         report.fault.contains("tests/suite/window/computing.rs:"),

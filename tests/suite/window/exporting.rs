@@ -6,6 +6,7 @@ use std::path::Path;
 use gdcm::gui::state::notices::NoticeAction;
 use gdcm_method::schedule::DelayScheduling;
 use gdcm_study::Edit;
+use gdcm_study::results::export_note::FileSummary;
 
 use super::*;
 use crate::commands::Desk;
@@ -221,12 +222,42 @@ fn the_report_of_an_export_is_written_last() {
     open_export(&mut window, folder.path(), "", &["csv"]);
     click(&mut window, "Export Report .html");
     wait_for_export_plan(&mut window);
+    wait_until(&mut window, "the report in the dry run", |window| {
+        state(window).forms.export.report.is_some()
+    });
+    let (_, report) = state(&window).forms.export.report.clone().unwrap();
+    let FileSummary::Report {
+        conditions,
+        figures,
+        tables,
+    } = report.summary
+    else {
+        panic!("{:?}", report.summary)
+    };
+    let drawn = report.html.matches("<figure>").count();
+    let expected = state(&window).dataset().conditions().len();
+    assert_eq!([conditions, figures], [expected, drawn]);
+    assert!(tables > 5 && !report.headings.is_empty());
+    let plan = state(&window).current_export_plan().unwrap();
+    let of_report: Vec<&str> = plan
+        .notes
+        .iter()
+        .filter(|planned| planned.files.contains(&plan.files.len()))
+        .map(|planned| planned.note.code())
+        .collect();
+    assert!(of_report.contains(&"no-flight-records"), "{of_report:?}");
+    window.run_steps(2);
+    click(&mut window, "File report.html");
+    assert_eq!(state(&window).forms.export.selected, 1);
+    assert!(names(folder.path()).is_empty(), "nothing is written yet");
     press_export(&mut window);
     wait_until(&mut window, "the report", |window| {
         let newest = state(window).notices.newest();
         newest.is_some_and(|notice| notice.code == "report-written")
     });
     assert_eq!(names(folder.path()), ["corrections.csv", "report.html"]);
+    let written = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert_eq!(written, report.html, "what the dialog described is written");
     assert_eq!(state(&window).results.background.report, None);
 }
 

@@ -2,6 +2,7 @@
 
 use egui::{Color32, Shape};
 
+use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::widgets::palette::Palette;
@@ -396,4 +397,55 @@ fn going_through_every_field_with_tab_decides_nothing() {
     settle(&mut window);
     assert_eq!(state(&window).study, before);
     assert!(!state(&window).unsaved);
+}
+
+#[test]
+fn the_keys_of_the_palette_begin_a_new_search_and_find_what_the_verdict_offers() {
+    use gdcm::gui::commands::command_table::every_command;
+    use gdcm_study::PhaseCorrection;
+
+    let mut window = window();
+    let commands = every_command(state(&window));
+    let enabled = |name: &str| {
+        let mut found = commands.iter().filter(|entry| entry.name == name);
+        found.next().map(|entry| entry.enabled)
+    };
+    assert_eq!(enabled("Use leads"), Some(true));
+    assert_eq!(
+        enabled("Copy values of Leads"),
+        Some(false),
+        "there are none"
+    );
+    window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.run_steps(3);
+    window.event(Event::Text("undo".to_owned()));
+    window.run_steps(2);
+    assert_eq!(state(&window).forms.palette.query, "undo");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.run_steps(3);
+    assert_eq!(state(&window).forms.palette.query, "");
+    window.event(Event::Text("use leads".to_owned()));
+    window.run_steps(2);
+    window.key_press(Key::Enter);
+    settle(&mut window);
+    let settings = &state(&window).study.settings;
+    assert_eq!(settings.phase, PhaseCorrection::Lead);
+}
+
+#[test]
+fn a_variant_is_kept_with_the_keyboard_alone() {
+    let mut window = window();
+    give(&mut window, LayoutCommand::NameVariant);
+    window.run_steps(4);
+    window.event(Event::Text("first try".to_owned()));
+    window.run_steps(2);
+    window.key_press(Key::Enter);
+    settle(&mut window);
+    let names: Vec<&str> = state(&window)
+        .study
+        .variants
+        .iter()
+        .map(|variant| variant.name.as_str())
+        .collect();
+    assert_eq!(names, ["first try"]);
 }

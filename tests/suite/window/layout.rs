@@ -271,3 +271,47 @@ fn the_poles_have_a_legend_above_their_plots() {
         assert!(place.is_some(), "{name} over the plots");
     }
 }
+
+#[test]
+fn the_net_gains_are_not_cut_beside_the_settings_on_a_small_screen() {
+    let mut window = window_of(SMALL, 1.0);
+    give(&mut window, LayoutCommand::ShowSettings(true));
+    window.run_steps(3);
+    let edge = 1280.0 - 320.0;
+    let figure = &state(&window).display.figures[&View::NetGain];
+    for place in 0..5 {
+        let frame = *figure.transform(place).expect("the plot is drawn").frame();
+        assert!(frame.right() <= edge, "plot {place} at {frame}");
+    }
+}
+
+#[test]
+fn a_wide_error_bar_does_not_touch_the_delay_beside_it() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json");
+    let opened = load_any(&path, &Default::default()).unwrap();
+    let mut window = window_with(opened, Setup::default());
+    wait_for_bars(&mut window);
+    window.run_steps(2);
+    let mut widest = 0;
+    for channel in ["LON", "LAT", "P", "Q"] {
+        let name = format!("Gain of {channel}: ");
+        let gain = window.get_by_label_contains(&name);
+        let label = gain.accesskit_node().label().unwrap_or_default();
+        let Some((_, half)) = label.split_once(" ±") else {
+            continue;
+        };
+        widest = widest.max(half.len());
+        let name = format!("Delay of {channel}: ");
+        let delay = window.get_by_label_contains(&name);
+        let font = gdcm::gui::widgets::palette::small();
+        let width = window.ctx.fonts_mut(|fonts| {
+            let text = format!("±{half}");
+            let color = egui::Color32::PLACEHOLDER;
+            fonts.layout_no_wrap(text, font, color).size().x
+        });
+        // The areas of the buttons exceed their texts by 3 and 4 points.
+        let end = gain.rect().right() + width;
+        assert!(end <= delay.rect().left() + 4.0, "{label} ends at {end}");
+    }
+    assert!(widest > 2, "the dataset has an error bar above 100 %");
+}

@@ -190,10 +190,22 @@ pub(crate) fn assert_notice(window: &Window, kind: NoticeKind, code: &str, names
     }
 }
 
-/// Returns the codes of the bars below the menu.
+/// Returns the codes of the message bars, oldest first.
 pub(crate) fn bar_codes(window: &Window) -> Vec<&'static str> {
-    let bars = state(window).message_bars.iter();
+    let bars = state(window).notices.bars();
     bars.map(MessageBar::code).collect()
+}
+
+/// Returns the places of the main plot, of a cell of the matrix, of the verdict and of a button,
+/// which no message may move.
+pub(crate) fn fixed_places(window: &Window) -> [egui::Rect; 4] {
+    let bode = &state(window).display.frequency.bode;
+    let plot = bode.transform(Pane::Magnitude).expect("the plot is drawn");
+    let matrix = window.get_by_label("Response LON → Q").rect();
+    let verdict = window.query_all_by_label_contains("Gain: ").next();
+    let verdict = verdict.expect("there is a verdict").rect();
+    let button = window.get_by_role_and_label(Role::Button, "Export corrections…");
+    [*plot.frame(), matrix, verdict, button.rect()]
 }
 
 /// Returns the codes of the remarks about the displayed condition.
@@ -315,7 +327,7 @@ pub(crate) fn wait_for_export_plan(window: &mut Window) {
 /// closed or shows an error.
 pub(crate) fn press_export(window: &mut Window) {
     let plan = state(window).current_export_plan().expect("a dry run");
-    let count = plan.files.len() + usize::from(plan.report.is_some());
+    let count = plan.file_count();
     click(window, &format!("Export {}", counted(count, "file")));
     // If the results have changed since, the dry run is repeated before the files are written.
     wait_until(window, "the end of the export", |window| {

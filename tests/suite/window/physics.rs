@@ -8,6 +8,7 @@ use gdcm_io::load_dataset;
 use gdcm_study::PhysicsCorrection;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 
+use super::pointing::assert_beside_rows;
 use super::views::give;
 use super::*;
 
@@ -139,4 +140,18 @@ fn responses_before_and_after_are_those_of_the_condition_in_front() {
         let panels = window.get_all_by_label_contains(&title).count();
         assert!(panels > 0, "no plot {title} in condition {id}");
     }
+}
+
+#[test]
+fn the_description_of_a_parameter_covers_no_row_of_the_ranking() {
+    let mut window = physics_window();
+    let found = assessment(&mut window);
+    let findings = found.applied.findings.as_ref().unwrap();
+    let ranked = findings.ranked();
+    let mut rows = Vec::new();
+    for index in ranked {
+        rows.push(format!("Parameter {}", findings.parameters[index].name));
+    }
+    assert!(rows.len() > 2, "{rows:?}");
+    assert_beside_rows(&mut window, &rows[0].clone(), &rows);
 }

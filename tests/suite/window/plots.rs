@@ -574,3 +574,46 @@ fn the_error_of_the_schedule_lies_beside_the_responses_and_is_fitted() {
     assert!(shown.min <= values.min && shown.max >= values.max);
     assert!(shown.width() <= 1.2 * values.width().max(1.0));
 }
+
+#[test]
+fn the_small_plots_of_an_output_share_their_magnitudes_and_all_share_their_frequencies() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    show(&mut window, View::Overview);
+    window.run_steps(2);
+    let view = &state(&window).display.frequency.overview;
+    let [frequencies, _] = view
+        .ranges_in(pair(&window, "P", "LAT"), Pane::Magnitude)
+        .expect("the cell is drawn");
+    let mut rows = Vec::new();
+    for output in ["P", "Q", "R"] {
+        let mut row: Option<Range> = None;
+        for input in ["LAT", "LON", "PED", "COL"] {
+            let at = pair(&window, output, input);
+            let [across, values] = view.ranges_in(at, Pane::Magnitude).unwrap();
+            assert_eq!(across, frequencies, "{input} → {output}");
+            assert_eq!(*row.get_or_insert(values), values, "{input} → {output}");
+        }
+        rows.extend(row);
+    }
+    assert!(
+        rows[0] != rows[1] || rows[1] != rows[2],
+        "other outputs have ranges of their own"
+    );
+}
+
+#[test]
+fn the_pointer_in_a_small_plot_marks_its_frequency_in_every_plot() {
+    let mut window = window();
+    show(&mut window, View::Overview);
+    window.run_steps(2);
+    let at = pair(&window, "Q", "LON");
+    let view = &state(&window).display.frequency.overview;
+    let place = view.position_in(at, 0.5, 0.0).expect("the cell is drawn");
+    let middle = view.screen_position(at).unwrap();
+    window.hover_at(pos2(place.x, middle.y));
+    window.run_steps(2);
+    let omega = state(&window).display.curves.cursor.expect("a frequency");
+    // Tolerance: a hundredth of a point on the screen.
+    assert!((omega.log10() - 0.5).abs() < 1e-3, "{omega}");
+}

@@ -11,7 +11,7 @@ use super::views::{give, show};
 use super::*;
 
 /// Rests the pointer at a position for longer than any tooltip delay.
-fn rest_at(window: &mut Window, at: Pos2) {
+pub(super) fn rest_at(window: &mut Window, at: Pos2) {
     // The pointer starts elsewhere, so that no earlier tooltip is open.
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
@@ -20,7 +20,7 @@ fn rest_at(window: &mut Window, at: Pos2) {
 }
 
 /// Returns the rectangles of the open tooltips.
-fn tooltips(window: &Window) -> Vec<egui::Rect> {
+pub(super) fn tooltips(window: &Window) -> Vec<egui::Rect> {
     let layers = window
         .ctx
         .memory(|memory| memory.areas().visible_layer_ids());
@@ -243,4 +243,32 @@ fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
     window.hover_at(cell.left_bottom() + vec2(8.0, -6.0));
     window.run_steps(2);
     assert_eq!(bars(&window), before);
+}
+
+/// Asserts that the tooltip of a row covers none of the rows.
+pub(super) fn assert_beside_rows(window: &mut Window, pointed: &str, rows: &[String]) {
+    let place = window.get_by_label(pointed).rect();
+    rest_at(window, place.center());
+    let open = tooltips(window);
+    assert_eq!(open.len(), 1, "tooltip of {pointed}");
+    for row in rows {
+        let place = window.get_by_label(row).rect();
+        assert!(
+            !open[0].intersects(place.shrink(1.0)),
+            "{row}: {open:?} {place}"
+        );
+    }
+}
+
+#[test]
+fn the_tooltip_of_a_condition_or_a_model_covers_no_other_row() {
+    let mut window = window();
+    let mut conditions = Vec::new();
+    for condition in state(&window).dataset().conditions() {
+        let name = &condition.flight_state().name;
+        conditions.push(format!("Condition {}: {name}", condition.id()));
+    }
+    assert_beside_rows(&mut window, &conditions[2].clone(), &conditions);
+    let models = ["nominal", "V+5kt", "V+10kt"].map(|name| format!("physics model {name}"));
+    assert_beside_rows(&mut window, &models[0].clone(), &models);
 }

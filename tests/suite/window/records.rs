@@ -418,6 +418,36 @@ fn a_condition_without_records_says_so_in_place_of_the_charts() {
 }
 
 #[test]
+fn the_scheduled_model_has_a_chip_and_a_value_at_the_cursor() {
+    let mut window = records_window();
+    wait_until(&mut window, "the simulations", |window| {
+        state(window).results.simulations.len() == 3
+    });
+    window.run_steps(2);
+    let readout = window.query_all_by_label_contains("Q at the cursor").next();
+    let label = readout.expect("a read-out").accesskit_node().label();
+    let label = label.unwrap_or_default();
+    let (_, scheduled) = label.split_once("scheduled ").expect("a value");
+    assert!(
+        scheduled.starts_with(|first: char| first.is_ascii_digit() || first == '\u{2212}'),
+        "{label}"
+    );
+    let chips = ["identified", "corrected", "scheduled", "measured"];
+    let places = chips.map(|name| {
+        let label = format!("Show {name} over time");
+        window.get_by_label(&label).rect()
+    });
+    assert!(
+        places
+            .windows(2)
+            .all(|pair| pair[0].right() <= pair[1].left())
+    );
+    click(&mut window, "Show scheduled over time");
+    let hidden = &state(&window).records.hidden_roles;
+    assert!(hidden.contains(&TimeRole::Scheduled), "{hidden:?}");
+}
+
+#[test]
 fn chips_hide_curves_and_further_outputs_are_chosen() {
     let mut window = records_window();
     click(&mut window, "Show measured over time");
@@ -1335,9 +1365,10 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
 #[test]
 fn a_simulation_is_computed_beside_the_window() {
     let mut window = records_window();
-    // Nothing is identified, so only the physics model and its correction are compared.
+    // Nothing is identified, so only the physics model is compared, and corrected by the condition's
+    // own correction and by the schedule.
     wait_until(&mut window, "the simulations", |window| {
-        state(window).results.simulations.len() == 2
+        state(window).results.simulations.len() == 3
     });
     let (job, outcome) = &state(&window).results.simulations[0];
     let validation = outcome.as_ref().unwrap();
@@ -1354,7 +1385,7 @@ fn a_simulation_is_computed_beside_the_window() {
     click(&mut window, "Show physics over time");
     assert_eq!(
         state(&window).results.simulations.len(),
-        2,
+        3,
         "a chip hides the curve, and the range of the axis stays"
     );
     show(&mut window, View::Bode);

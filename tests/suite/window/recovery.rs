@@ -56,8 +56,8 @@ fn next_window(directory: &Path) -> Window {
 
 /// Returns the first offer to restore decisions.
 fn offer(window: &Window) -> RecoveryOffer {
-    let Some(MessageBar::Recovery(offer)) = state(window).message_bars.first() else {
-        panic!("{:?}", state(window).message_bars)
+    let Some(MessageBar::Recovery(offer)) = state(window).notices.bars().next() else {
+        panic!("{:?}", bar_codes(window))
     };
     offer.clone()
 }

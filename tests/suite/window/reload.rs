@@ -163,13 +163,14 @@ fn what_is_different_after_a_reload_is_listed() {
     copy.change("\"V+5kt\"", "\"V+6kt\"");
     wait_until(&mut window, "the change is told", is_told);
     click(&mut window, "Reload");
-    let Some(MessageBar::Differences { name, differences }) = state(&window).message_bars.first()
+    let Some(MessageBar::Differences { name, differences }) = state(&window).notices.bars().next()
     else {
-        panic!("{:?}", state(&window).message_bars)
+        panic!("{:?}", bar_codes(&window))
     };
     assert_eq!(name, "my-dataset.json");
     let codes: Vec<&str> = differences.iter().map(Difference::code).collect();
     assert_eq!(codes, ["model-removed", "model-added", "edit-refused"]);
+    click(&mut window, "Details of the message");
     assert!(
         window.query_all_by_label_contains("V+5kt").count() >= 1,
         "the model that is gone is named"
@@ -181,4 +182,48 @@ fn what_is_different_after_a_reload_is_listed() {
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
     window.get_by_label("Keep physics model V+5kt");
+}
+
+#[test]
+fn a_message_bar_moves_neither_plots_nor_buttons_and_lies_in_the_top_bar() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    let before = fixed_places(&window);
+    copy.change("\"V+5kt\"", "\"V+6kt\"");
+    wait_until(&mut window, "the change is told", is_told);
+    assert_eq!(fixed_places(&window), before, "the file has changed");
+    let reload = window.get_by_label("Reload").rect();
+    assert!(reload.bottom() <= 36.0, "{reload}");
+    let entries = gdcm::gui::commands::command_table::every_command(state(&window));
+    assert!(
+        entries
+            .iter()
+            .any(|entry| entry.name == "Reload my-dataset.json"),
+        "the palette has the answers too"
+    );
+    click(&mut window, "Reload");
+    assert_eq!(bar_codes(&window), ["dataset-reloaded"]);
+    assert_eq!(fixed_places(&window), before, "differences are counted");
+    click(&mut window, "Details of the message");
+    assert_eq!(fixed_places(&window), before, "differences are listed");
+    click(&mut window, "Close list");
+    assert_eq!(fixed_places(&window), before);
+}
+
+#[test]
+fn a_message_bar_below_a_newer_toast_is_listed_with_its_buttons() {
+    let copy = Copy::new();
+    let mut window = copy.window();
+    copy.rename("renewed");
+    wait_until(&mut window, "the change is told", is_told);
+    let refusal = gdcm::message::Message::new("refused", "refused");
+    window
+        .state_mut()
+        .dispatch(gdcm::gui::commands::form::FormCommand::Refuse(refusal));
+    window.run_steps(2);
+    assert!(window.query_by_label("Reload").is_none());
+    click(&mut window, "1 message more");
+    click(&mut window, "Keep the open dataset");
+    assert!(bar_codes(&window).is_empty());
+    window.get_by_label("Dismiss");
 }

@@ -211,9 +211,10 @@ impl ExportSet {
         {
             plan.add_checksums(name);
         }
-        // Notes that the user can act on come first.
-        plan.notes
-            .sort_by_key(|planned| planned.note.remedy().is_none());
+        if self.has_report && self.request.conditions.is_some() {
+            plan.add_note(ExportNote::ReportOfAllConditions);
+        }
+        plan.sort_notes();
         Ok(plan)
     }
 
@@ -273,7 +274,7 @@ fn computed(export: &Export<'_>) -> Result<(PlannedContents, Vec<ExportNote>), E
 }
 
 impl ExportPlan {
-    /// Adds a note on the file that is added next; a note on the same subject is extended.
+    /// Adds a note on the file that is added next, or on the report after all files; a note on the same subject is extended.
     fn add_note(&mut self, note: ExportNote) {
         let file = self.files.len();
         for known in &mut self.notes {
@@ -290,7 +291,35 @@ impl ExportPlan {
         });
     }
 
-    /// Adds the checksum file, in `sha256sum` format.
+    /// Puts what can be changed first.
+    fn sort_notes(&mut self) {
+        self.notes
+            .sort_by_key(|planned| planned.note.remedy().is_none());
+    }
+
+    /// Returns the number of files, including the report.
+    pub fn file_count(&self) -> usize {
+        self.files.len() + usize::from(self.report.is_some())
+    }
+
+    /// Returns the name of a file; the report follows the others.
+    pub fn file_name(&self, index: usize) -> Option<&str> {
+        match self.files.get(index) {
+            Some(file) => Some(&file.name),
+            None if index == self.files.len() => self.report.as_deref(),
+            None => None,
+        }
+    }
+
+    /// Adds the notes on the report, once it is composed.
+    pub fn add_report_notes(&mut self, notes: &[ExportNote]) {
+        for note in notes {
+            self.add_note(note.clone());
+        }
+        self.sort_notes();
+    }
+
+    /// Adds the file with the SHA-256 of the others, in the format of `sha256sum`.
     fn add_checksums(&mut self, name: String) {
         let mut text = String::new();
         let mut files = 0;

@@ -16,6 +16,7 @@ mod noted_table;
 mod page;
 mod physics;
 mod provenance;
+mod report_notes;
 mod requirements;
 mod schedule;
 mod settings;
@@ -27,6 +28,7 @@ use std::path::Path;
 
 use gdcm_model::message_text::sanitized;
 use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::results::export_note::{ExportNote, FileSummary};
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Analysis, Engine};
@@ -80,9 +82,18 @@ pub struct ReportSubject<'a> {
     pub known: &'a KnownPoles,
 }
 
-/// Returns the report on an analysis as HTML. Error bars and the assessments of couplings and
-/// physics parameters are computed first if the analysis lacks them, because several sections show
-/// them; `engine` also computes the responses that are plotted. Each condition is a progress step.
+/// A report with facts about it, which the export dialog shows before the file is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    pub html: String,
+    /// Headings of the sections and appendices.
+    pub headings: Vec<String>,
+    pub summary: FileSummary,
+    /// What the report omits.
+    pub notes: Vec<ExportNote>,
+}
+
+/// Returns the report on an analysis as HTML; see [`compose_report`].
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -92,6 +103,21 @@ pub fn report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
+    Ok(compose_report(subject, source, engine, progress)?.html)
+}
+
+/// Returns the report on an analysis. Error bars and the assessments of couplings and
+/// physics parameters are computed first if the analysis lacks them, because several sections show them; `engine` also
+/// computes the responses that are plotted. Each condition is a progress step.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` requests it.
+pub fn compose_report(
+    subject: ReportSubject<'_>,
+    source: &ReportSource,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<Report, Cancelled> {
     let with_bars = uncertainty::with_bars(subject.analysis, engine, progress)?;
     let with_couplings = couplings::with_couplings(with_bars, engine, progress)?;
     let analysis = &physics::with_physics(with_couplings, engine, progress)?;
@@ -130,7 +156,16 @@ pub fn report(
         None => String::new(),
     };
     let origin = format!("{study}Dataset {}. Made by {}.", source.dataset, software());
-    Ok(page.finish(&title, &[origin]))
+    Ok(Report {
+        headings: page.section_headings(),
+        summary: FileSummary::Report {
+            conditions: analysis.study.dataset.conditions().len(),
+            figures: page.figure_count(),
+            tables: page.table_count(),
+        },
+        notes: report_notes::report_notes(subject),
+        html: page.finish(&title, &[origin]),
+    })
 }
 
 /// Progress for computations within a report step: forwards cancellation, and does not show their

@@ -271,6 +271,27 @@ impl Page {
         )
     }
 
+    /// Returns the headings of the sections and appendices, with their numbers or letters.
+    pub(super) fn section_headings(&self) -> Vec<String> {
+        let mut headings = Vec::new();
+        for Heading { number, title } in &self.headings {
+            if !number.contains('.') {
+                headings.push(format!("{number}  {title}"));
+            }
+        }
+        headings
+    }
+
+    /// Returns the number of tables.
+    pub(super) fn table_count(&self) -> usize {
+        self.tables
+    }
+
+    /// Returns the number of figures.
+    pub(super) fn figure_count(&self) -> usize {
+        self.figures
+    }
+
     /// Returns the table of contents.
     fn contents(&self) -> String {
         let mut entries = String::new();

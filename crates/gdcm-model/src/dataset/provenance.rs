@@ -45,4 +45,34 @@ impl Provenance {
         }
         parts.join(", ")
     }
+
+    /// Returns the provenance with its preposition: "from models/roll+5.mat, variable sys", "from the
+    /// records sweep_1".
+    pub fn origin_words(&self) -> String {
+        let words = self.words();
+        if self.file.is_none() && words.starts_with("from ") {
+            words
+        } else {
+            format!("from {words}")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_origin_has_one_preposition() {
+        let file = Provenance {
+            file: Some("roll.mat".to_owned()),
+            ..Provenance::default()
+        };
+        assert_eq!(file.origin_words(), "from roll.mat");
+        let records = Provenance {
+            records: vec!["sweep_1".to_owned()],
+            ..Provenance::default()
+        };
+        assert_eq!(records.origin_words(), "from the records sweep_1");
+    }
 }

@@ -187,7 +187,7 @@ impl<'a> ConditionSource<'a> {
         }
         let model = &self.curves.condition.bundle(id.bundle)[index];
         if let Some(source) = &model.source {
-            parts.push(format!("from {}", source.words()));
+            parts.push(source.origin_words());
         }
         parts.join(" · ")
     }

@@ -26,6 +26,12 @@ pub enum FileSummary {
     Models { models: usize, added_states: usize },
     /// SHA-256 of the other files.
     Checksums { files: usize },
+    /// The report, ready to print.
+    Report {
+        conditions: usize,
+        figures: usize,
+        tables: usize,
+    },
 }
 
 /// A channel's signed delay in a condition, far from its mean in the others.
@@ -99,6 +105,12 @@ pub enum ExportNote {
     NoErrorBars,
     /// The study applies no physics parameters, so that their table is empty.
     NoPhysicsParameters,
+    /// No flight records are open, so that the report compares no time histories.
+    NoFlightRecords,
+    /// Conditions without figures in the report, which would be too long to print.
+    ConditionsNotDrawn { conditions: Vec<ConditionId> },
+    /// The report is about all conditions, although some are left out of the export.
+    ReportOfAllConditions,
 }
 
 /// A change to the study or the export that removes or reduces what a note states.
@@ -136,6 +148,9 @@ impl ExportNote {
             Self::NoSchedule { .. } => "no-schedule",
             Self::NoErrorBars => "no-error-bars",
             Self::NoPhysicsParameters => "no-physics-parameters",
+            Self::NoFlightRecords => "no-flight-records",
+            Self::ConditionsNotDrawn { .. } => "conditions-not-drawn",
+            Self::ReportOfAllConditions => "report-of-all-conditions",
         }
     }
 

@@ -53,7 +53,7 @@ fn model_words(model: &Model) -> Vec<String> {
         words.push(matrices.timing().words());
     }
     if let Some(source) = &model.source {
-        words.push(format!("from {}", source.words()));
+        words.push(source.origin_words());
     }
     words
 }

@@ -4,6 +4,7 @@
 use egui::{Button, Frame, Label, RichText, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, vec2};
 
 use gdcm_io::export::export_set::{ExportPlan, PlannedFile, PlannedNote};
+use gdcm_io::report::Report;
 use gdcm_model::number_format::counted;
 use gdcm_words::export::{
     export_note_detail, export_note_title, export_remedy_text, file_summary_text,
@@ -29,10 +30,7 @@ pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let plan = state.forms.export.plan.as_ref().map(|(_, plan)| plan);
     let is_current = state.current_export_plan().is_some();
     let summary = match plan {
-        Some(plan) if is_current => {
-            let count = plan.files.len() + usize::from(plan.report.is_some());
-            format!("{}, {}", counted(count, "file"), size_words(plan.size()))
-        }
+        Some(plan) if is_current => total_words(state, plan),
         _ => waiting_words(state),
     };
     heading_ui(ui, "Files to write", &summary, palette);
@@ -41,9 +39,10 @@ pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
         return;
     };
     let mut selected = state.forms.export.selected;
-    if selected >= plan.files.len() {
+    if selected >= plan.file_count() {
         selected = 0;
     }
+    let entries = entries(state, plan);
     // While a new dry run is computed, the older one stays, dimmed.
     ui.scope(|ui| {
         if !is_current {
@@ -54,21 +53,107 @@ pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
             .max_height(FILES)
             .show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
-                for (index, file) in plan.files.iter().enumerate() {
-                    if file_ui(ui, file, index == selected, palette) {
+                for (index, entry) in entries.iter().enumerate() {
+                    if entry_ui(ui, entry, index == selected, palette) {
                         selected = index;
                     }
                 }
-                if let Some(name) = &plan.report {
-                    report_ui(ui, name, palette);
-                }
             });
         ui.add_space(6.0);
-        if let Some(file) = plan.files.get(selected) {
-            head_ui(ui, file, palette);
+        if let Some(entry) = entries.get(selected) {
+            head_ui(ui, entry, palette);
         }
     });
     state.forms.export.selected = selected;
+}
+
+/// Row of the list of files.
+struct Entry<'a> {
+    name: &'a str,
+    /// What the file contains, or why it cannot be written.
+    words: String,
+    /// Size, as far as it is known.
+    size: String,
+    /// First lines of the file, or the headings of the report.
+    head: &'a [String],
+    is_fault: bool,
+}
+
+impl<'a> Entry<'a> {
+    fn of_file(file: &'a PlannedFile) -> Self {
+        match &file.contents {
+            Ok(contents) => Self {
+                name: &file.name,
+                words: file_summary_text(&contents.summary),
+                size: size_words(contents.bytes.len()),
+                head: &contents.head,
+                is_fault: false,
+            },
+            Err(fault) => Self {
+                name: &file.name,
+                words: fault.to_string(),
+                size: String::new(),
+                head: &[],
+                is_fault: true,
+            },
+        }
+    }
+
+    /// Describes the report, once it is composed.
+    fn of_report(name: &'a str, report: Option<&'a Report>, state: &State) -> Self {
+        let progress = state.results.background.report_contents;
+        let (words, size, head) = match (report, progress) {
+            (Some(report), _) => (
+                file_summary_text(&report.summary),
+                size_words(report.html.len()),
+                report.headings.as_slice(),
+            ),
+            (None, Some(steps)) => {
+                let words = format!("computing, {} % …", steps.percent());
+                (words, String::new(), [].as_slice())
+            }
+            (None, None) => {
+                let words = "computed when it is written";
+                (words.to_owned(), String::new(), [].as_slice())
+            }
+        };
+        Self {
+            name,
+            words,
+            size,
+            head,
+            is_fault: false,
+        }
+    }
+}
+
+/// Returns the rows of the files, the report last.
+fn entries<'a>(state: &'a State, plan: &'a ExportPlan) -> Vec<Entry<'a>> {
+    let mut entries: Vec<Entry<'_>> = plan.files.iter().map(Entry::of_file).collect();
+    if let Some(name) = &plan.report {
+        entries.push(Entry::of_report(name, composed_report(state), state));
+    }
+    entries
+}
+
+/// Returns the report on the displayed analysis, once it is composed.
+fn composed_report(state: &State) -> Option<&Report> {
+    let analysis = state.results.analysis.as_ref()?;
+    let report = state.forms.export.report_of(analysis)?;
+    Some(report)
+}
+
+/// Returns "4 files, 863 kB"; the size of a report that is still being composed is unknown.
+fn total_words(state: &State, plan: &ExportPlan) -> String {
+    let count = counted(plan.file_count(), "file");
+    match (&plan.report, composed_report(state)) {
+        (None, _) => format!("{count}, {}", size_words(plan.size())),
+        (Some(_), Some(report)) => {
+            format!("{count}, {}", size_words(plan.size() + report.html.len()))
+        }
+        (Some(_), None) if plan.files.is_empty() => count,
+        (Some(_), None) => format!("{count}, {} and the report", size_words(plan.size())),
+    }
 }
 
 /// Explains why there is no current dry run.
@@ -91,8 +176,8 @@ fn heading_ui(ui: &mut Ui, text: &str, remark: &str, palette: &Palette) {
     painted_text(ui, line, AT_RIGHT_END, &remark, body(), palette.dim_text);
 }
 
-/// Draws a file's row; returns whether it was clicked.
-fn file_ui(ui: &mut Ui, file: &PlannedFile, is_selected: bool, palette: &Palette) -> bool {
+/// Draws the row of a file; returns whether it was clicked.
+fn entry_ui(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, palette: &Palette) -> bool {
     let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let fill = if is_selected {
         palette.selected
@@ -103,41 +188,35 @@ fn file_ui(ui: &mut Ui, file: &PlannedFile, is_selected: bool, palette: &Palette
     };
     ui.painter().rect_filled(row, 4.0, fill);
     let inner = row.shrink2(vec2(8.0, 0.0));
-    let (words, size, color) = match &file.contents {
-        Ok(contents) => {
-            let words = file_summary_text(&contents.summary);
-            (words, size_words(contents.bytes.len()), palette.dim_text)
-        }
-        Err(fault) => (fault.to_string(), String::new(), palette.warning),
+    let color = if entry.is_fault {
+        palette.warning
+    } else {
+        palette.dim_text
     };
-    let name = painted_text(ui, inner, 0.0, &file.name, body(), palette.text);
-    let room = inner.right() - name.right() - 20.0 - text_width(ui, &size, body());
-    let shown = end_elided(ui, &words, room, BODY_SIZE);
+    let name = painted_text(ui, inner, 0.0, entry.name, body(), palette.text);
+    let room = inner.right() - name.right() - 20.0 - text_width(ui, &entry.size, body());
+    let shown = end_elided(ui, &entry.words, room, BODY_SIZE);
     let rest = inner.with_min_x(name.right() + 10.0);
     painted_text(ui, rest, 0.0, &shown, body(), color);
-    painted_text(ui, inner, AT_RIGHT_END, &size, body(), palette.dim_text);
-    let label = format!("File {}", file.name);
+    painted_text(
+        ui,
+        inner,
+        AT_RIGHT_END,
+        &entry.size,
+        body(),
+        palette.dim_text,
+    );
+    let label = format!("File {}", entry.name);
     let response = named_switch(response, Role::Button, is_selected, label);
     let is_clicked = response.clicked();
-    if shown != words {
-        response.on_hover_text(words);
+    if shown != entry.words {
+        response.on_hover_text(&entry.words);
     }
     is_clicked
 }
 
-/// Draws the report's row; the report is written after the other files.
-fn report_ui(ui: &mut Ui, name: &str, palette: &Palette) {
-    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
-    let inner = row.shrink2(vec2(8.0, 0.0));
-    let shown = painted_text(ui, inner, 0.0, name, body(), palette.text);
-    let rest = inner.with_min_x(shown.right() + 10.0);
-    let words = "every plot; written last, in a few seconds";
-    painted_text(ui, rest, 0.0, words, body(), palette.dim_text);
-    named(response, Role::Label, format!("File {name}"));
-}
-
 /// Draws the first lines of a file.
-fn head_ui(ui: &mut Ui, file: &PlannedFile, palette: &Palette) {
+fn head_ui(ui: &mut Ui, entry: &Entry<'_>, palette: &Palette) {
     let frame = Frame::new()
         .fill(palette.background)
         .stroke(Stroke::new(1.0, palette.line))
@@ -147,20 +226,16 @@ fn head_ui(ui: &mut Ui, file: &PlannedFile, palette: &Palette) {
         ui.set_width(ui.available_width());
         ui.set_height(HEAD - 16.0);
         ScrollArea::both()
-            .id_salt(("head", &file.name))
+            .id_salt(("head", entry.name))
             .auto_shrink(false)
             .show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
-                match &file.contents {
-                    Ok(contents) => {
-                        for line in &contents.head {
-                            let text = RichText::new(line).size(SMALL_SIZE).color(palette.text);
-                            ui.add(Label::new(text).extend());
-                        }
-                    }
-                    Err(fault) => {
-                        ui.add(Label::new(palette.small_warning(fault.to_string())).wrap());
-                    }
+                for line in entry.head {
+                    let text = RichText::new(line).size(SMALL_SIZE).color(palette.text);
+                    ui.add(Label::new(text).extend());
+                }
+                if entry.is_fault {
+                    ui.add(Label::new(palette.small_warning(&entry.words)).wrap());
                 }
             });
     });
@@ -181,7 +256,8 @@ pub(super) fn notes_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: 
             if state.current_export_plan().is_none() {
                 ui.set_opacity(0.5);
             }
-            if plan.notes.is_empty() {
+            let is_complete = plan.report.is_none() || composed_report(state).is_some();
+            if plan.notes.is_empty() && is_complete {
                 ui.label(palette.dim("Everything is included exactly"));
             }
             for (index, planned) in plan.notes.iter().enumerate() {
@@ -246,30 +322,38 @@ fn note_ui(
 /// Lists the files to which a note refers: "every file", or extensions where these identify a file,
 /// else names.
 fn file_words(planned: &PlannedNote, plan: &ExportPlan) -> String {
-    if planned.files.len() == plan.files.len() && plan.files.len() > 1 {
+    if planned.files.len() == plan.file_count() && plan.file_count() > 1 {
         return "every file".to_owned();
     }
     let names: Vec<String> = planned
         .files
         .iter()
-        .map(|&index| short_name(plan, index))
+        .filter_map(|&index| short_name(plan, index))
         .collect();
     names.join(", ")
 }
 
 /// Returns ".m" if only this file has the extension, else the file name.
-fn short_name(plan: &ExportPlan, index: usize) -> String {
-    let name = &plan.files[index].name;
+fn short_name(plan: &ExportPlan, index: usize) -> Option<String> {
+    let name = plan.file_name(index)?;
     let Some((_, extension)) = name.rsplit_once('.') else {
-        return name.clone();
+        return Some(name.to_owned());
     };
     let ending = format!(".{extension}");
-    let count = plan
-        .files
-        .iter()
-        .filter(|file| file.name.ends_with(&ending))
-        .count();
-    if count == 1 { ending } else { name.clone() }
+    let mut count = 0;
+    for other in 0..plan.file_count() {
+        if plan
+            .file_name(other)
+            .is_some_and(|other| other.ends_with(&ending))
+        {
+            count += 1;
+        }
+    }
+    if count == 1 {
+        Some(ending)
+    } else {
+        Some(name.to_owned())
+    }
 }
 
 /// Formats a size: "863 kB".

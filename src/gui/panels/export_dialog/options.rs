@@ -327,7 +327,7 @@ fn existing_words(state: &State) -> String {
     let Some(plan) = state.current_export_plan() else {
         return String::new();
     };
-    let count = plan.files.len() + usize::from(plan.report.is_some());
+    let count = plan.file_count();
     let existing = plan.existing.len();
     if existing == 0 {
         "no file exists yet".to_owned()

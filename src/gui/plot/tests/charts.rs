@@ -33,7 +33,7 @@ fn harness() -> Harness<'static, Vec<PlotBounds>> {
                 points: Arc::clone(points),
                 color,
                 width: 1.0,
-                dashed: false,
+                dash: None,
             });
             let rect = Rect::from_min_size(corner + vec2(0.0, row as f32 * SIZE.y), SIZE);
             chart_ui(ui, rect, &chart, &palette);

@@ -3,9 +3,12 @@ use egui_kittest::kittest::Queryable;
 
 use gdcm_model::dataset::Pair;
 
+use gdcm_plot::figure::axis::FrequencyUnit;
+
 use super::*;
 use crate::gui::plot::overview::overview_ui;
 use crate::gui::plot::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
+use crate::gui::plot::steady_range::AxisUpdate;
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
@@ -41,6 +44,9 @@ fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
                     outputs: &outputs,
                     cells: &cells,
                     band: (0.5, 12.0),
+                    unit: FrequencyUnit::RadPerSecond,
+                    cursor: None,
+                    update: AxisUpdate::Complete,
                     message: None,
                 };
                 let palette = Palette::from_visuals(ui.visuals());

@@ -12,7 +12,7 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, button_ui};
+use crate::gui::widgets::controls::{Asks, button_ui, hint_right_of};
 use crate::gui::widgets::list_row::{ROW_HEIGHT, RowLook};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, Room, painted_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -84,8 +84,7 @@ fn row_ui(
         height: ROW_HEIGHT,
     };
     let (row, response) = look.row_ui(ui, palette, &format!("Runs of {name}"));
-    response
-        .on_hover_text(&parameter.description)
+    hint_right_of(response, row, &parameter.description)
         .asks(DisplayCommand::ShowParameter(name.clone()), commands);
     fit_box_ui(ui, row, row.left() + 4.0, name, is_on, palette, commands);
     let color = if is_on {

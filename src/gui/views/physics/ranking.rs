@@ -12,7 +12,7 @@ use gdcm_words::physics::{change_text, naming_words};
 use super::fit_box::fit_box_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::widgets::controls::Asks;
+use crate::gui::widgets::controls::{Asks, hint_right_of};
 use crate::gui::widgets::list_row::RowLook;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, Room, painted_text, row_text_within};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -166,8 +166,7 @@ impl Ranking<'_> {
             height: ROW,
         };
         let (row, response) = look.row_ui(ui, self.palette, &format!("Parameter {name}"));
-        response
-            .on_hover_text(&diagnosed.parameter.description)
+        hint_right_of(response, row, &diagnosed.parameter.description)
             .asks(DisplayCommand::ShowParameter(name.clone()), commands);
         if self.has_boxes {
             let left = row.left() + columns.check;

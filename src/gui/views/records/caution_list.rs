@@ -18,7 +18,7 @@ use super::frame_cache::{Source, cached};
 use super::next_flight::planned_channels;
 use super::page::Page;
 use crate::gui::commands::command::Command;
-use crate::gui::widgets::controls::{Asks, named};
+use crate::gui::widgets::controls::{Asks, hint_left_of, named};
 use crate::gui::widgets::elision::{elided, text_width};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, SMALL_SIZE, body, medium, small};
@@ -130,7 +130,8 @@ fn entry_ui(
             egui::Stroke::new(1.0, palette.line),
         );
     }
-    named(response, Role::Label, entry.text.clone()).on_hover_text(&entry.text);
+    let response = named(response, Role::Label, entry.text.clone());
+    hint_left_of(response, rect, &entry.text);
     let mut buttons = 0.0;
     if let Some(first) = entry.remedies.first() {
         buttons = text_width(ui, &first.short, body()) + 18.0;

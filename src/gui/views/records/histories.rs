@@ -238,7 +238,7 @@ impl<'a> TimeCharts<'a> {
                     points: Arc::clone(points),
                     color,
                     width: 1.0,
-                    dashed: false,
+                    dash: None,
                 });
             }
             add_lines(&mut chart, &recorded.inside, TimeRole::Measured, palette);
@@ -395,12 +395,8 @@ impl<'a> TimeCharts<'a> {
 
 fn add_lines(chart: &mut Chart<'_>, lines: &[Arc<[[f64; 2]]>], role: TimeRole, palette: &Palette) {
     for points in lines {
-        chart.lines.push(ChartLine {
-            points: Arc::clone(points),
-            color: role.color(palette),
-            width: role.width(),
-            dashed: false,
-        });
+        let line = ChartLine::styled(Arc::clone(points), role.style(palette));
+        chart.lines.push(line);
     }
 }
 

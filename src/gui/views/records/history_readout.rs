@@ -1,7 +1,7 @@
 //! Read-out at the right of a time chart: channel name and unit, the identified model's fit, and
 //! each role's value at the cursor.
 
-use egui::{Grid, Rect, RichText, Role as WidgetRole, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Grid, Rect, RichText, Role as WidgetRole, Sense, Ui, pos2, vec2};
 
 use gdcm_model::dataset::Channel;
 use gdcm_model::number_format::decimals;
@@ -11,6 +11,7 @@ use super::caution_marks::channel_caution_marks;
 use super::page::Page;
 use super::simulation::Simulated;
 use super::value_range::{decimals_in, value_text};
+use crate::gui::plot::curve_style::CurveStyle;
 use crate::gui::state::records::TimeRole;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
@@ -23,7 +24,9 @@ const LINE: f32 = 15.0;
 /// Length of a curve sample \[pt\].
 const SAMPLE: f32 = 10.0;
 const SAMPLE_GAP: f32 = 6.0;
-/// Theil's coefficient below which a model's fit counts as good (M14, section 6).
+/// Length of the dashes in a sample \[pt\].
+const SAMPLE_DASH: f32 = 4.0;
+/// Limit of Theil's coefficient below which the fit of a model counts as good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
 /// A role's value at the cursor.
@@ -154,9 +157,17 @@ impl RoleValue {
         let is_shown = !page.state.records.hidden_roles.contains(&self.role);
         let opacity = if is_shown { 1.0 } else { 0.4 };
         let y = line.center().y;
-        let ends = [pos2(line.left(), y), pos2(line.left() + SAMPLE, y)];
-        let color = self.role.color(palette).gamma_multiply(opacity);
-        ui.painter().line_segment(ends, Stroke::new(1.6, color));
+        let ends = vec![pos2(line.left(), y), pos2(line.left() + SAMPLE, y)];
+        let style = self.role.style(palette);
+        let sample = CurveStyle {
+            color: style.color.gamma_multiply(opacity),
+            width: 1.6,
+            length: style.length.min(SAMPLE_DASH),
+            ..style
+        };
+        let mut shapes = Vec::new();
+        sample.add_shapes(ends, &mut shapes);
+        ui.painter().extend(shapes);
         let dim = palette.dim_text.gamma_multiply(opacity);
         painted_text(
             ui,

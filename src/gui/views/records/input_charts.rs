@@ -32,14 +32,14 @@ impl RecordSpectra {
                 points,
                 color: palette.identified,
                 width: 1.8,
-                dashed: false,
+                dash: None,
             }
         } else {
             ChartLine {
                 points,
                 color: palette.perturbed.gamma_multiply(0.6),
                 width: 1.0,
-                dashed: false,
+                dash: None,
             }
         })
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gdcm_sysid::identification::{Identification, OrderFit};
 
-use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartMarks};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, ChartMarks, DENSE_DASH};
 use crate::gui::widgets::palette::Palette;
 
 /// Returns the chart with χ²/dof over the order, with the chosen order marked.
@@ -24,13 +24,13 @@ pub(super) fn add_order_fits(chart: &mut Chart<'_>, found: &Identification, pale
         points: held_out_points(found).into(),
         color: palette.text,
         width: 1.2,
-        dashed: true,
+        dash: Some(DENSE_DASH),
     });
     chart.lines.push(ChartLine {
         points: fitted_points(found),
         color: palette.text,
         width: 1.4,
-        dashed: false,
+        dash: None,
     });
     let mut chosen = Vec::new();
     for fit in &found.order_fits {

@@ -14,7 +14,7 @@ use super::page::Page;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 pub(super) use crate::gui::state::condition_fit::BAD_FIT;
-use crate::gui::widgets::controls::{Asks, named, named_switch};
+use crate::gui::widgets::controls::{Asks, hint_right_of, named, named_switch};
 use crate::gui::widgets::list_row::{ROW_HEIGHT, RowLook};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -268,7 +268,7 @@ impl RecordRow<'_> {
         let id = ui.scope_id().with(("cautions", self.index));
         let mark = ui.interact(place, id, Sense::hover());
         named(
-            mark.on_hover_text(cautions.join("\n\n")),
+            hint_right_of(mark, rect, &cautions.join("\n\n")),
             Role::Label,
             format!("Cautions of {}", self.row.table.name),
         );

@@ -13,11 +13,11 @@ use super::fit_layout::{CaptionedChart, ResponseLayout, TICKS};
 use super::frame_cache::cached;
 use super::page::Page;
 use super::value_range::rounded_range;
+use crate::gui::plot::BodeCurve;
 use crate::gui::plot::chart::{
-    Chart, ChartAxis, ChartBand, ChartLayout, ChartLine, ChartMarks, ChartSpan,
+    Chart, ChartAxis, ChartBand, ChartLayout, ChartLine, ChartMarks, ChartSpan, DENSE_DASH,
 };
 use crate::gui::plot::chart_view::chart_ui;
-use crate::gui::plot::{BodeCurve, Role};
 use crate::gui::state::records::TimeRole;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::elision::{elided, text_width};
@@ -268,23 +268,20 @@ impl ResponseCharts<'_> {
         !self.page.state.records.hidden_roles.contains(&role)
     }
 
-    /// Returns the curves for the physics representative, uncorrected and corrected.
+    /// Returns the curves of the physics representative and its corrections.
     fn model_lines(&self, part: BodePart) -> Vec<ChartLine> {
         let mut lines = Vec::new();
-        for (role, time_role) in [
-            (Role::Representative, TimeRole::Physics),
-            (Role::Corrected, TimeRole::Corrected),
-        ] {
-            let curve = self.curves.iter().find(|curve| curve.role == role);
+        for role in [TimeRole::Physics, TimeRole::Corrected, TimeRole::Scheduled] {
+            let bode_role = role.bode_role();
+            let curve = self
+                .curves
+                .iter()
+                .find(|curve| Some(curve.role) == bode_role);
             if let Some(curve) = curve
-                && self.is_shown(time_role)
+                && self.is_shown(role)
             {
-                lines.push(ChartLine {
-                    points: line_points(&self.drawn.aligned(curve), part),
-                    color: time_role.color(self.page.palette),
-                    width: time_role.width(),
-                    dashed: false,
-                });
+                let points = line_points(&self.drawn.aligned(curve), part);
+                lines.push(ChartLine::styled(points, role.style(self.page.palette)));
             }
         }
         lines
@@ -347,7 +344,7 @@ impl ResponseCharts<'_> {
             points: points.into(),
             color: palette.text,
             width: 1.3,
-            dashed: false,
+            dash: None,
         });
         let caption = ["Partial coherence", "below 0.6 hollow, not used"];
         self.show(ui, place, caption, &chart);
@@ -456,11 +453,10 @@ fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, pa
         } else {
             &drawn.unrefined
         };
+        let style = TimeRole::Identified.style(palette);
         chart.lines.push(ChartLine {
-            points: line_points(curve, part),
-            color: TimeRole::Identified.color(palette),
-            width: TimeRole::Identified.width(),
-            dashed: !is_refined,
+            dash: if is_refined { None } else { Some(DENSE_DASH) },
+            ..ChartLine::styled(line_points(curve, part), style)
         });
     }
     for interval in &drawn.deviating {

@@ -3,8 +3,6 @@
 
 use egui::{Align, ComboBox, Layout, PopupCloseBehavior, Rect, Role as WidgetRole, Ui, UiBuilder};
 
-use gdcm_plot::figure::drawing::Dash;
-
 use super::histories::shown_outputs;
 use super::page::Page;
 use super::simulation::Simulated;
@@ -12,7 +10,6 @@ use super::spectrogram::spectrogram_choice_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chip_row::{ChipFace, ChipRow, Sample};
-use crate::gui::plot::curve_style::CurveStyle;
 use crate::gui::state::records::TimeRole;
 use crate::gui::widgets::controls::named;
 
@@ -37,12 +34,7 @@ pub(super) fn role_chips_ui(
     let mut row = ChipRow::new(chips, SAMPLE);
     for role in TimeRole::ALL {
         let is_shown = !page.state.records.hidden_roles.contains(&role);
-        let style = CurveStyle {
-            color: role.color(page.palette),
-            width: role.width(),
-            dash: Dash::Solid,
-            length: 0.0,
-        };
+        let style = role.style(page.palette);
         let face = ChipFace {
             text: role.name(),
             name: &format!("Show {} over time", role.name()),
@@ -65,6 +57,9 @@ pub(super) fn role_chips_ui(
                 }
             },
             (TimeRole::Identified, None) => "No model has been identified from records".to_owned(),
+            (TimeRole::Scheduled, None) if has_no_schedule(page) => {
+                "There is no schedule".to_owned()
+            }
             (_, None) => "Not available as a state-space model without delays".to_owned(),
         };
         response.on_hover_text(hint);
@@ -79,7 +74,13 @@ pub(super) fn role_chips_ui(
     });
 }
 
-/// Draws the selector for the outputs below the output in focus.
+fn has_no_schedule(page: Page<'_>) -> bool {
+    page.state
+        .analysis()
+        .is_some_and(|analysis| analysis.schedule.is_err())
+}
+
+/// Draws the selector of the outputs below the output in focus.
 fn outputs_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let channels = page.state.dataset().outputs();
     let shown: Vec<usize> = shown_outputs(page)

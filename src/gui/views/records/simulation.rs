@@ -179,13 +179,22 @@ fn state_space(state: &State, records: &ConditionRecords, role: TimeRole) -> Opt
         .condition
         .model(BundleKind::Physics, name)?
         .state_space()?;
-    let space = if role == TimeRole::Corrected {
-        analysis
-            .corrected_model(physics, &analysis.correction, Pade::default())
-            .ok()?
-            .model
-    } else {
-        physics.clone()
+    let correction = match role {
+        TimeRole::Corrected => Some(analysis.correction.clone()),
+        TimeRole::Scheduled => {
+            let schedule = state.analysis()?.schedule.as_ref().ok()?;
+            Some(schedule.at_state(state.condition().flight_state()))
+        }
+        TimeRole::Physics | TimeRole::Identified | TimeRole::Measured => None,
+    };
+    let space = match correction {
+        Some(correction) => {
+            analysis
+                .corrected_model(physics, &correction, Pade::default())
+                .ok()?
+                .model
+        }
+        None => physics.clone(),
     };
     if space.timing().is_plain() {
         Some(space)

@@ -1,0 +1,70 @@
+//! What a report is made of, and the job that composes it without writing it: the export dialog shows
+//! its size and its notes.
+
+use std::sync::Arc;
+
+use gdcm_io::report::{Report, ReportSource, ReportSubject, compose_report};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::jobs::job::Job;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::time_histories::HistoryRecords;
+use gdcm_study::{Analysis, Engine};
+
+/// Results, records and names from which a report is made.
+#[derive(Debug)]
+pub struct ReportInputs {
+    /// Displayed analysis from which `analysis` was made.
+    pub shown: Arc<Analysis>,
+    /// Analysis with the present requirements.
+    pub analysis: Arc<Analysis>,
+    /// Open flight records for the time-history comparison.
+    pub records: Vec<HistoryRecords>,
+    pub known: KnownPoles,
+    pub source: ReportSource,
+}
+
+impl ReportInputs {
+    /// Composes the report; takes seconds, because it draws every plot.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
+    pub fn compose(
+        &self,
+        engine: &mut Engine,
+        progress: &dyn Progress,
+    ) -> Result<Report, Cancelled> {
+        let histories = match self.records.as_slice() {
+            [] => None,
+            records => Some(engine.time_histories(&self.analysis, records, progress)?),
+        };
+        let subject = ReportSubject {
+            analysis: &self.analysis,
+            histories: histories.as_ref(),
+            known: &self.known,
+        };
+        compose_report(subject, &self.source, engine, progress)
+    }
+}
+
+/// Job that composes a report. Jobs with the same inputs, in the same place in memory, are equal:
+/// records may contain NaN, and would then differ from themselves.
+#[derive(Clone, Debug)]
+pub struct ReportContentsJob {
+    pub inputs: Arc<ReportInputs>,
+}
+
+impl PartialEq for ReportContentsJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.inputs, &other.inputs)
+    }
+}
+
+impl Job for ReportContentsJob {
+    /// Engine that caches the responses to draw.
+    type Tools = Engine;
+    type Output = Arc<Report>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Arc<Report>, Cancelled> {
+        self.inputs.compose(engine, progress).map(Arc::new)
+    }
+}

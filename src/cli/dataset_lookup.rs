@@ -12,7 +12,7 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
         Some(condition) => Ok(condition.id()),
         None => {
             let ids = condition_ids(dataset);
-            let reason = format!("the dataset has no condition {id}; it has {ids}");
+            let reason = format!("the dataset has no condition {id}; conditions are {ids}");
             Err(Failure::coded_option(
                 "--condition",
                 "unknown-condition",

@@ -17,7 +17,7 @@ use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
 use super::condition_messages::listed_conditions;
-use super::dataset_lookup::pairs_of;
+use super::dataset_lookup::{condition_ids, pairs_of};
 use super::failure::Failure;
 use super::option_values::{PairName, Rejection};
 use super::parameter_values::apply_parameters;
@@ -141,7 +141,7 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
     let unknown = settings.levels.unknown_axes(&outputs);
     if !arguments.levels.is_empty() && !unknown.is_empty() {
         let text = format!(
-            "levels of {} are not drawn: the outputs are {}",
+            "levels for {} are not used: the dataset has no such output; outputs are {}",
             unknown.join(", "),
             outputs.join(", ")
         );
@@ -246,7 +246,8 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     let id = ConditionId(rejection.condition);
     let name = rejection.model.as_str();
     let Some(condition) = study.dataset.condition(id) else {
-        let reason = format!("the dataset has no condition {id}");
+        let ids = condition_ids(&study.dataset);
+        let reason = format!("the dataset has no condition {id}; conditions are {ids}");
         return Err(Failure::coded_option(OPTION, "unknown-condition", reason));
     };
     let bundles: Vec<BundleKind> = BundleKind::BOTH

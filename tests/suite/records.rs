@@ -178,7 +178,7 @@ fn records_are_laid_out_in_words_and_held_out_by_name() {
     for names in [
         ["sweep_1: ", "time", "\"t\""],
         ["sweep_1: P: ", "\"roll rate\"", "rad/s"],
-        ["sweep_1: LON: ", "\"lon\"", "unchanged"],
+        ["sweep_1: LON: ", "\"lon\"", "not converted"],
     ] {
         told.assert_reported("record-layout", &names);
     }

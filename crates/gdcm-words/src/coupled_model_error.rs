@@ -19,8 +19,8 @@ fn named_error_text(error: &CoupledModelError, inputs: &[String], outputs: &[Str
             delay_s,
             sample_time_s,
         }) => format!(
-            "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a whole \
-            number of samples",
+            "the total delay of {} (model and correction), {} s, is {} samples of {} s: a \
+            discrete-time model can only be delayed by whole samples; use a continuous-time model",
             channel.name(inputs, outputs),
             number(*delay_s),
             number(samples_of_delay(*delay_s, *sample_time_s)),
@@ -47,8 +47,8 @@ mod tests {
         let text = named_error_text(&error, &[], &outputs);
         assert_eq!(
             text,
-            "the delay of Q, 0.011 s, is 1.1 samples of 0.01 s; in discrete time it must be a \
-            whole number of samples"
+            "the total delay of Q (model and correction), 0.011 s, is 1.1 samples of 0.01 s: a \
+            discrete-time model can only be delayed by whole samples; use a continuous-time model"
         );
         assert_eq!(text, error.to_string().replace("output 2", "Q"));
         assert_eq!(named_error_text(&error, &[], &[]), error.to_string());

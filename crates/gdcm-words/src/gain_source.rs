@@ -8,7 +8,7 @@ use gdcm_study::decisions::settings::Settings;
 pub fn gain_source_text(settings: &Settings) -> String {
     let source = match settings.gain_source {
         GainSource::Representatives => "the representatives",
-        GainSource::MeanOfPairs => "the mean over all kept pairs",
+        GainSource::MeanOfPairs => "the mean of ln G over all pairs of kept models",
     };
     if settings.is_gain_source_idle() {
         return format!(
@@ -33,11 +33,15 @@ mod tests {
         assert_eq!(gain_source_text(&settings), "the representatives");
         settings.gain_source = GainSource::MeanOfPairs;
         assert!(
-            gain_source_text(&settings).starts_with("the mean over all kept pairs, without effect"),
+            gain_source_text(&settings)
+                .starts_with("the mean of ln G over all pairs of kept models, without effect"),
             "{}",
             gain_source_text(&settings)
         );
         settings.phase = PhaseCorrection::Delay;
-        assert_eq!(gain_source_text(&settings), "the mean over all kept pairs");
+        assert_eq!(
+            gain_source_text(&settings),
+            "the mean of ln G over all pairs of kept models"
+        );
     }
 }

@@ -19,7 +19,7 @@ use crate::table::Table;
 
 /// Displayed beside every verdict.
 pub const LIKE_EFFECT: &str =
-    "A parameter of similar effect that was not offered cannot be excluded.";
+    "A parameter with a similar effect that is not listed may be the real cause.";
 
 /// Displayed beside error bars where parameters are moved.
 pub const BARS_KEEP_VALUES: &str =
@@ -575,6 +575,6 @@ mod tests {
     fn no_sentence_states_a_cause() {
         let sentences = include_str!("physics.rs");
         assert_eq!(sentences.matches(concat!("the cause", " is")).count(), 0);
-        assert!(LIKE_EFFECT.contains("not offered"));
+        assert!(LIKE_EFFECT.contains("not listed"));
     }
 }

@@ -83,8 +83,8 @@ static SETTING_WORDS: [SettingWords; 30] = [
         label: "Order of the lead filters",
         help: "Order of every lead filter (M15.3)",
         meanings: &[
-            "Butterworth damping: leaves the gain within the band nearly unchanged",
-            "(1 + as)/(1 + bs): the gain rises within the band",
+            "Second order, Butterworth damping: leaves the gain within the band nearly unchanged",
+            "First order, (1 + a s)/(1 + b s): the gain rises within the band",
         ],
         ..NO_WORDS
     },

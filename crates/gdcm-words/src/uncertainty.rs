@@ -165,8 +165,8 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
         "effect [%]",
         "detectable from ± [%]",
         "Holm p",
-        "unseen without it [%]",
-        "unseen with it [%]",
+        "leave-one-out error without [%]",
+        "leave-one-out error with [%]",
         "verdict",
     ];
     let mut table = Table::new("Does the schedule need a second variable?", columns);

@@ -70,7 +70,7 @@ fn open_entries() -> [Entry; 6] {
     [
         Entry::new(
             "Open…",
-            "Choose a dataset or a study in the desktop's dialog",
+            "Choose a dataset or a study in the system file dialog",
             FileCommand::AskOpen,
         )
         .keys(CTRL, Key::O),
@@ -113,7 +113,7 @@ fn save_entries() -> [Entry; 2] {
         .keys(CTRL, Key::S),
         Entry::new(
             "Save study as…",
-            "Choose the file in the desktop's dialog",
+            "Choose the file in the system file dialog",
             FileCommand::AskSaveStudy,
         )
         .keys(CTRL_SHIFT, Key::S),

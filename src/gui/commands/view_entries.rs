@@ -129,7 +129,7 @@ fn view_group_entries() -> Vec<Entry> {
 }
 
 fn page_entries() -> [Entry; 2] {
-    let meaning = "In the view in front, if it has pages";
+    let meaning = "In the displayed view, if it has pages";
     [
         Entry::new(
             "Next page",
@@ -148,7 +148,7 @@ fn page_entries() -> [Entry; 2] {
 
 fn neighbour_entries(state: &State) -> [Entry; 2] {
     let arrangement = &state.display.layout.arrangement;
-    let meaning = "In the group in front";
+    let meaning = "In the view group that is displayed";
     [
         Entry::new(
             "Next view",
@@ -198,7 +198,7 @@ fn fold_entries(state: &State) -> [Entry; 6] {
             } else {
                 "Unfold the dock"
             },
-            "The plots below the view in front",
+            "The plots below the displayed view",
             LayoutCommand::OpenDock(!is_dock_open),
         ),
         Entry::new(
@@ -207,7 +207,11 @@ fn fold_entries(state: &State) -> [Entry; 6] {
             } else {
                 "Enlarge the dock"
             },
-            "Twice the usual height (or double-click its bar)",
+            if is_dock_enlarged {
+                "To its usual height; also: double-click its bar"
+            } else {
+                "To twice its usual height; also: double-click its bar"
+            },
             LayoutCommand::EnlargeDock(!is_dock_enlarged),
         ),
         Entry::new(

@@ -3,6 +3,7 @@
 use egui::{Color32, PointerButton, Rect, Response, Stroke, Ui, vec2};
 use egui_plot::{PlotBounds, PlotTransform, PlotUi};
 
+use gdcm_model::number_format::counted;
 use gdcm_plot::figure::responses::BodeBand;
 
 use super::axis_strip::axis_strips_ui;
@@ -51,9 +52,9 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
     let scene = pane.scene;
     let name = scene.quantity.name(pane.pane);
     let description = format!(
-        "{name} of {}, {} curves",
+        "{name} of {}, {}",
         scene.pair_title,
-        scene.curves.len()
+        counted(scene.curves.len(), "curve")
     );
     let values = scene.quantity.unit(pane.pane).ticks();
     let panel = PanelPainter {

@@ -3,6 +3,7 @@
 use egui::{Align2, Rect, Response, Ui, Vec2, Vec2b, pos2, vec2};
 use egui_plot::{PlotTransform, PlotUi};
 
+use gdcm_model::number_format::counted;
 use gdcm_plot::figure::Range;
 
 use super::chart::{Chart, ChartAxis};
@@ -90,9 +91,10 @@ fn place_of(chart: &Chart<'_>, range: Range) -> Range {
 fn description(chart: &Chart<'_>) -> String {
     let marks: usize = chart.marks.iter().map(|marks| marks.points.len()).sum();
     let mut description = format!(
-        "{}: {} lines, {marks} marks",
+        "{}: {}, {}",
         chart.title,
-        chart.lines.len()
+        counted(chart.lines.len(), "line"),
+        counted(marks, "mark")
     );
     for (words, _) in &chart.notes {
         description.push_str("; ");

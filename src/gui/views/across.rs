@@ -5,6 +5,7 @@
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_plot::figure::responses::{AirspeedCurves, AirspeedResponse};
 use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::stages::condition_curves::display_band;
@@ -12,6 +13,7 @@ use gdcm_study::stages::condition_curves::display_band;
 use super::PageEntry;
 use super::across_chips::across_chips_ui;
 use super::across_readout::AcrossReadout;
+use super::model_error;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
@@ -178,7 +180,7 @@ pub fn across_view_ui(
         curves: &curves.errors,
         optima: curves.optima.as_ref(),
         notes: [Some(&optima_note), None],
-        message: Some(error_message),
+        message: Some(&error_message),
         end_names: &[],
         ..response_scene
     };
@@ -224,11 +226,13 @@ pub fn across_view_ui(
 }
 
 /// Returns the message shown if there are no schedule errors.
-fn error_message(state: &State) -> &'static str {
-    match state.analysis() {
-        Some(analysis) if analysis.schedule.is_err() => "There is no schedule",
-        Some(_) => "The response cannot be compared",
-        None => state.results.absence(),
+fn error_message(state: &State) -> String {
+    let Some(analysis) = state.analysis() else {
+        return state.results.absence().to_owned();
+    };
+    match &analysis.schedule {
+        Err(error) => error.to_string(),
+        Ok(_) => model_error::error_message(state, state.display.selection.pair),
     }
 }
 
@@ -404,11 +408,12 @@ pub fn across_context(state: &State) -> String {
     let count = state.dataset().conditions().len();
     let shown = state.display.frequency.across_display.conditions;
     match shown {
-        AcrossConditions::All => format!("all {count} conditions"),
+        AcrossConditions::All => format!("all {}", counted(count, "condition")),
         AcrossConditions::InSchedule => {
             format!(
-                "{} of {count} conditions",
-                shown.of_study(&state.study).len()
+                "{} of {}",
+                shown.of_study(&state.study).len(),
+                counted(count, "condition")
             )
         }
     }

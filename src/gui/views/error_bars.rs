@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use gdcm_method::uncertainty::{Bar, Scalar};
+use gdcm_model::number_format::counted;
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::marks::Mark;
 use gdcm_plot::figure::{Color, Figure};
@@ -82,7 +83,10 @@ pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
         words.push_str(&format!("; {remarks}"));
     }
     if bar.left_out > 0 {
-        words.push_str(&format!("; undefined in {} substitutions", bar.left_out));
+        words.push_str(&format!(
+            "; undefined with {} as representative",
+            counted(bar.left_out, "other model")
+        ));
     }
     words
 }

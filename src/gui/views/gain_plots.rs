@@ -7,6 +7,7 @@
 use egui::{Vec2, vec2};
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::gains::{Across, GainQuantity};
 use gdcm_plot::figure::marks::MarkId;
@@ -65,7 +66,7 @@ impl FigureWords for GainPlots<'_> {
     fn plot_name(&self, plot: usize) -> String {
         let plot = &self.figure.plots[plot];
         let dots: usize = plot.panels.iter().map(|panel| panel.dots().count()).sum();
-        format!("{}, {dots} conditions", plot.title)
+        format!("{}, {}", plot.title, counted(dots, "condition"))
     }
 
     fn dot_name(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {

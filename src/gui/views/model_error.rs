@@ -5,7 +5,6 @@ use egui::Ui;
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::error::noticed;
-use gdcm_study::results::caution::Undefined;
 use gdcm_words::caution::undefined_text;
 
 use super::frequency_curves::{bode_options, condition_source, error_curves, error_reference};
@@ -101,18 +100,7 @@ pub fn error_message(state: &State, pair: Pair) -> String {
         None => None,
     };
     match undefined {
-        Some(Undefined::NotCoherent) => {
-            format!(
-                "{name} is not compared: {}",
-                undefined_text(Undefined::NotCoherent)
-            )
-        }
-        Some(_) => {
-            format!(
-                "{name} is not compared: a representative has no values of this response \
-                within the band"
-            )
-        }
+        Some(why) => format!("{name} is not compared: {}", undefined_text(why)),
         None => match state.curves_message() {
             Some(message) => message.to_owned(),
             None => "Nothing to compare in the band".to_owned(),

@@ -89,7 +89,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
             ui.label(palette.dim(state.results.absence()));
             return;
         };
-        let hint = "fit: root mean square residual of ln(net gain); unseen: residuals of each \
+        let hint = "fit: root mean square residual of ln(net gain); left out: residuals of each \
             condition from the schedule fitted without it";
         ui.label(
             RichText::new("Error of each form [% of the net gain]")

@@ -296,7 +296,7 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         ui.label(palette.small(format!("reading {reading} …")));
     } else if compared_record(state).is_none() {
         ui.add(
-            Label::new(palette.small("No flight record of this condition (view Records)"))
+            Label::new(palette.small("This condition has no flight record; add one in Records"))
                 .truncate(),
         );
     }

@@ -12,6 +12,7 @@ use gdcm_plot::figure::schedule_cost::schedule_cost_figure;
 
 use super::error_bars::{dim_older_bars, painted_uncertainty};
 use super::gain_plots::gain_command;
+use super::model_error::error_message;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
 use crate::gui::state::view::View;
@@ -33,8 +34,8 @@ pub(super) fn schedule_cost_view_ui(
     let pair = state.display.selection.pair;
     let figure = cost_figure(state, pair);
     let message = match state.analysis() {
-        Some(_) => "The response cannot be compared",
-        None => state.results.absence(),
+        Some(_) => error_message(state, pair),
+        None => state.results.absence().to_owned(),
     };
     // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
@@ -54,7 +55,7 @@ pub(super) fn schedule_cost_view_ui(
             "schedule cost",
             &figure,
             vec2(160.0, 100.0),
-            message,
+            &message,
             &words,
         )
     };

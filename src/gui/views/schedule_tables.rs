@@ -2,7 +2,7 @@
 //! each polynomial degree in the signed delays, residuals, and coefficients; with a cache for the
 //! comparisons. The net-gain view and the evidence view draw them.
 //!
-//! *Fit* is the error in the conditions to which a form is fitted; *unseen* that in each condition
+//! *Fit* is the error in the conditions to which a form is fitted; *left out* that in each condition
 //! of the form fitted without it.
 
 use std::sync::Arc;
@@ -92,7 +92,7 @@ fn forms_table(state: &State, forms: &FormComparison) -> Table {
     let mut columns = vec![
         "schedule".to_owned(),
         "fit [%]".to_owned(),
-        "unseen [%]".to_owned(),
+        "left out [%]".to_owned(),
     ];
     for pair in &pairs {
         columns.push(format!("{} [%]", state.dataset().pair_name(*pair)));
@@ -161,7 +161,7 @@ pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Op
     for pair in &pairs {
         let name = state.dataset().pair_name(*pair);
         columns.push(format!("{name}, fit [ms]"));
-        columns.push(format!("{name}, unseen [ms]"));
+        columns.push(format!("{name}, left out [ms]"));
     }
     let mut table = Table::new("Errors of each degree of the signed delays", columns);
     for fit in degrees {

@@ -204,7 +204,7 @@ fn every_table_of_a_view_is_saved_as_csv() {
     show(&mut window, View::NetGain);
     click(&mut window, "evidence");
     window
-        .get_by_label("Sort Errors of each form of the schedule by unseen [%]")
+        .get_by_label("Sort Errors of each form of the schedule by left out [%]")
         .click_secondary();
     window.run_steps(2);
     window.get_by_label("Save the table as CSV…").click();
@@ -222,7 +222,7 @@ fn every_table_of_a_view_is_saved_as_csv() {
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).count();
     assert_eq!(rows, table.rows.len() + 1, "{text}");
-    assert!(text.contains("unseen"), "{text}");
+    assert!(text.contains("left out"), "{text}");
 }
 
 #[test]

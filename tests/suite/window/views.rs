@@ -257,7 +257,7 @@ fn a_degree_is_chosen_on_evidence() {
     assert_eq!(shown, &evidence);
     click(
         &mut window,
-        "Sort Errors of each form of the schedule by unseen [%]",
+        "Sort Errors of each form of the schedule by left out [%]",
     );
     assert_eq!(state(&window).study, before, "sorting decides nothing");
     assert!(!state(&window).unsaved);

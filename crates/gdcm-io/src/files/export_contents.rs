@@ -299,7 +299,7 @@ impl ExportContents {
         let mut lines = vec![format!("contains: {}", self.words())];
         if !self.physics.is_empty() {
             lines.push(format!(
-                "for physics models with {}",
+                "valid only for physics models with {}",
                 self.physics.join(", ")
             ));
         }

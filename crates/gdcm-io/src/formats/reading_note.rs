@@ -167,7 +167,10 @@ pub enum ReadingNote {
     // Records among variables.
     #[error("clock times: converted to seconds since the first sample")]
     ClockTimes,
-    #[error("omitted, because they have another number of samples: {}", names.join(", "))]
+    #[error(
+        "{}: omitted, because the number of samples differs from that of the record",
+        names.join(", ")
+    )]
     OtherLengths { names: Vec<String> },
 
     // Models among variables.

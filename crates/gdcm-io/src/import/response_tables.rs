@@ -5,6 +5,7 @@ use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::number_format::counted;
 
 use super::recognise::Found;
 use crate::files::model_collection::bare_draft;
@@ -28,8 +29,8 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
         Ok(columns) => columns,
         Err(Unrecognised { fault, unsaid }) => {
             let words = format!(
-                "{file}: {} columns of numbers; {fault}",
-                table.columns.len()
+                "{file}: {} of numbers; {fault}",
+                counted(table.columns.len(), "column")
             );
             let found = Found {
                 ignored: vec![words],

@@ -1,5 +1,7 @@
 //! Contradictions between a file's bytes and its format.
 
+use gdcm_model::number_format::counted;
+
 use crate::variable_fault::octave_fault::OctaveFault;
 
 /// Contradiction between a file's bytes and its format.
@@ -21,23 +23,23 @@ pub enum Damage {
         /// What is there instead, for example "a negative size".
         found: &'static str,
     },
-    #[error("a sparse matrix with inconsistent numbers")]
+    #[error("the sparse matrix is inconsistent")]
     SparseNumbers,
     #[error("a sparse array that is not a matrix")]
     SparseArrayNotMatrix,
     #[error("a sparse matrix whose columns do not match its numbers")]
     SparseColumns,
-    #[error("an element outside its sparse matrix")]
+    #[error("an element is outside the matrix")]
     ElementOutsideSparse,
-    #[error("{count} values in {bytes} bytes")]
+    #[error("{} in {}", counted(*count, "value"), counted(*bytes, "byte"))]
     ValueCount { count: usize, bytes: usize },
     #[error("records without a length for their field names")]
     FieldNamesWithoutLength,
     #[error("field names that do not match their length")]
     FieldNamesLength,
-    #[error("{found} numbers instead of {expected}")]
+    #[error("{} instead of {expected}", counted(*found, "number"))]
     NumberCount { found: usize, expected: usize },
-    #[error("{found} characters instead of {expected}")]
+    #[error("{} instead of {expected}", counted(*found, "character"))]
     CharacterCount { found: usize, expected: usize },
     #[error("sizes that are not stored as 32-bit integers")]
     SizesNotIntegers,
@@ -160,9 +162,9 @@ pub enum Damage {
     #[error("it claims to expand to more bytes than is possible")]
     ArchiveExpansion,
     // Autopilot logs.
-    #[error("a log without a message that has time stamps and numbers")]
+    #[error("the log has no message with a time stamp and numbers")]
     NoTimedMessage,
-    #[error("no flight with at least {fewest} frames")]
+    #[error("the log has no flight with at least {fewest} frames")]
     NoFlight { fewest: usize },
     #[error("the layout of \"{name}\" is missing")]
     LayoutMissing { name: String },
@@ -179,4 +181,21 @@ pub enum Damage {
     /// Message from the library that reads the format.
     #[error("{message}")]
     Library { message: String },
+}
+
+impl Damage {
+    /// Returns the end of the message: the position in the file, and the remedy. Faults of logs
+    /// have no position; a log is copied again, not written again.
+    pub(super) fn remedy(&self, offset: u64) -> String {
+        match self {
+            Self::NoTimedMessage | Self::NoFlight { .. } => "; choose another log".to_owned(),
+            Self::LayoutMissing { .. }
+            | Self::LayoutField { .. }
+            | Self::LayoutFieldLength { .. }
+            | Self::LayoutFieldSize { .. } => {
+                ": the log is damaged; copy it again from the vehicle".to_owned()
+            }
+            _ => format!(" (byte {offset}): the file is damaged; write it again"),
+        }
+    }
 }

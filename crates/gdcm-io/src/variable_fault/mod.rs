@@ -34,10 +34,7 @@ pub enum VariableFault {
         offset: u64,
     },
     /// The bytes contradict the format.
-    #[error(
-        "{}{damage} (byte {offset}): the file is damaged; write it again",
-        at(variable)
-    )]
+    #[error("{}{damage}{}", at(variable), damage.remedy(*offset))]
     Damaged {
         variable: String,
         damage: Damage,

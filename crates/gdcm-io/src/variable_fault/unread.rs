@@ -33,7 +33,8 @@ pub enum Unread {
     },
     /// An object of another class system, such as Java.
     #[error(
-        "only objects of MATLAB classes are supported; in MATLAB, save its data as numbers or text"
+        "objects of other than MATLAB classes cannot be read; in MATLAB, save their data as numbers \
+        or text"
     )]
     ClassSystem,
     /// The file's object part, to which all objects refer, cannot be read.
@@ -43,11 +44,11 @@ pub enum Unread {
     NoObjectPart,
     #[error("its reference to data in the file is damaged; save the file again")]
     DamagedReference,
-    #[error("enumerations are not supported; in MATLAB, save it as text or numbers")]
+    #[error("enumerations are not supported; in MATLAB, save them as text or numbers")]
     Enumeration,
-    #[error("functions cannot be read; in MATLAB, save the values that it returns")]
+    #[error("functions cannot be read; in MATLAB, save the values that they return")]
     Function,
-    #[error("empty objects cannot be read; in MATLAB, save its data as numbers or text")]
+    #[error("empty objects cannot be read; in MATLAB, save their data as numbers or text")]
     Empty,
     #[error("expected an HDF5 dataset or group; save its values as a dataset")]
     NeitherDatasetNorGroup,

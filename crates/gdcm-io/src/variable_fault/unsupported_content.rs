@@ -75,9 +75,8 @@ impl UnsupportedContent {
             Self::ForeignFile { remedy, .. } => remedy,
             Self::OctaveType { .. } => "save the file without this variable, or with -v7",
             Self::OctavePages => "save it as a cell array",
-            Self::EncryptedEntry | Self::CompressionMethod { .. } => {
-                "compress it again with deflate, without a password"
-            }
+            Self::EncryptedEntry => "compress it again without a password",
+            Self::CompressionMethod { .. } => "compress it again with deflate",
             Self::UlogVersion => "save its topics as CSV: ulog2csv \"{file}\"",
             Self::BlackboxVersion { .. } | Self::BlackboxFields => {
                 "save it as CSV: blackbox_decode \"{file}\""
@@ -88,18 +87,16 @@ impl UnsupportedContent {
                 "write it with gzip compression or none, in a single file, in the format of HDF5 \
                 1.14 or earlier"
             }
-            Self::NumpyNumbers { .. } => "save it as float64",
+            Self::NumpyNumbers { .. } => "save them as float64",
             Self::NumpyTimes { .. } => "save them as float64, with the unit in the name",
             Self::PythonObjects => "save plain arrays, one for each name",
             Self::NpyVersion { .. } => "save a plain array with numpy.save",
             Self::DataAfterArray => {
                 "save a single array in each .npy file, or several with numpy.savez"
             }
-            Self::ValueNotWritten { .. }
-            | Self::LongNameNotWritten
-            | Self::LargeArchiveNotWritten => {
-                "write only arrays and strings, under shorter names or in several files"
-            }
+            Self::ValueNotWritten { .. } => "write only arrays and strings",
+            Self::LongNameNotWritten => "shorten the name",
+            Self::LargeArchiveNotWritten => "write several files",
         }
     }
 }

@@ -55,8 +55,8 @@ pub struct CorrectedModel {
 pub enum CorrectedModelError {
     /// A discrete-time model's delay is not a whole number of samples.
     #[error(
-        "the delay of {}, {} s, is {} samples of {} s; in discrete time it must be a whole number \
-        of samples",
+        "the total delay of {} (model and correction), {} s, is {} samples of {} s: a \
+        discrete-time model can only be delayed by whole samples; use a continuous-time model",
         channel.name(&[], &[]),
         number(*delay_s),
         number(samples_of_delay(*delay_s, *sample_time_s)),

@@ -43,7 +43,10 @@ pub enum DatasetError {
         /// Second condition, counted from 1.
         second: usize,
     },
-    #[error("on_axis: expected a {} x {} table, found {} x {}", expected.0, expected.1, found.0, found.1)]
+    #[error(
+        "on_axis: expected {} outputs x {} inputs, found {} x {}",
+        expected.0, expected.1, found.0, found.1
+    )]
     OnAxisShape {
         /// The dataset's outputs and inputs.
         expected: (usize, usize),

@@ -1,6 +1,7 @@
 //! Notes on the columns proposed for a record's time and channels.
 
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::number_format::counted;
 use gdcm_model::units::{number, telling};
 
 /// Note on a choice in a proposed layout. Columns are given as displayed, in quotation marks.
@@ -25,7 +26,9 @@ pub enum LayoutNote {
         reason: TimeUnitReason,
     },
     #[error(
-        "the file marks {count} columns as {side}s under other names; they are assigned in order"
+        "no column has the name of an {side}: the {side}s are assigned in file order to the {} \
+        that the file marks as such",
+        counted(*count, "column")
     )]
     MarkedInOrder { side: ChannelSide, count: usize },
     /// A column with the conversion to a channel's unit.
@@ -96,7 +99,7 @@ pub enum ColumnConversion {
     #[error(", × {} as requested", number(*.0))]
     RequestedFactor(f64),
     /// The channel has no unit; the file may give one.
-    #[error(" unchanged{}", unit_words(.0.as_deref()))]
+    #[error("{}, not converted because the channel has no unit", unit_words(.0.as_deref()))]
     NoUnitOfChannel(Option<String>),
     #[error(", {from} → {to} (× {})", number(*factor))]
     Converted {
@@ -117,7 +120,7 @@ pub enum ColumnConversion {
         factor_words(*factor)
     )]
     OnlyPlausibleUnit { unit: String, factor: f64 },
-    #[error(" unchanged: the file gives no unit")]
+    #[error(", not converted because the file gives no unit")]
     NoUnitOfFile,
 }
 

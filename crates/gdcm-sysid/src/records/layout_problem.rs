@@ -1,6 +1,7 @@
 //! Problems and cautions about the columns chosen from a record.
 
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::number_format::counted;
 use gdcm_model::units::{number, telling};
 
 use super::record_table::shortened_list;
@@ -77,8 +78,9 @@ pub enum LayoutProblem {
     },
     /// The columns have no names.
     #[error(
-        "the file has {found} columns without names; give the column number of each channel, for \
-        example {channel}=#2"
+        "the file has {} without names; give the column number of each channel, for example \
+        {channel}=#2",
+        counted(*found, "column")
     )]
     Unnamed {
         /// The first channel, for the example in the message.

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::number_format::counted;
 use gdcm_model::simulation::{FlightRecord, Segment, Signal, centred};
 
 use super::caution_note::CautionNote;
@@ -80,7 +81,7 @@ pub enum RecordCaution {
     #[error(
         "{signal} is at its limit for {percent:.1} % of {record}{}; the lost values cannot be \
         recovered. Leave out the output, or {}",
-        if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
+        if *records > 1 { format!(", and in {}", counted(records - 1, "other record")) } else { String::new() },
         if *records > 1 { "these records" } else { "the record" }
     )]
     AtLimit {
@@ -109,7 +110,7 @@ pub enum RecordCaution {
         a rate limit. The response then depends on the amplitude, and if the limiter acts after the \
         log, the record does not show the input. Sweep with a smaller amplitude at high frequency, or \
         lower the upper end of the band",
-        if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
+        if *records > 1 { format!(", and in {}", counted(records - 1, "other record")) } else { String::new() },
     )]
     RateLimited {
         /// The record with the largest share of slopes at the limit, by name.

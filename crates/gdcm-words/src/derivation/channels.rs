@@ -2,7 +2,7 @@
 
 use gdcm_method::correction::{Channel, GainObjective, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;
-use gdcm_model::number_format::five_digits;
+use gdcm_model::number_format::{counted, five_digits};
 use gdcm_model::units::{s_to_ms, six_digits};
 
 use super::{Context, Derivation};
@@ -260,7 +260,8 @@ impl Optimum<'_> {
         let mut rests_on = self.context.models();
         rests_on.push(self.context.held());
         rests_on.push(format!(
-            "{defined} responses fitted, α = {}",
+            "{} fitted, α = {}",
+            counted(defined, "response"),
             six_digits(self.problem.alpha)
         ));
         rests_on.push(proof_text(self.solution.proof.outcome));

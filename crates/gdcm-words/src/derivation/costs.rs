@@ -4,7 +4,7 @@ use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::fidelity::{Cost, CostAverage, SUGGESTION_RATIO};
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
-use gdcm_model::number_format::five_digits;
+use gdcm_model::number_format::{counted, five_digits};
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, assessed};
 
@@ -81,8 +81,8 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     };
     let mut rests_on = vec![
         format!(
-            "{} {kind} models kept; {} is used as representative",
-            distances.len() + 1,
+            "{} kept; {} is used as representative",
+            counted(distances.len() + 1, &format!("{kind} model")),
             result.representative_name(kind)
         ),
         context.band(),

@@ -3,7 +3,7 @@
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::fidelity::Mismatch;
 use gdcm_model::dataset::{BundleKind, Pair};
-use gdcm_model::number_format::five_digits;
+use gdcm_model::number_format::{counted, five_digits};
 use gdcm_model::units::{db_to_ratio, s_to_ms};
 
 use super::sample_words::{median_words, spread};
@@ -71,8 +71,9 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
         scores.iter().flatten().count()
     });
     let models = format!(
-        "{physics} physics models and {identified} identified models that are \
-        kept"
+        "{} and {} that are kept",
+        counted(physics, "physics model"),
+        counted(identified, "identified model")
     );
     Derivation {
         title,

@@ -223,7 +223,7 @@ impl ChannelRow<'_> {
         };
         if open_units.is_empty() {
             let factor = self.column_use.map_or(1.0, |column_use| column_use.factor);
-            let label = format!("Factor of the column of {name}");
+            let label = format!("Unit conversion factor of {name}");
             let typed = number_entry_ui(ui, &label, &number(factor), "1", FIELD_WIDTH, commands);
             if let Some(Some(factor)) = typed
                 && let Some(column_use) = self.column_use
@@ -277,7 +277,7 @@ impl ChannelRow<'_> {
     /// Shows the time skew and the factor in the displayed record only.
     fn remedy_ui(&self, ui: &mut Ui, remedy: ChannelRemedy, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
-        let label = format!("Delay of {name} in this record");
+        let label = format!("Time skew of {name}, this record");
         let value = number(s_to_ms(remedy.delay_s));
         let typed = number_entry_ui(ui, &label, &value, "0", RECORD_FIELD_WIDTH, commands);
         if let Some(delay_ms) = typed {
@@ -286,7 +286,7 @@ impl ChannelRow<'_> {
                 ..remedy
             }));
         }
-        let label = format!("Multiplier of {name} in this record");
+        let label = format!("Factor of {name}, this record");
         let value = number(remedy.factor);
         let typed = number_entry_ui(ui, &label, &value, "1", RECORD_FIELD_WIDTH, commands);
         if let Some(factor) = typed {

@@ -20,7 +20,8 @@ pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
     };
     let Some(plan) = job.news().next_flight else {
         ui.label(palette.small(
-            "The intervals after further sweeps cannot be predicted from this identification",
+            "Next flight: no prediction of the 95 % intervals, because the Fisher information of the \
+            records cannot be computed",
         ));
         return;
     };

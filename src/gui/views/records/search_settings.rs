@@ -43,8 +43,8 @@ impl SearchList {
     /// Describes the values that are searched if the field is empty.
     fn default_values(self) -> &'static str {
         match self {
-            Self::Orders => "from the records: 1 to 24",
-            Self::PastWindows => "from the records: 8 to 24",
+            Self::Orders => "automatic, within 1 to 24",
+            Self::PastWindows => "automatic, within 8 to 24",
             Self::LaguerrePoles => "0.375, 0.54, 0.75 of the upper band limit",
         }
     }

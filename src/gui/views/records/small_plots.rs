@@ -58,10 +58,10 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     };
     let plots = halves.map(|half| half.with_min_y(half.top() + CAPTION));
     let [orders, poles] = plots;
-    let mut chart = small_chart("χ²/dof vs order, small");
+    let mut chart = small_chart("χ²/dof vs order");
     add_order_fits(&mut chart, found, palette);
     plot_ui(ui, page, orders, &chart, commands);
-    let mut chart = small_chart("poles, small");
+    let mut chart = small_chart("poles, rad/s");
     add_poles(&mut chart, &found.poles, palette);
     if let Some([real, imaginary]) = pole_ranges(found) {
         chart.whole_across = Some(real);

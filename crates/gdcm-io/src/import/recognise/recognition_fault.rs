@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::limits::MOST_STATES;
 use gdcm_model::dataset::state_space::GREATEST_CHANNEL_DELAY_S;
+use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
 
 use crate::variable_fault::VariableFault;
@@ -173,8 +174,9 @@ pub(crate) enum RecognitionFault {
     #[error("real and imaginary parts have different dimensions; save both with the same")]
     PartsDiffer,
     #[error(
-        "coherence: {found} numbers for the {expected} of the response; write one for each output, \
-        input and frequency, or leave it out"
+        "coherence: {} for the {expected} of the response; write one for each output, input and \
+        frequency, or leave it out",
+        counted(*found, "number")
     )]
     CoherenceCount { found: usize, expected: usize },
     #[error("{name}: can mean γ or γ²; save γ² under the name gamma2 or coherence")]
@@ -216,8 +218,8 @@ pub(crate) enum RecognitionFault {
     #[error("{name}: these delays are given twice, with different numbers; remove one")]
     ContradictoryDelays { name: String },
     #[error(
-        "{name}: expected {expected} delays, one for each {}, found {found}",
-        side
+        "{name}: expected {}, one for each {side}, found {found}",
+        counted(*expected, "delay")
     )]
     DelayCount {
         name: String,
@@ -278,7 +280,11 @@ pub(crate) enum RecognitionFault {
         name: &'static str,
         values: [f64; 2],
     },
-    #[error("{name}: {found} numbers for {models} models; write one for each")]
+    #[error(
+        "{name}: {} for {}; write one for each",
+        counted(*found, "number"),
+        counted(*models, "model")
+    )]
     NumberForEachModel {
         name: String,
         found: usize,

@@ -16,7 +16,7 @@ pub struct PoleEstimate {
     pub sd_re: f64,
     /// Standard deviation of the imaginary part \[rad/s\].
     pub sd_im: f64,
-    /// Whether the records determine the pole: it is not slower than the frequency band, and
+    /// Whether the records determine the pole: it is within the frequency band, and
     /// [`POLE_INTERVAL`] standard deviations are at most half its modulus.
     pub determined: bool,
 }

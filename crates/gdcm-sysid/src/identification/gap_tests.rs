@@ -353,6 +353,14 @@ fn mean_square_error(records: &[FlightRecord]) -> f64 {
     squares / (2 * omegas.len()) as f64
 }
 
+#[test]
+fn a_gap_in_all_channels_is_refined_from_its_pieces_as_well() {
+    // From the proposed models alone the error is above 1 dB.
+    let records = with_gap(&fresh_flights(5213), Missing::AllChannels, 0.6);
+    let error = mean_square_error(&records).sqrt();
+    assert!(error < 0.7, "{error}");
+}
+
 /// Measures how a gap raises the error of the model, over fresh flights with a known truth.
 ///
 /// The table in `docs/identification.md` holds its output:
@@ -360,7 +368,7 @@ fn mean_square_error(records: &[FlightRecord]) -> f64 {
 #[test]
 #[ignore = "minutes; prints the table of the documentation"]
 fn gaps_hardly_raise_the_error() {
-    const SEEDS: std::ops::Range<u64> = 5001..5009;
+    const SEEDS: std::ops::Range<u64> = 5301..5317;
     let cases = [
         (Missing::Outputs, 0.6),
         (Missing::AllChannels, 0.6),
@@ -394,11 +402,6 @@ fn gaps_hardly_raise_the_error() {
             worst(&split[case]),
         );
         let ratio = pooled(&with_gaps[case]) / pooled(&whole);
-        // With all channels missing, two of the eight flights end in worse minima.
-        let most = match missing {
-            Missing::Outputs => 1.5,
-            Missing::AllChannels => 2.0,
-        };
-        assert!(ratio < most, "{missing:?} {seconds} s: {ratio}");
+        assert!(ratio < 1.5, "{missing:?} {seconds} s: {ratio}");
     }
 }

@@ -10,9 +10,10 @@ use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::simulation::{FlightRecord, Validation};
 
 use super::assessment::{AssessedModel, Assessment, NOT_IDENTIFIED_DB};
-use super::model_selection::{Proposal, Refinement, propose, refine};
+use super::model_selection::{Proposal, Refinement, propose};
 use super::order::OrderFit;
 use super::prepared_data::PreparedData;
+use super::second_start::refine;
 use crate::diagnostics::bands::TWO_SIDED_95;
 use crate::diagnostics::cautions::IdentificationCaution;
 use crate::diagnostics::feedback::Feedback;
@@ -153,7 +154,7 @@ impl Models<'_> {
         } = assessed;
         let model = &refinement.fit.model;
         let unrefined = proposal.unrefined(refinement.search.order)?;
-        let poles = uncertainty.as_logged().poles(model, self.options.band[0]);
+        let poles = uncertainty.as_logged().poles(model, self.options.band);
         let bands = Arc::new(uncertainty.bands);
         let information = self.information(refinement, &bands, uncertainty.feedback.as_ref());
         let advice = self.advice(information.as_ref(), &uncertainty.not_identified);

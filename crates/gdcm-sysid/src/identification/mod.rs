@@ -17,9 +17,13 @@ mod feedback_tests;
 mod fresh_flight_tests;
 #[cfg(test)]
 mod gap_tests;
+#[cfg(test)]
+mod helicopter_tests;
 pub mod identify;
 #[cfg(test)]
 pub(crate) mod known_answers_tests;
+#[cfg(test)]
+pub(crate) mod known_flight;
 #[cfg(test)]
 mod long_record_tests;
 pub(crate) mod model_selection;
@@ -33,6 +37,7 @@ mod record_caution_tests;
 #[cfg(test)]
 mod refined_known_answers_tests;
 mod search_records;
+pub(crate) mod second_start;
 
 pub use crate::diagnostics::cautions::IdentificationCaution;
 pub use crate::identification_error::IdentificationError;

@@ -81,14 +81,14 @@ pub(crate) fn propose(
 }
 
 /// Chooses the order, measures the noise once more at its model, and descends to the minimum.
-pub(crate) fn refine<'a>(
+pub(crate) fn refine_from<'a>(
     data: &PreparedData<'a>,
-    proposal: &Proposal,
+    starts: &BTreeMap<usize, Fit>,
     progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
     progress.next(0.4, "order")?;
     let search = data
-        .search_order(&proposal.starts, progress)?
+        .search_order(starts, progress)?
         .ok_or_else(|| data.no_model())?;
     let chosen = search
         .fits

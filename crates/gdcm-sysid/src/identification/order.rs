@@ -145,7 +145,10 @@ impl OrderSearch<'_> {
 /// J over all records, estimated: r (J + k phi) - k phi,  r = N / N of the likelihood,  phi = J / (N - k)
 /// ```
 ///
-/// k phi is the part of the noise that the parameters explain, with few records as with many.
+/// k phi is the part of the noise that the parameters explain, with few records as with many. If
+/// inputs miss samples, the states of each segment's transient count as parameters as well: beside a
+/// lightly damped mode, the transients of a mode that does not exist and the missing inputs together
+/// follow the noise.
 fn criterion(
     cost: f64,
     order: usize,
@@ -153,7 +156,10 @@ fn criterion(
     likelihood: &Likelihood,
     whole: &Likelihood,
 ) -> Option<f64> {
-    let k = model.parameters() as f64;
+    let mut k = model.parameters() as f64;
+    if likelihood.misses_inputs() {
+        k += 0.5 * (order * likelihood.segments.len()) as f64;
+    }
     let used = likelihood.freedom(order) as f64;
     let n = whole.freedom(order) as f64;
     if used <= k {

@@ -51,6 +51,7 @@ const BETTER_PERIODS: f64 = 5.0;
 const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// The prepared records, their spectral lines and the weighted cost.
+#[derive(Clone)]
 pub(crate) struct PreparedData<'a> {
     /// The parts used from every record.
     pub(crate) record_uses: Vec<RecordUse>,
@@ -206,6 +207,22 @@ impl<'a> PreparedData<'a> {
             orders,
             longest_future: extent.longest_future(),
         }
+    }
+
+    /// Returns the same data with the records to fit cut at their gaps; `None` if no input misses
+    /// samples, or the pieces have no weights.
+    pub(crate) fn cut_at_missing_inputs(&self) -> Option<Self> {
+        let mut hats = self.spectra.iter().flat_map(|spectrum| &spectrum.hats);
+        if !hats.any(|hat| hat.side == ChannelSide::Input) {
+            return None;
+        }
+        let spectra = self.gap_free_spectra.clone();
+        let likelihood = weigh(&spectra, &self.measured, self.likelihood.executor).ok()?;
+        Some(Self {
+            spectra,
+            likelihood,
+            ..self.clone()
+        })
     }
 
     /// Converts a model to record units: each response is multiplied by its output's scale over its

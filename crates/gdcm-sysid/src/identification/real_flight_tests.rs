@@ -13,8 +13,9 @@ use gdcm_model::statistics::median;
 
 use super::identify::identify;
 use super::known_answers_tests::{matrix, number, numbers, response_at};
-use super::model_selection::{propose, refine};
+use super::model_selection::propose;
 use super::prepared_data::PreparedData;
+use super::second_start::refine;
 use super::{Identification, IdentificationCaution, Options, Preparation, TRUSTED_COHERENCE};
 use crate::diagnostics::bands::BandModels;
 use crate::diagnostics::feedback::{Feedback, FeedbackRecords};

@@ -375,6 +375,12 @@ impl<'a> Likelihood<'a> {
             .sum()
     }
 
+    /// Returns whether an input misses samples.
+    pub(crate) fn misses_inputs(&self) -> bool {
+        let mut hats = self.segments.iter().flat_map(|segment| &segment.hats);
+        hats.any(|hat| hat.side == ChannelSide::Input)
+    }
+
     /// Computes each segment's contribution to the cost; `None` if one is not finite.
     pub(crate) fn parts(&self, model: &SchurModel) -> Option<Vec<SegmentCost>> {
         let resolvents = self.resolvents(model);

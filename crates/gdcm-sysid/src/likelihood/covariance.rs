@@ -108,12 +108,14 @@ impl ParameterCovariance {
             .collect()
     }
 
-    /// Returns the model's poles with their standard deviations; `lowest` is the lower band end
+    /// Returns the model's poles with their standard deviations; `band` is the frequency band
     /// \[rad/s\].
     ///
-    /// A pole is determined if its modulus reaches the lower band end, and its interval is at most
-    /// half the modulus to each side.
-    pub(crate) fn poles(&self, model: &SchurModel, lowest: f64) -> Vec<PoleEstimate> {
+    /// A pole is determined if its modulus is within the band, and its interval is at most half the
+    /// modulus to each side. Above the band, a pole of the model stands for several true poles, of
+    /// servos and sensors, to which it need not be near.
+    pub(crate) fn poles(&self, model: &SchurModel, band: [f64; 2]) -> Vec<PoleEstimate> {
+        let [lowest, highest] = band;
         let (outputs, inputs) = model.d().shape();
         let mut estimates = Vec::new();
         for (number, pole) in model.poles().into_iter().enumerate() {
@@ -135,7 +137,7 @@ impl ParameterCovariance {
                 pole,
                 sd_re,
                 sd_im,
-                determined: pole.norm() >= lowest && is_sharp,
+                determined: (lowest..=highest).contains(&pole.norm()) && is_sharp,
             });
         }
         estimates
@@ -219,7 +221,7 @@ mod tests {
         assert!((response / other - 1.0).abs() < 1e-6, "{response} {other}");
         let [poles, others] = covariances
             .each_ref()
-            .map(|covariance| covariance.poles(&fit.model, 0.1));
+            .map(|covariance| covariance.poles(&fit.model, [0.1, 100.0]));
         for (pole, other) in poles.iter().zip(&others) {
             assert!((pole.sd_re / other.sd_re - 1.0).abs() < 1e-6);
         }

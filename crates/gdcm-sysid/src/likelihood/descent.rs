@@ -11,6 +11,9 @@
 //!       stop if it does not fall after 10 such increases
 //! 4  rho = decrease / (2 g'd - d'G d):  lambda, at least 1e-8,
 //!       /= 10 for rho > 0.75, /= 3 for rho > 0.4, unchanged for rho > 0.15, *= 4 otherwise
+//! 5  by the fall F of J over the last six steps:
+//!       F < 0.02 k phi and delta^2 < 0.1 k phi: stop, the rest takes too many steps to be worth them
+//!       J - F (steps left)/6 > the cost above which the model is useless: hopeless
 //! ```
 //!
 //! The descent also stops if N <= k, or without normal equations.
@@ -40,6 +43,8 @@ pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
 const LARGEST_FALL: f64 = 3.0;
 /// Maximum number of steps in a descent.
 const MOST_STEPS: usize = 40;
+/// Number of steps over which the fall of the cost is observed.
+const OBSERVED_STEPS: usize = 6;
 /// Damping in the first step.
 const FIRST_DAMPING: f64 = 1e-3;
 /// Factor on the damping after a failure.
@@ -138,20 +143,29 @@ impl Fit {
         limits: Limits,
         progress: &Shares,
     ) -> Result<Self, Cancelled> {
+        let mut costs = vec![self.cost];
         for step in 1..=MOST_STEPS {
             progress.advance(
                 STEP_PROGRESS,
                 &format!("order {}, step {step}", self.order()),
             )?;
-            if !self.step(likelihood, limits) {
+            let fall = match costs.len().checked_sub(OBSERVED_STEPS + 1) {
+                Some(before) => costs[before] - self.cost,
+                None => f64::INFINITY,
+            };
+            let steps_left = (MOST_STEPS + 1 - step) as f64;
+            if self.cost - fall * steps_left / OBSERVED_STEPS as f64 > limits.hopeless_above
+                || !self.step(likelihood, limits, fall)
+            {
                 break;
             }
+            costs.push(self.cost);
         }
         Ok(self)
     }
 
     /// Takes a step (1 to 4); returns whether a further one may be worthwhile.
-    fn step(&mut self, likelihood: &Likelihood, limits: Limits) -> bool {
+    fn step(&mut self, likelihood: &Likelihood, limits: Limits, fall: f64) -> bool {
         let Some(dispersion) = self.dispersion(likelihood) else {
             return false;
         };
@@ -170,13 +184,17 @@ impl Fit {
         let square_at_least = direction
             .as_ref()
             .map_or(0.0, |direction| scaled.gradient.dot(direction));
-        let may_end = square_at_least < limits.decrement * k_phi
+        let enough = if fall < CONVERGED * k_phi {
+            limits.decrement.max(COMPARABLE)
+        } else {
+            limits.decrement
+        };
+        let may_end = square_at_least < enough * k_phi
             || self.cost - LARGEST_FALL * square_at_least > limits.hopeless_above;
         if may_end {
             let square = scaled.decrement().unwrap_or(f64::INFINITY);
             self.decrement = square / k_phi;
-            if self.decrement < limits.decrement
-                || self.cost - LARGEST_FALL * square > limits.hopeless_above
+            if self.decrement < enough || self.cost - LARGEST_FALL * square > limits.hopeless_above
             {
                 return false;
             }

@@ -997,7 +997,8 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         "m.npz: ",
         "condition 7",
         "\"nominal\"",
-        "LON, 0.034 s",
+        "LON",
+        "0.034 s",
         "3.4 samples",
     ];
     desk.messages(&[

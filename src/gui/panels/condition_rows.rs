@@ -19,7 +19,7 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, entries_ui, named, tooltip_right_of};
+use crate::gui::widgets::controls::{Asks, entries_ui, hint_right_of, named, tooltip_right_of};
 use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::list_row::RowLook;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
@@ -334,7 +334,7 @@ impl<'a> ConditionRows<'a> {
             let words = cost_words(self.state, id, column, &worst);
             let response = named(response, Role::Button, words.clone());
             response.context_menu(|ui| marks.menu_ui(ui, commands));
-            if response.on_hover_text(words).clicked() {
+            if hint_right_of(response, row, &words).clicked() {
                 commands.extend([
                     Command::Selection(SelectionCommand::SelectCondition(id)),
                     Command::Selection(SelectionCommand::FocusPair(worst.pair)),

@@ -63,6 +63,7 @@ pub mod overview;
 mod overview_axes;
 mod overview_cell;
 mod overview_ranges;
+pub mod overview_response;
 pub mod overview_scene;
 mod pane_scene;
 mod panel_axis;

@@ -8,7 +8,8 @@ use gdcm_plot::figure::Range;
 
 use super::overview_axes::AxisRange;
 use super::overview_cell::{CellLayout, PlacedCell};
-use super::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
+use super::overview_response::OverviewCell;
+use super::overview_scene::{OverviewEvent, OverviewScene, OverviewView};
 use super::panel_text::{caption_font, message_ui};
 use super::ticks::Ticks;
 use crate::gui::widgets::elision::elided;

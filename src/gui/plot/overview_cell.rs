@@ -7,7 +7,8 @@ use egui::{
 use super::curve_menu::model_actions_ui;
 use super::drawn_curves::{BodeCurve, Pane};
 use super::overview_axes::AxisRange;
-use super::overview_scene::{MenuCurve, OverviewCell, OverviewEvent, OverviewView};
+use super::overview_response::OverviewCell;
+use super::overview_scene::{MenuCurve, OverviewEvent, OverviewView};
 use super::panel_painter::paint_frame;
 use super::panel_text::AT_RIGHT;
 use super::sketch::Sketch;

@@ -10,7 +10,7 @@ use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::fitted_values;
 
 use super::drawn_curves::{BodeCurve, PANES, Pane};
-use super::overview_scene::OverviewCell;
+use super::overview_response::OverviewCell;
 use super::steady_range::{AxisUpdate, changed_range, labelled_range};
 use super::value_unit::ValueUnit;
 

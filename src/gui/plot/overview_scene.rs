@@ -14,21 +14,9 @@ use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
 use super::drawn_pane::DrawnPane;
 use super::nearest_curve::{Hit, nearest_curve};
 use super::overview_ranges::SharedRanges;
+use super::overview_response::OverviewCell;
 use super::steady_range::AxisUpdate;
 use super::viewed_range::ranges_of;
-
-/// Response in an overview cell.
-#[derive(Clone, Debug)]
-pub struct OverviewCell<'a> {
-    pub pair: Pair,
-    pub curves: &'a [BodeCurve],
-    /// Whether the response is held: the correction must match it exactly.
-    pub constrained: bool,
-    /// Whether the pair is in focus.
-    pub selected: bool,
-    /// Short text in the corner, such as J; may be empty.
-    pub note: String,
-}
 
 /// Contents of the overview.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! Long computations, and computations that fail.
 
+use gdcm::gui::commands::form::FormCommand;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
@@ -13,6 +14,7 @@ use gdcm_model::progress::Unobserved;
 use gdcm_study::stages::engine::LIVE_PROOF;
 use gdcm_study::{Engine, Study};
 
+use super::views::give;
 use super::views::show;
 use super::*;
 
@@ -148,7 +150,11 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
         3.0,
         "and edited, with a new engine"
     );
-    click(&mut window, "Close message");
+    let bar = state(&window).notices.bars().next().cloned();
+    give(
+        &mut window,
+        FormCommand::CloseBar(bar.expect("the fault is still told")),
+    );
     assert!(bar_codes(&window).is_empty());
 }
 

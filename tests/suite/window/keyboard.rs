@@ -412,7 +412,7 @@ fn the_keys_of_the_palette_begin_a_new_search_and_find_what_the_verdict_offers()
     };
     assert_eq!(enabled("Use leads"), Some(true));
     assert_eq!(
-        enabled("Copy values of Leads"),
+        enabled("Copy the values of Leads"),
         Some(false),
         "there are none"
     );

@@ -7,7 +7,8 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 
 use super::*;
 use crate::gui::plot::overview::overview_ui;
-use crate::gui::plot::overview_scene::{OverviewCell, OverviewEvent, OverviewScene, OverviewView};
+use crate::gui::plot::overview_response::OverviewCell;
+use crate::gui::plot::overview_scene::{OverviewEvent, OverviewScene, OverviewView};
 use crate::gui::plot::steady_range::AxisUpdate;
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;

@@ -65,6 +65,10 @@ display=:$((RANDOM % 400 + 200))
 Xvfb "$display" -screen 0 1440x900x24 -nolisten tcp >/dev/null 2>&1 &
 running+=($!)
 export DISPLAY=$display
+for _ in $(seq 100); do
+  xdotool getdisplaygeometry >/dev/null 2>&1 && break
+  sleep 0.1
+done
 "$wine" "$folder/gdcm-window.exe" &
 running+=($!)
 timeout 120 xdotool search --sync --onlyvisible --name '^gdcm|gdcm$' >/dev/null

@@ -100,6 +100,15 @@ impl GdcmApp {
         self.ctx.request_repaint();
     }
 
+    /// Moves the focus to a field, at the latest after `frames` further frames: a section that has
+    /// just been opened draws its fields only in this frame.
+    fn focus_field_within(&mut self, name: &'static str, frames: u8) {
+        if !focus_field(&self.ctx, name) && frames > 0 {
+            let frames = frames - 1;
+            self.focus_next(NextFocus::Field { name, frames });
+        }
+    }
+
     /// Moves the focus to the requested target, unless a form covers it.
     pub(super) fn move_focus(&mut self) {
         if self.state.forms.shown.is_some()
@@ -108,13 +117,7 @@ impl GdcmApp {
             return;
         }
         match self.next_focus.take() {
-            Some(NextFocus::Field { name, frames }) => {
-                // A section that has just been opened draws its fields in this frame.
-                if !focus_field(&self.ctx, name) && frames > 0 {
-                    let frames = frames - 1;
-                    self.focus_next(NextFocus::Field { name, frames });
-                }
-            }
+            Some(NextFocus::Field { name, frames }) => self.focus_field_within(name, frames),
             Some(NextFocus::Region { forward }) => leave_region(&self.ctx, forward),
             None => {}
         }

@@ -37,7 +37,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium,
 /// Window width from which the grid shows all groups and the drawer all details \[pt\].
 pub(super) const FULL_WIDTH: f32 = 1400.0;
 /// Column widths \[pt\].
-const GROUP: f32 = 76.0;
+const GROUP: f32 = 94.0;
 const NAME: f32 = 158.0;
 const UNIT: f32 = 28.0;
 const LIMIT: f32 = 58.0;

@@ -107,7 +107,7 @@ pub enum ExportNote {
     NoPhysicsParameters,
     /// No flight records are open, so that the report compares no time histories.
     NoFlightRecords,
-    /// Conditions without figures in the report, which would be too long to print.
+    /// Conditions that the report shows in tables only: with figures it would be too long to print.
     ConditionsNotDrawn { conditions: Vec<ConditionId> },
     /// The report is about all conditions, although some are left out of the export.
     ReportOfAllConditions,

@@ -4,8 +4,8 @@
 //! 1  the models of all orders refined on the records cut at the gaps: no hats, but a transient for
 //!    each piece
 //! 2  these as starts on the whole records, refined as usual
-//! 3  of both results, the one with the lower V = J + 2 sum ln det C + k ln N,
-//!    k with the states of the transients
+//! 3  of both results, the one with the lower V = J + 2 sum ln det C + k' ln N,
+//!    k' with half of the transients' states (`counted_parameters`)
 //! ```
 //!
 //! C is the noise of each result's own residuals, so V is -2 ln L up to a constant and the penalty
@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 use gdcm_model::progress::Shares;
 
 use super::model_selection::{Proposal, Refinement, refine_from};
+use super::order::counted_parameters;
 use super::prepared_data::PreparedData;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::cost::Likelihood;
@@ -81,8 +82,7 @@ fn evaluated<'f>(
 pub(super) fn deviance(refinement: &Refinement) -> f64 {
     let fit = &refinement.fit;
     let likelihood = &refinement.weights.likelihood;
-    let transients = (fit.order() * likelihood.segments.len()) as f64;
-    let k = fit.model.parameters() as f64 + 0.5 * transients;
+    let k = counted_parameters(&fit.model, likelihood);
     let n = likelihood.freedom(fit.order()) as f64;
     let mut log_determinants = 0.0;
     for segment in &likelihood.segments {

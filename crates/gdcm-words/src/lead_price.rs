@@ -2,14 +2,14 @@
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::Pair;
-use gdcm_model::units::{number, signed};
+use gdcm_model::number_format::{signed, six_digits};
 
 /// Gain \[dB\] below which the displayed value, rounded to 0.1 dB, is zero.
 const NOTHING_DB: f64 = 0.05;
 
 /// Describes the frequency limit: "not valid above 12 rad/s".
 pub fn limit_text(price: &LeadPrice) -> String {
-    format!("not valid above {} rad/s", number(price.limit_rad_s))
+    format!("not valid above {} rad/s", six_digits(price.limit_rad_s))
 }
 
 /// Describes the frequency limit, and the gain that each filter adds to its channel: "not valid
@@ -30,7 +30,7 @@ pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> S
         "{}: at {} rad/s the leads add {}; the gain of a response increases by the sum of those at \
         its input and output",
         limit_text(price),
-        number(price.above_rad_s()),
+        six_digits(price.above_rad_s()),
         gains.join(", ")
     )
 }
@@ -39,7 +39,7 @@ pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> S
 pub fn pair_price_text(price: &LeadPrice, pair: Pair) -> Option<String> {
     let gain_db = price.of_pair_db(pair);
     if gain_db > NOTHING_DB {
-        let above_rad_s = number(price.above_rad_s());
+        let above_rad_s = six_digits(price.above_rad_s());
         Some(format!("{} dB at {above_rad_s} rad/s", signed(gain_db, 1)))
     } else {
         None

@@ -4,8 +4,9 @@
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::six_digits;
 use gdcm_model::response::LeadFilter;
-use gdcm_model::units::{number, s_to_ms, signed, telling};
+use gdcm_model::units::{s_to_ms, signed, telling};
 use gdcm_study::results::lead_remarks::lead_remarks;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::results::uncertainty::Uncertainty;
@@ -45,7 +46,7 @@ pub fn lead_words(
             text.push_str(&format!(
                 "; {} dB at {} rad/s",
                 signed(price.gains_db[channel], 1),
-                number(price.above_rad_s())
+                six_digits(price.above_rad_s())
             ));
         }
         words.push(text);
@@ -118,7 +119,7 @@ fn half_width_words(
 /// `None` without leads.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
-    let limit = number(LeadPrice::new(leads)?.limit_rad_s);
+    let limit = six_digits(LeadPrice::new(leads)?.limit_rad_s);
     let states: usize = leads
         .filters()
         .iter()

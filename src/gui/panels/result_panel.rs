@@ -31,8 +31,11 @@ const ROW: f32 = 18.0;
 const GAIN_END: f32 = 0.5;
 /// Right edge of the delays, as a share of the side's width.
 const DELAY_END: f32 = 0.85;
-/// Least gap between the error bar of a gain and the delay beside it \[pt\].
+/// Least gap between a channel name and its gain, and between the error bar of a gain and the delay
+/// beside it \[pt\].
 const LEAST_GAP: f32 = 5.0;
+/// Gap between a value and its error bar, or its earlier value \[pt\].
+const BESIDE_GAP: f32 = 3.0;
 
 /// Opacity of error bars that belong to earlier settings.
 pub(super) const OLDER: f32 = 0.5;
@@ -148,10 +151,20 @@ struct Side<'a> {
     palette: &'a Palette,
 }
 
+/// Right edges of the values on one side, from the left end of its rows \[pt\].
+struct Columns {
+    gain_end: f32,
+    delay_end: f32,
+    /// Whether any gain has changed since the settings were opened.
+    gain_changed: bool,
+    /// Whether any delay has changed since the settings were opened.
+    delay_changed: bool,
+    /// Whether the row has room for the earlier delays; otherwise only the tooltips have them.
+    shows_earlier_delays: bool,
+}
+
 /// A channel's gain or delay.
 struct ChannelValue {
-    /// Right edge, as a share of the row width.
-    end: f32,
     text: String,
     font: FontId,
     color: Color32,
@@ -165,6 +178,25 @@ struct ChannelValue {
     exact: String,
     scalar: Scalar,
     asked: ExplainTarget,
+}
+
+/// Greatest widths of the texts in a column \[pt\].
+#[derive(Default)]
+struct ColumnWidths {
+    value: f32,
+    /// Width of the earlier values; 0 if none has changed.
+    earlier: f32,
+}
+
+impl ColumnWidths {
+    fn add(&mut self, ui: &Ui, value: &ChannelValue) {
+        self.value = self
+            .value
+            .max(text_width(ui, &value.text, value.font.clone()));
+        if let Some(was) = &value.was {
+            self.earlier = self.earlier.max(text_width(ui, was, small()));
+        }
+    }
 }
 
 impl Side<'_> {
@@ -185,28 +217,29 @@ impl Side<'_> {
         };
         let head = self.row(0);
         painted_text(ui, head, 0.0, title, small(), palette.dim_text);
-        let changed = self.changed_columns();
+        let columns = self.columns(ui);
+        let gain_unit = if columns.gain_changed { "was" } else { "±%" };
+        let delay_unit = match (columns.delay_changed, columns.shows_earlier_delays) {
+            (false, _) => "±",
+            (true, true) => "was",
+            (true, false) => "",
+        };
         for (end, words, unit) in [
-            (GAIN_END, "k", if changed[0] { "was" } else { "±%" }),
-            (DELAY_END, "τ ms", if changed[1] { "was" } else { "±" }),
+            (columns.gain_end, "k", gain_unit),
+            (columns.delay_end, "τ ms", delay_unit),
         ] {
-            let place = painted_upto(ui, head, end, words, small(), palette.dim_text);
-            painted_text(
-                ui,
-                head,
-                place.right() - head.left() + 3.0,
-                unit,
-                small(),
-                palette.dim_text,
-            );
+            painted_upto(ui, head, end, words, small(), palette.dim_text);
+            painted_text(ui, head, end + BESIDE_GAP, unit, small(), palette.dim_text);
         }
         for (index, channel) in channels.iter().enumerate() {
             let row = self.row(index + 1);
             painted_text(ui, row, 0.0, &channel.name, body(), palette.text);
             let gain = self.gain(index, &channel.name);
-            let gain_end = self.value_ui(ui, row, gain, row.left(), commands);
+            let gain_end = self.value_ui(ui, row, gain, columns.gain_end, commands);
             let delay = self.delay(index, &channel.name);
-            self.value_ui(ui, row, delay, gain_end + LEAST_GAP, commands);
+            let least_end = gain_end + LEAST_GAP + text_width(ui, &delay.text, body());
+            let delay_end = columns.delay_end.max(least_end);
+            self.value_ui(ui, row, delay, delay_end, commands);
         }
     }
 
@@ -218,19 +251,41 @@ impl Side<'_> {
         }
     }
 
-    /// Returns whether any gain, and whether any delay, has changed since the settings were opened.
-    fn changed_columns(&self) -> [bool; 2] {
+    /// Divides the row width among the columns. Values that have not changed have their usual places;
+    /// beside changed values, whose earlier values are wider than error bars, the columns move
+    /// towards the channel names.
+    fn columns(&self, ui: &Ui) -> Columns {
+        let dataset = self.state.dataset();
         let channels = if self.is_input_side {
-            self.state.dataset().inputs().len()
+            dataset.inputs()
         } else {
-            self.state.dataset().outputs().len()
+            dataset.outputs()
         };
-        let mut changed = [false; 2];
-        for index in 0..channels {
-            changed[0] |= self.gain(index, "").was.is_some();
-            changed[1] |= self.delay(index, "").was.is_some();
+        let mut names = 0.0_f32;
+        let mut gains = ColumnWidths::default();
+        let mut delays = ColumnWidths::default();
+        for (index, channel) in channels.iter().enumerate() {
+            names = names.max(text_width(ui, &channel.name, body()));
+            gains.add(ui, &self.gain(index, &channel.name));
+            delays.add(ui, &self.delay(index, &channel.name));
         }
-        changed
+        let width = self.place.width();
+        let mut gain_end = GAIN_END * width;
+        let mut delay_end = DELAY_END * width;
+        if gains.earlier > 0.0 {
+            gain_end = gain_end.min(names + LEAST_GAP + gains.value);
+            let least_end = gain_end + BESIDE_GAP + gains.earlier + LEAST_GAP + delays.value;
+            delay_end = delay_end
+                .min(width - BESIDE_GAP - delays.earlier)
+                .max(least_end);
+        }
+        Columns {
+            gain_end,
+            delay_end,
+            gain_changed: gains.earlier > 0.0,
+            delay_changed: delays.earlier > 0.0,
+            shows_earlier_delays: delay_end + BESIDE_GAP + delays.earlier <= width + LEAST_GAP,
+        }
     }
 
     /// Returns a value's text when the settings were opened, unless it equals `text`.
@@ -254,7 +309,6 @@ impl Side<'_> {
         let scalar = Scalar::ChannelGain(channel);
         let text = gain_text_of(self.shown, channel);
         ChannelValue {
-            end: GAIN_END,
             was: self.was(&text, index, gain_text_of),
             text,
             font: medium(BODY_SIZE),
@@ -289,7 +343,6 @@ impl Side<'_> {
             exact.push_str(&format!("\nlead: {}", servo_words(filter)));
         }
         ChannelValue {
-            end: DELAY_END,
             was: self.was(&text, index, delay_text_of),
             text,
             font: body(),
@@ -306,14 +359,15 @@ impl Side<'_> {
         }
     }
 
-    /// Draws a value, which begins at `least_left` or to the right of it, with the half-width of its
-    /// error bar; a click opens its derivation. Returns the right end.
+    /// Draws a value, which ends `end` points from the left of the row, with its earlier value, or
+    /// with the half-width of its error bar; a click opens its derivation. Returns the right end of
+    /// all this, also from the left of the row \[pt\].
     fn value_ui(
         &self,
         ui: &mut Ui,
         row: Rect,
         value: ChannelValue,
-        least_left: f32,
+        end: f32,
         commands: &mut Vec<Command>,
     ) -> f32 {
         let ChannelValue {
@@ -325,14 +379,15 @@ impl Side<'_> {
             scalar,
             ..
         } = value;
-        let least_end = least_left + text_width(ui, &text, value.font.clone()) - row.left();
-        let end = value.end.max(least_end / row.width());
         let place = painted_upto(ui, row, end, &text, value.font, value.color);
-        let beside = place.right() - row.left() + 3.0;
+        let beside = end + BESIDE_GAP;
         let mut right_end = place.right();
         if let Some(was) = &was {
-            let shown = painted_text(ui, row, beside, was, small(), self.palette.dim_text);
-            right_end = shown.right();
+            let width = text_width(ui, was, small());
+            if beside + width <= row.width() + LEAST_GAP {
+                let shown = painted_text(ui, row, beside, was, small(), self.palette.dim_text);
+                right_end = shown.right();
+            }
         } else if let Some(half) = &half {
             let color = if self.state.older_uncertainty().is_some() {
                 self.palette.dim_text.gamma_multiply(OLDER)
@@ -352,6 +407,9 @@ impl Side<'_> {
             accessible_name(&name, &text, was.as_deref(), half.as_deref()),
         );
         let mut hint = exact;
+        if let Some(was) = &was {
+            hint.push_str(&format!("\nwas {was} when the settings were opened"));
+        }
         if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {
             hint.push_str(&format!("\n{}", error_bar_words(bar, scalar, level)));
         }
@@ -360,7 +418,7 @@ impl Side<'_> {
             .on_hover_cursor(CursorIcon::Help)
             .on_hover_text(hint);
         response.asks(SelectionCommand::Explain(Some(value.asked)), commands);
-        right_end
+        right_end - row.left()
     }
 }
 
@@ -400,11 +458,11 @@ fn delay_text_of(result: &ConditionAnalysis, channel: Channel) -> String {
     decimals(delay_ms, digits)
 }
 
-/// Paints right-aligned text that ends at the share `end` of the row width; returns its rectangle.
+/// Paints right-aligned text that ends `end` points from the left of the row; returns its rectangle.
 fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: Color32) -> Rect {
     painted_text(
         ui,
-        row.with_max_x(row.left() + end * row.width()),
+        row.with_max_x(row.left() + end),
         AT_RIGHT_END,
         words,
         font,

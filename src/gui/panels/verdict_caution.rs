@@ -2,8 +2,8 @@
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::schedule::ScheduleCaution;
-use gdcm_model::number_format::counted;
-use gdcm_model::units::{number, signed, told_apart};
+use gdcm_model::number_format::{counted, six_digits};
+use gdcm_model::units::{signed, told_apart};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::results::coupling_remark_search::coupling_cautions;
 use gdcm_study::results::remark_kind::RemarkKind;
@@ -95,7 +95,7 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     if most_db <= 0.05 {
         return None;
     }
-    let top = number(price.limit_rad_s);
+    let top = six_digits(price.limit_rad_s);
     let text = format!("Leads: {} dB above {top} rad/s", signed(most_db, 0));
     Some(Message::new("lead-price", text))
 }

@@ -81,7 +81,8 @@ pub(super) fn band_handles_ui(ui: &Ui, pane: PaneScene<'_>, view: &BodeView) -> 
         {
             let x = pointer.x.clamp(frame.left(), frame.right());
             let at = transform.value_from_position(pos2(x, frame.center().y));
-            let (min, max) = end.moved(scene.band, 10f64.powf(at.x));
+            let omega = scene.unit.rounded_omega(10f64.powf(at.x));
+            let (min, max) = end.moved(scene.band, omega);
             change = Some(BodeEvent::BandDragged { min, max });
         } else if response.drag_stopped() {
             change = Some(BodeEvent::BandReleased);

@@ -22,6 +22,11 @@ pub fn rad_s_to_hz(omega: f64) -> f64 {
     omega / std::f64::consts::TAU
 }
 
+/// Converts a frequency \[Hz\] to an angular frequency \[rad/s\]: `omega = 2 pi f`.
+pub fn hz_to_rad_s(frequency: f64) -> f64 {
+    std::f64::consts::TAU * frequency
+}
+
 /// Converts milliseconds to seconds.
 pub fn ms_to_s(milliseconds: f64) -> f64 {
     1e-3 * milliseconds

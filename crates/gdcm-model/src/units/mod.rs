@@ -9,4 +9,6 @@ pub mod physical_unit;
 pub use crate::number_format::{
     number, signed, six_digits, telling, told_apart, without_sign_of_zero,
 };
-pub use display_units::{db_to_ratio, ms_to_s, neper_to_db, rad_s_to_hz, ratio_to_db, s_to_ms};
+pub use display_units::{
+    db_to_ratio, hz_to_rad_s, ms_to_s, neper_to_db, rad_s_to_hz, ratio_to_db, s_to_ms,
+};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::number_format::three_digits;
-use gdcm_model::units::rad_s_to_hz;
+use gdcm_model::units::{hz_to_rad_s, rad_s_to_hz};
 
 /// Display unit for frequencies; internally they are always in rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,6 +27,17 @@ impl FrequencyUnit {
         match self {
             Self::RadPerSecond => omega,
             Self::Hertz => rad_s_to_hz(omega),
+        }
+    }
+
+    /// Rounds the angular frequency `omega` \[rad/s\] so that it has three significant digits in this
+    /// unit: what a dragged limit displays is then its value.
+    pub fn rounded_omega(self, omega: f64) -> f64 {
+        let value = self.of_omega(omega);
+        let rounded = format!("{value:.2e}").parse().unwrap_or(value);
+        match self {
+            Self::RadPerSecond => rounded,
+            Self::Hertz => hz_to_rad_s(rounded),
         }
     }
 
@@ -87,5 +98,14 @@ mod tests {
     fn a_frequency_reads_in_its_unit() {
         assert_eq!(FrequencyUnit::RadPerSecond.readout(2.0494), "ω 2.05 rad/s");
         assert_eq!(FrequencyUnit::Hertz.readout(2.0494), "f 0.326 Hz");
+    }
+
+    #[test]
+    fn a_dragged_frequency_has_the_value_that_it_displays() {
+        let radians = FrequencyUnit::RadPerSecond.rounded_omega(6.821_857_910_961_336);
+        assert_eq!(radians, 6.82);
+        let hertz = FrequencyUnit::Hertz.rounded_omega(2.0494);
+        assert!((rad_s_to_hz(hertz) - 0.326).abs() < 1e-15);
+        assert_eq!(FrequencyUnit::Hertz.readout(hertz), "f 0.326 Hz");
     }
 }

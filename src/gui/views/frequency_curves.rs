@@ -1,8 +1,14 @@
-//! Curves over frequency in the displayed condition, with their options and their source.
+//! Curves over frequency in the displayed condition: where they come from (`condition_source`), how
+//! they are drawn (`bode_options`), and what the pointer adds to them (`with_interaction`).
+//!
+//! Computing a curve's shape (magnitude and continuous phase) costs most of the time, and does not
+//! depend on the options. The shapes are therefore cached: for each response in
+//! `FrequencyPlots::shapes`, for the error plot in `FrequencyPlots::errors`. The caches check for
+//! themselves whether their shapes belong to the given responses, and recompute them if not.
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::{BundleKind, Pair};
+use gdcm_model::dataset::{BundleKind, ModelId, Pair};
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;
 
@@ -10,7 +16,8 @@ use super::variant_analyses::overlaid_analysis;
 use crate::gui::plot::{BodeCurve, CurveId};
 use crate::gui::state::window_state::State;
 
-/// Returns the data from which all curves in the displayed condition are made; `None` until its
+/// Returns the data for all curves in the displayed condition: the study, the condition's result,
+/// the schedule, the models' responses and the overlaid variant's result, if any. `None` until the
 /// responses are available.
 pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let mut schedule = None;
@@ -32,7 +39,8 @@ pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<
     })
 }
 
-/// Returns the curve options, which are the same in the window and on paper.
+/// Returns the engineer's choices for the curves, which are the same in the window and in figures on
+/// paper. Options without a choice in the window keep their defaults.
 pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &display.curves;
@@ -61,31 +69,27 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     }
 }
 
-/// Returns all curves for a response in the displayed condition, from a cache for each response
-/// that lasts as long as the responses are the same; empty until they are available.
+/// Returns all curves for a response in the displayed condition, with the engineer's options; empty
+/// until the responses are available. Drops cached shapes that belong to other responses than the
+/// displayed condition's, because each cache keeps its responses in memory.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
-    let shown = state.curves().map(Arc::clone);
-    state.display.frequency.keep_shapes_of(shown.as_ref());
-    let mut cache = state
-        .display
-        .frequency
-        .shapes
-        .remove(&pair)
-        .unwrap_or_default();
+    let responses = state.curves().map(Arc::clone);
+    state.display.frequency.keep_shapes_of(responses.as_ref());
     let options = bode_options(state);
-    let curves = match condition_source(state) {
-        Some(source) => source.response_curves(pair, &options, &mut cache),
-        None => Vec::new(),
-    };
-    let drawn = with_interaction(state, curves, None);
-    state.display.frequency.shapes.insert(pair, cache);
-    drawn
+    let curves = response_curves(state, pair, &options);
+    with_interaction(state, curves, None)
 }
 
-/// Returns all curves for a response in the displayed condition with unwrapped phases, whatever the
+/// Returns all curves for a response in the displayed condition with continuous phases, whatever the
 /// engineer has hidden, isolated or shifted: for comparison with an identification from records.
-/// Empty until its responses are available.
+/// Empty until the responses are available.
 pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+    response_curves(state, pair, &BodeOptions::default())
+}
+
+/// Returns a response's curves, made with the cached shapes for that response.
+fn response_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
+    // The source borrows the whole state: the cache is taken out of it, and put back afterwards.
     let mut cache = state
         .display
         .frequency
@@ -93,25 +97,25 @@ pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
         .remove(&pair)
         .unwrap_or_default();
     let curves = match condition_source(state) {
-        Some(source) => source.response_curves(pair, &BodeOptions::default(), &mut cache),
+        Some(source) => source.response_curves(pair, options, &mut cache),
         None => Vec::new(),
     };
     state.display.frequency.shapes.insert(pair, cache);
     curves
 }
 
-/// Returns a response's error curves in the displayed condition, as used by the axis fit; empty
-/// until the responses are available.
+/// Returns a response's error curves in the displayed condition, for drawing and for fitting the
+/// axes; empty until the responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
+    // The source borrows the whole state: the cache is taken out of it, and put back afterwards.
     let mut cache = std::mem::take(&mut state.display.frequency.errors);
     let curves = match condition_source(state) {
         Some(source) => source.error_curves(pair, options, &mut cache),
         None => Vec::new(),
     };
-    let reference = error_reference(&curves);
-    let drawn = with_interaction(state, curves, reference.as_ref());
     state.display.frequency.errors = cache;
-    drawn
+    let reference = error_reference(&curves);
+    with_interaction(state, curves, reference.as_ref())
 }
 
 /// Returns the identified model among the error curves: its error is zero everywhere, and the other
@@ -127,9 +131,9 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Emphasises the models under the pointer and in the selection box, tells in each model's
-/// description what a click does, and marks a scheduled curve from older settings. `reference` is
-/// the model with which error curves are compared: it cannot be rejected.
+/// Adds to the curves what depends on the pointer and on running computations: a label for a
+/// scheduled curve from older settings, and for each model its highlight and what a click on it
+/// does. `reference` is the model with which error curves are compared; it cannot be rejected.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,
@@ -139,25 +143,34 @@ fn with_interaction(
         if curve.id == CurveId::Scheduled && state.others_are_older() {
             curve.label.push_str(" from older settings");
         }
-        let CurveId::Model(id) = &curve.id else {
-            continue;
-        };
-        let is_reference = reference == Some(&curve.id);
-        let is_hovered = state.display.selection.hovered.as_ref() == Some(id);
-        let is_selected = state.display.curves.selected.contains(id);
-        // The selection is for rejecting models, so the reference is not highlighted as selected.
-        curve.highlighted = is_hovered || (is_selected && !is_reference);
-        let note = if is_reference {
-            "reference for the errors"
-        } else if curve.rejected {
-            "click to restore"
-        } else {
-            "click to reject"
-        };
-        if !curve.detail.is_empty() {
-            curve.detail.push_str(" · ");
+        if let CurveId::Model(id) = curve.id.clone() {
+            let is_reference = reference == Some(&curve.id);
+            curve.highlighted = is_highlighted(state, &id, is_reference);
+            add_click_note(curve, is_reference);
         }
-        curve.detail.push_str(note);
     }
     curves
+}
+
+/// Returns whether a model is under the pointer or in the selection box. The selection is for
+/// rejecting models, so the reference is never highlighted as selected.
+fn is_highlighted(state: &State, id: &ModelId, is_reference: bool) -> bool {
+    let is_hovered = state.display.selection.hovered.as_ref() == Some(id);
+    let is_selected = state.display.curves.selected.contains(id);
+    is_hovered || (is_selected && !is_reference)
+}
+
+/// Adds to a model's description what a click on its curve does.
+fn add_click_note(curve: &mut BodeCurve, is_reference: bool) {
+    let note = if is_reference {
+        "reference for the errors"
+    } else if curve.rejected {
+        "click to restore"
+    } else {
+        "click to reject"
+    };
+    if !curve.detail.is_empty() {
+        curve.detail.push_str(" · ");
+    }
+    curve.detail.push_str(note);
 }

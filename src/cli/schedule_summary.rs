@@ -1,7 +1,7 @@
 //! Schedule summary, as printed: scheduled net gains and delays over airspeed.
 
-use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
-use gdcm_model::dataset::Pair;
+use gdcm_method::schedule::{Schedule, ScheduledQuantity};
+use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::{number, s_to_ms};
 use gdcm_study::{Analysis, Study};
@@ -33,13 +33,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let (inputs, outputs) = dataset.names_of_channels();
     for caution in &schedule.cautions {
         let words = schedule_caution_text(caution, &inputs, &outputs);
-        let conditions = match caution {
-            ScheduleCaution::CostsMore(cost) => vec![cost.condition],
-            ScheduleCaution::SignedDelayApart { condition, .. } => vec![*condition],
-            ScheduleCaution::DegreeLowered { .. }
-            | ScheduleCaution::Overshoot { .. }
-            | ScheduleCaution::NotPositive => Vec::new(),
-        };
+        let conditions: Vec<ConditionId> = caution.condition().into_iter().collect();
         keep_caution(caution.code(), &conditions, &words);
         text += &detail("caution", &sanitized(&words));
     }

@@ -5,7 +5,6 @@
 //! ([`Remark::is_recurring`]) if it usually concerns many conditions at once: missing leads,
 //! responses farther from flight, and those in [`COLUMNS`].
 
-use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::sanitized;
 use gdcm_model::number_format::NO_VALUE;
@@ -117,12 +116,7 @@ pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
     }
     if let Ok(schedule) = &analysis.schedule {
         for caution in &schedule.cautions {
-            let id = match caution {
-                ScheduleCaution::CostsMore(cost) => Some(cost.condition),
-                ScheduleCaution::SignedDelayApart { condition, .. } => Some(*condition),
-                _ => None,
-            };
-            add_code(&mut coded, caution.code(), id);
+            add_code(&mut coded, caution.code(), caution.condition());
         }
     }
     coded

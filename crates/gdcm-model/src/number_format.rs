@@ -8,7 +8,7 @@
 //! | [`number`] | shortest text that parses to the same number | hyphen |
 //! | [`full_precision`] | the same, for files; empty if not finite | hyphen |
 //! | [`six_digits`] | at most 6 significant | hyphen |
-//! | [`compact`] | at most 6 significant, without trailing zeros | true |
+//! | [`compact`] | at most 6 significant, or all before the point; no trailing zeros | true |
 //! | [`five_digits`] | 5 significant | true |
 //! | [`significant`] | 3 significant | hyphen |
 //! | [`three_digits`] | 3 significant; below 1, 3 decimals | hyphen |
@@ -104,7 +104,8 @@ pub fn signed(change: f64, decimals: usize) -> String {
     }
 }
 
-/// Formats a value with up to six significant digits and a true minus sign, without trailing zeros.
+/// Formats a value with up to six significant digits (at most 12 decimals, and all digits before
+/// the decimal point) and a true minus sign, without trailing zeros.
 pub fn compact(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -127,11 +128,11 @@ pub fn decimals(value: f64, count: usize) -> String {
     with_minus_sign(without_sign_of_zero(&format!("{value:.count$}")))
 }
 
-/// Formats a value with `count` decimals and a true minus sign; a missing value becomes
-/// [`NO_VALUE`].
+/// Formats a value with `count` decimals and a true minus sign; zero has no sign, and a missing value
+/// becomes [`NO_VALUE`].
 pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
     match value {
-        Some(value) => with_minus_sign(&format!("{value:.count$}")),
+        Some(value) => decimals(value, count),
         None => NO_VALUE.to_owned(),
     }
 }
@@ -154,7 +155,8 @@ pub fn with_minus_sign(number: &str) -> String {
     number.replace('-', &MINUS.to_string())
 }
 
-/// Formats a value with five significant digits and a true minus sign.
+/// Formats a value with five significant digits and a true minus sign; below 1e-5 and from 1e8 on
+/// with an exponent, and below 1e8 with all digits before the decimal point.
 pub fn five_digits(value: f64) -> String {
     const SIGNIFICANT: i32 = 5;
     if value == 0.0 {
@@ -177,13 +179,15 @@ pub fn rounded_to_three_digits(value: f64) -> String {
     number((value * scale).round() / scale)
 }
 
-/// Formats a value with three significant digits; below 1, with three decimals.
+/// Formats a value with three significant digits; below 1, with three decimals; from 1000 on,
+/// without decimals.
 pub fn three_digits(value: f64) -> String {
     let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 3.0) as usize;
     format!("{value:.decimals$}")
 }
 
-/// Formats a value with three significant digits; with an exponent below 0.001 and from 10 000.
+/// Formats a value with three significant digits, or four from 1000 on; with an exponent below
+/// 0.001 and from 10 000 on.
 pub fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -12,7 +12,7 @@ pub enum ScheduleCaution {
     DegreeLowered {
         /// Requested degree.
         asked: usize,
-        /// Airspeed clusters, the count of distinct airspeeds.
+        /// Number of airspeed clusters, which count as distinct airspeeds.
         clusters: usize,
     },
     /// Between two clusters, a gain leaves the range of the conditions' gains by more than half
@@ -37,11 +37,11 @@ pub enum ScheduleCaution {
         /// Mean signed delay in the other conditions \[s\].
         elsewhere_s: f64,
     },
-    /// A gain is not positive at an intermediate airspeed, possible only if `k` itself is
-    /// regressed.
+    /// A gain is not positive at some airspeed in the conditions' range; possible only if `k`
+    /// itself is regressed.
     NotPositive,
-    /// A condition's J under the schedule is more than twice its J under the condition's own
-    /// correction (M12).
+    /// A condition's J under the schedule is above 1, and more than twice its J under the
+    /// condition's own correction (M12).
     CostsMore(ScheduledCost),
 }
 
@@ -60,7 +60,7 @@ pub struct ScheduledCost {
 impl ScheduledCost {
     /// `scheduled / own` above which a caution is raised.
     const NOTABLE_RATIO: f64 = 2.0;
-    /// `scheduled` below which no caution is raised: 1 corresponds to a 0.2 dB error.
+    /// `scheduled` up to which no caution is raised: 1 corresponds to a 0.22 dB error (M4).
     const LEAST_NOTABLE: f64 = 1.0;
 
     /// Returns whether the scheduled J is above 1 and more than twice the condition's own J.
@@ -70,13 +70,21 @@ impl ScheduledCost {
 }
 
 impl ScheduleCaution {
-    /// Returns whether the caution applies to a condition: a scheduled cost concerns its own
-    /// condition only.
-    pub fn concerns(&self, condition: ConditionId) -> bool {
+    /// Returns the only condition that the caution is about; `None` if it is about the schedule, and
+    /// so about every condition.
+    pub fn condition(&self) -> Option<ConditionId> {
         match self {
-            ScheduleCaution::CostsMore(cost) => cost.condition == condition,
-            _ => true,
+            ScheduleCaution::CostsMore(cost) => Some(cost.condition),
+            ScheduleCaution::SignedDelayApart { condition, .. } => Some(*condition),
+            ScheduleCaution::DegreeLowered { .. }
+            | ScheduleCaution::Overshoot { .. }
+            | ScheduleCaution::NotPositive => None,
         }
+    }
+
+    /// Returns whether the caution is about a condition, alone or with all others.
+    pub fn concerns(&self, condition: ConditionId) -> bool {
+        self.condition().is_none_or(|own| own == condition)
     }
 
     /// Returns the stable code used in files.
@@ -88,5 +96,23 @@ impl ScheduleCaution {
             ScheduleCaution::NotPositive => "scheduled-gain-not-positive",
             ScheduleCaution::CostsMore(_) => "scheduled-cost-doubled",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_delay_apart_from_the_others_concerns_its_own_condition_only() {
+        let apart = ScheduleCaution::SignedDelayApart {
+            channel: Channel::Input(0),
+            condition: ConditionId(4),
+            tau_s: 0.069,
+            elsewhere_s: -0.017,
+        };
+        assert!(apart.concerns(ConditionId(4)));
+        assert!(!apart.concerns(ConditionId(5)));
+        assert!(ScheduleCaution::NotPositive.concerns(ConditionId(5)));
     }
 }

@@ -15,7 +15,7 @@
 //! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
 //! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
-//! No dependence on files, windows or threads.
+//! The crate depends on no files, windows or threads.
 //!
 //! ```
 //! use gdcm_model::dataset::{Pair, StateSpace};

@@ -45,7 +45,8 @@ pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
-/// Shortens a message, and each of its words, by replacing the middle with an ellipsis.
+/// Shortens each long word in a message, then the message if it is still too long, by replacing the
+/// middle with an ellipsis.
 pub fn shortened_message(text: &str) -> String {
     /// Maximum length \[characters\]: longer than any program message with sixty column names.
     const LONGEST: usize = 2000;
@@ -55,7 +56,7 @@ pub fn shortened_message(text: &str) -> String {
     without_middle(&words.join(" "), LONGEST, KEPT)
 }
 
-/// Shortens a name in a message by replacing the middle with an ellipsis.
+/// Shortens a long name in a message by replacing the middle with an ellipsis.
 pub fn shortened_name(text: &str) -> String {
     /// Maximum length \[characters\]: longer than most file paths.
     const LONGEST: usize = 400;

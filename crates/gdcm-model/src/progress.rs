@@ -98,7 +98,8 @@ impl<'a> Shares<'a> {
     }
 }
 
-/// Part of a computation, which converts its own progress to a share of the whole.
+/// Part of a computation, which converts its own progress to a share of the whole. Its own step
+/// names and preliminary models are not passed on.
 pub struct Portion<'a> {
     whole: &'a Shares<'a>,
     /// Share of the whole that this part amounts to, 0 to 1.

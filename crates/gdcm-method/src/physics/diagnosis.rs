@@ -34,20 +34,22 @@ pub struct ParameterDiagnosis {
     /// Interval half-width, in plausible standard deviations; `None` for a value set by hand, and
     /// with fewer than four conditions.
     pub half_width: Option<f64>,
-    /// `None` for a value set by hand.
+    /// Variance of the value, by source; `None` for a value set by hand.
     pub variance: Option<ValueVariance>,
     /// Score ratio with this parameter alone ([`Scores::alone`]); `None` for a value set by hand,
-    /// and with fewer than two conditions.
+    /// and without scores.
     pub ratio_alone: Option<f64>,
-    /// Step in the stepwise list that adds the parameter, counted from 1.
+    /// Step in the stepwise list that adds the parameter, counted from 1; `None` for a value set by
+    /// hand, and without scores.
     pub step: Option<usize>,
-    /// How much that step lowers the ratio.
+    /// How much the parameter's step in the stepwise list lowers the ratio; `None` as for `step`.
     pub gain: Option<f64>,
     /// Share of the prior variance that the data remove; `None` for a value set by hand.
     pub learned: Option<f64>,
-    /// Share of its effect that channel gains and delays can take over.
+    /// Share of the parameter's effect that channel gains and delays can take over; `None` for a
+    /// value set by hand, or without effect.
     pub channels_can_take: Option<f64>,
-    /// Its strongest correlation with another parameter.
+    /// The strongest correlation with another fitted parameter, if there is one.
     pub strongest_pair: Option<ParameterPair>,
     /// Why the parameter is not named; `None` for a named parameter.
     pub why_not_named: Option<WhyNotNamed>,
@@ -100,9 +102,10 @@ pub struct PhysicsDiagnosis {
     pub parameters: Vec<ParameterDiagnosis>,
     /// One entry per condition, ordered as in the problem.
     pub conditions: Vec<ConditionDiagnosis>,
-    /// `None` with fewer than two conditions.
+    /// `None` with fewer than two conditions, if a condition cannot be predicted, or if there is no
+    /// misfit to explain.
     pub scores: Option<Scores>,
-    /// `None` with fewer than four conditions.
+    /// `None` with fewer than four conditions, or without scores.
     pub verdict: Option<Verdict>,
     /// Root mean square deviation between the other identified models and their representatives, ln
     /// units; `None` without other models.
@@ -130,7 +133,8 @@ impl PhysicsDiagnosis {
         named
     }
 
-    /// Returns the parameter combination about which the data say less than the prior.
+    /// Returns the parameter combination about which the data say least, if that is less than the
+    /// prior.
     pub fn weak_direction(&self) -> Option<&WeakDirection> {
         self.identifiability.weak_direction.as_ref()
     }
@@ -279,7 +283,7 @@ impl Assembly<'_> {
     }
 
     /// Returns a parameter's value from a single condition; `place` is its index among the fitted
-    /// parameters.
+    /// parameters. `None` if the condition has too little information about it.
     fn value_here(&self, condition: usize, place: usize) -> Option<ValueHere> {
         let reduced = &self.equations.reduced[condition];
         let information = reduced.matrix[(place, place)];

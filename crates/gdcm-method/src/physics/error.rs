@@ -9,7 +9,8 @@ pub enum PhysicsError {
     /// No parameter is switched on.
     #[error("no fit of physics parameters: none is switched on")]
     NoParameters,
-    /// No condition has a response that its representatives and its family contain.
+    /// No response in any condition has a weight, usually because none is available in both
+    /// representatives.
     #[error(
         "no fit of physics parameters: none of the conditions ({conditions}) has a response that is \
         available in both its physics and its identified representative"

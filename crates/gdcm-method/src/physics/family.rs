@@ -1,5 +1,5 @@
-//! A condition's physics responses for any parameter values, and their derivatives (steps 2 and 3
-//! in `physics`, M18.2).
+//! A condition's physics responses for any parameter values, and their derivatives (step 3 in
+//! `physics`, M18.2).
 //!
 //! ```text
 //! H = C (j omega I - A)^-1 B + D   at  A(z), B(z), C(z), D(z)
@@ -7,8 +7,8 @@
 //! X = (j omega I - A)^-1 B,   Y = C (j omega I - A)^-1
 //! ```
 //!
-//! In discrete time, `j omega` is `e^(j omega T)`; both `e^(j omega T)` and A are stored less 1 (I),
-//! which leaves their difference. Channel delays multiply H and its derivatives. A
+//! In discrete time, `j omega` is `e^(j omega T)`; 1 is subtracted from it and I from A, which
+//! leaves `j omega I - A` unchanged. Channel delays multiply H and its derivatives. A
 //! representative with other states than the runs' base has no increments for its matrices; its
 //! responses then change like the base's, `H = H_rep + sum_k (z_k L_k + z_k^2 Q_k)`, with `L_k` and
 //! `Q_k` from the responses.
@@ -50,7 +50,7 @@ enum FamilyKind {
 /// Family given by matrices, in balanced coordinates.
 #[derive(Clone, Debug)]
 struct MatrixFamily {
-    /// The representative; `A - I` in place of A in discrete time.
+    /// The representative; in discrete time with `A - I` instead of A.
     base: Matrices,
     increments: Vec<ParameterIncrement>,
     sample_time_s: Option<f64>,
@@ -69,8 +69,8 @@ struct ResponseFamily {
 }
 
 impl ModelFamily {
-    /// Creates the family for a representative that has the same states as the increments' base;
-    /// `None` for other states, see [`ModelFamily::from_responses`].
+    /// Creates the family for a representative that has the same states as the increments' base.
+    /// `None` for other states (see [`ModelFamily::from_responses`]) and for a measured response.
     pub fn from_matrices(representative: &Model, increments: &ConditionIncrements) -> Option<Self> {
         let model = representative.state_space()?;
         if !increments.has_states_of(representative) {
@@ -107,8 +107,8 @@ impl ModelFamily {
 
     /// Creates the family for a representative whose responses on the grid `omega` \[rad/s\] change
     /// like the runs' bases, with `L_k` and `Q_k` from the responses by the formulas in
-    /// `increments`; `None` if a parameter has no run, two runs with the same step, or a
-    /// run that does not fit its base.
+    /// `increments`; `None` if a parameter has no run, two runs with the same step, or a run that
+    /// does not fit its base or the representative's channels.
     pub fn from_responses(
         representative: &Model,
         runs: &[Vec<RunStep<'_>>],

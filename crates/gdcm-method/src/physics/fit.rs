@@ -60,8 +60,8 @@ pub(super) struct SolvedFit {
 /// every pass.
 ///
 /// # Errors
-/// [`PhysicsError`] if a table has another shape, no response has a weight, the responses do not
-/// determine the unknowns, or `progress` is cancelled.
+/// [`PhysicsError`] if a table, a value or a setting in `problem` is invalid, no response has a
+/// weight, the responses do not determine the unknowns, or `progress` is cancelled.
 pub fn fit_parameters(
     problem: &PhysicsProblem,
     executor: &dyn Executor,

@@ -20,8 +20,8 @@ pub const INSEPARABLE: f64 = 0.8;
 /// Share of a parameter's effect that channels can take over, above which its value rests on the
 /// delay prior.
 pub const ACTS_LIKE_CHANNELS: f64 = 0.95;
-/// If the least singular value of `F` is below this, its direction is reported: the data then say
-/// less about it than the prior.
+/// Limit on the least singular value of `F`; below it, the data say less about the parameter
+/// combination that belongs to this value than the prior, and the combination is reported.
 const WEAK_DIRECTION: f64 = 1.0;
 
 /// Two parameters and their correlation in `P^-1`.
@@ -61,7 +61,7 @@ pub struct Identifiability {
 }
 
 impl Identifiability {
-    /// Computes all figures from the equations at the solution.
+    /// Computes all fields from the equations at the solution.
     ///
     /// # Errors
     /// [`PhysicsError::SingularNormalMatrix`] if a matrix has no Cholesky factors.

@@ -18,8 +18,8 @@ use gdcm_model::dataset::{Model, StateSpace};
 
 use super::matrices::Matrices;
 
-/// Ratio between the quadratic and the linear change in A above which the effect bends, so that the
-/// linear part misses the value found (M18.7).
+/// Ratio between the quadratic and the linear change in A, at the value found, above which a
+/// caution reports a nonlinear effect (M18.7).
 pub const NOTABLE_CURVATURE: f64 = 0.5;
 
 /// A run with one parameter moved by `z` plausible standard deviations.
@@ -149,7 +149,7 @@ pub enum IncrementError {
         /// Parameter number, counted from 1.
         parameter: usize,
     },
-    /// A model has other states than the base.
+    /// A model has other states than the base, or another number of inputs or outputs.
     #[error("expected the same states as in the model from which the runs differ, found others")]
     States,
     /// A model is a measured response.
@@ -213,8 +213,9 @@ impl ConditionIncrements {
         self.parameters.len()
     }
 
-    /// Returns whether a model has the same states as the base: equally many, with the same names
-    /// in the same order if both give names.
+    /// Returns whether a model has the base's shape and states: equally many states, inputs and
+    /// outputs, and the same state names in the same order if both give names. `false` for a
+    /// measured response.
     pub fn has_states_of(&self, model: &Model) -> bool {
         match model.state_space() {
             Some(matrices) => {
@@ -258,7 +259,7 @@ impl ConditionIncrements {
     }
 
     /// Returns `|z| ||Q|| / ||L||` for the system matrix A, per parameter; above
-    /// [`NOTABLE_CURVATURE`], the effect bends (M18.7).
+    /// [`NOTABLE_CURVATURE`], a caution reports a nonlinear effect (M18.7).
     pub fn curvatures(&self, z: &[f64]) -> Vec<f64> {
         self.parameters
             .iter()

@@ -54,7 +54,7 @@ pub(super) struct Intervals {
     /// Half-widths at the problem's confidence level, in plausible standard deviations; empty with
     /// fewer than four conditions.
     pub(super) half_widths: Vec<f64>,
-    /// `z` without each condition.
+    /// For each condition left out, the fitted parameters' `z`.
     pub(super) without_condition: Vec<Vec<f64>>,
 }
 
@@ -112,8 +112,8 @@ impl Intervals {
     }
 }
 
-/// Solves the equations once without each output, input or third, whichever `part` creates, that
-/// has data.
+/// Solves the equations without each part that has data, one at a time; `part` creates the output,
+/// input or third with an index below `count`.
 fn solve_without(
     equations: &PassEquations,
     count: usize,

@@ -17,8 +17,8 @@ pub struct OfferedParameter {
 }
 
 impl OfferedParameter {
-    /// Lists the parameters with at least one run: first those that the dataset declares, in its
-    /// order, then the others by their first run.
+    /// Lists the parameters with at least one run in their unit: first those that the dataset
+    /// declares, in its order, then the others by their first run.
     ///
     /// If the dataset does not state the plausible standard deviation, the largest step magnitude
     /// among the parameter's runs in its unit is used.

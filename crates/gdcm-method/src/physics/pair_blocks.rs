@@ -63,7 +63,7 @@ impl Block {
         self.parameters + 2
     }
 
-    /// Adds a frequency with the weight `q^2`.
+    /// Adds a frequency with the weight `q^2`; `error` is `ln(R / H^)`.
     pub(super) fn add(&mut self, v: &[Complex<f64>], squared_weight: f64, error: Complex<f64>) {
         let size = self.parameters + 3;
         for (row, left) in v.iter().enumerate() {
@@ -98,7 +98,8 @@ pub(super) struct BlockSums {
 }
 
 impl BlockSums {
-    /// Returns the misfit, ln units; `None` without any weight.
+    /// Returns the misfit `sqrt(sum q^2 |ln(R / H^)|^2 / (2 sum q^2))`, ln units; `None` without
+    /// any weight.
     pub(super) fn misfit(&self) -> Option<f64> {
         if self.weight > 0.0 {
             Some((self.squared_error / (2.0 * self.weight)).sqrt())

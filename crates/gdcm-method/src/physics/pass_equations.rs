@@ -156,8 +156,8 @@ impl PassEquations {
         false
     }
 
-    /// Returns the spread: the root mean square over the conditions' other identified models;
-    /// `None` without any.
+    /// Returns the spread, ln units: the weighted root mean square distance between the other
+    /// identified models and their representatives; `None` without other models.
     pub(super) fn spread(&self) -> Option<f64> {
         let squares: Vec<f64> = self
             .blocks

@@ -45,8 +45,8 @@ pub enum ParameterValue {
 /// Data for the fit: the conditions with runs for all parameters that are switched on.
 #[derive(Clone, Debug)]
 pub struct PhysicsProblem {
-    /// The frequencies \[rad/s\] for all responses, ascending (40 logarithmically spaced points in
-    /// the band).
+    /// The frequencies \[rad/s\] for all responses, ascending (by default 40 logarithmically spaced
+    /// points in the band).
     pub omega: Arc<[f64]>,
     /// The on-axis responses, which have twice the weight.
     pub on_axis: PairTable<bool>,

@@ -1,8 +1,8 @@
 //! Matches a condition's runs with their bases (step 1 in `physics`, M18.1).
 //!
-//! A run's base is the condition's physics model with equal perturbation values, the nominal model
-//! if there are several. Run and base must have the same states in the same order, the same
-//! channels, sample time and delays.
+//! A run's base is the condition's physics model with equal perturbation values; if there are
+//! several, the nominal model, or else the first. Run and base must have the same states in the
+//! same order, the same channels, sample time and delays.
 
 use std::collections::BTreeMap;
 
@@ -277,7 +277,7 @@ pub fn base_of<'a>(condition: &'a Condition, run: &Model) -> Option<&'a Model> {
 }
 
 /// Returns whether two models have equal perturbation values; a coordinate that one model does not
-/// give is zero. A perturbed model without coordinates is at an unknown trim.
+/// give is zero. A perturbed `base` without coordinates is at an unknown trim, and never matches.
 fn is_same_trim(base: &Model, run: &Model) -> bool {
     let nothing = BTreeMap::new();
     let base_offsets = match base.perturbation() {

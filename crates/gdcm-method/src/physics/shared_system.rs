@@ -4,7 +4,8 @@
 //! (sum_c S'_c + prior) x = sum_c g'_c,   prior: 1 for a parameter, 1 / sd_delay^2 for a delay
 //! ```
 //!
-//! Parameters or delays that are switched off are fixed at zero.
+//! Delays are fixed at zero if their prior standard deviation is 0, and so are the parameters that
+//! `solve_for` leaves out.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -44,14 +45,15 @@ impl SharedSystem {
         others
     }
 
-    /// Solves for all shared unknowns; `None` if the matrix has no Cholesky factors.
+    /// Solves for all shared unknowns; `None` if the matrix has no Cholesky factors, or the
+    /// solution is not finite.
     pub(super) fn solve(&self) -> Option<DVector<f64>> {
         let parameters: Vec<usize> = (0..self.counts.parameters).collect();
         self.solve_for(&parameters)
     }
 
-    /// Solves with only these parameters free, the others at zero; `None` if the matrix has no
-    /// Cholesky factors.
+    /// Solves with only these parameters free, the others at zero; `None` in the same cases as
+    /// [`Self::solve`].
     pub(super) fn solve_for(&self, parameters: &[usize]) -> Option<DVector<f64>> {
         let mut free = parameters.to_vec();
         if self.delay_sd_s > 0.0 {

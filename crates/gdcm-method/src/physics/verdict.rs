@@ -24,18 +24,20 @@ pub const LEAST_LEARNED: f64 = 0.5;
 /// How much the parameters explain together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// They explain less than a tenth of the misfit that gains and delays leave.
+    /// The parameters explain less than a tenth of the misfit that gains and delays leave.
     None,
-    /// They explain a part; something else is also at work.
+    /// The parameters explain a tenth or more of the misfit that gains and delays leave; something
+    /// else is also at work.
     InPart,
-    /// They account for the misfit that gains and delays leave, up to the spread between identified
-    /// models.
+    /// The parameters explain half or more of the misfit that gains and delays leave, and the
+    /// remaining misfit is at most 1.75 times the spread between identified models.
     Accounts,
 }
 
 impl Verdict {
     /// Decides from the explained share, the misfit and the spread between identified models; the
-    /// spread is `None` if each condition has only one identified model.
+    /// spread is `None` if each condition has only one identified model, which rules out
+    /// [`Self::Accounts`].
     pub fn new(explained: f64, misfit: f64, spread: Option<f64>) -> Self {
         let is_near_spread = match spread {
             Some(spread) => misfit <= SPREAD_RATIO * spread,
@@ -67,18 +69,19 @@ pub enum WhyNotNamed {
     Held,
     /// Fewer than four conditions are in the fit.
     FewConditions { found: usize },
-    /// No condition left out could be predicted from the others, so that there are no scores.
+    /// There are no scores: a condition left out cannot be predicted from the others, or there is
+    /// no misfit to explain.
     NotPredicted,
     /// All parameters together explain less than a tenth.
     NothingExplained { explained: f64 },
     /// Its fitted change is at the bound, three plausible standard deviations; `z` is the change in
     /// these units.
     AtBound { z: f64 },
-    /// The data say nothing about it.
+    /// Its interval contains zero, and the data remove less than half of its prior variance.
     DataSilent { learned: f64 },
     /// Its interval contains zero.
     IntervalContainsZero,
-    /// Conditions left out are hardly predicted better with it.
+    /// Its step in the stepwise list lowers the ratio by less than 0.01.
     LittleGain { gain: f64 },
 }
 

@@ -102,7 +102,7 @@ struct Linearisation<'a> {
 
 impl Linearisation<'_> {
     /// Sets `v` for a response at frequency `k`, and returns `l = ln(R / H^)`; `None` if a value is
-    /// missing.
+    /// missing or not finite.
     fn set(&self, v: &mut [Complex<f64>], pair: Pair, k: usize) -> Option<Complex<f64>> {
         let WeightedCondition {
             condition,

@@ -26,7 +26,8 @@ use crate::fidelity::summand;
 const ON_AXIS: f64 = 2.0;
 /// Standard deviation of `ln H` that reduces `s_q` by the factor `1 / sqrt(2)`.
 const DEVIATION: f64 = 0.06;
-/// `e s_q` that reduces a frequency's weight by the factor `2^(-1/4)`, as an outlier.
+/// Value of `e s_q` at which `q` is reduced by the factor `2^(-1/4)`; larger errors are reduced
+/// further, as outliers.
 const OUTLIER: f64 = 10.0;
 
 /// Weight factors that do not change between passes.

@@ -17,8 +17,8 @@ pub enum AboveBand {
 pub struct Metric {
     /// The value: \[rad/s\] or \[s\].
     pub value: f64,
-    /// Standard deviation to first order, from the response's uncertainty band (M14); `None` where
-    /// the response has none.
+    /// Standard deviation to first order, from the response's uncertainty band (M14); `None` if the
+    /// band does not cover the frequencies needed, or is unavailable.
     pub deviation: Option<f64>,
     /// Lowest and highest frequency \[rad/s\] at which the response determines the value.
     pub read_at: [f64; 2],

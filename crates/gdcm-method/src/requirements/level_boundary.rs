@@ -290,7 +290,7 @@ impl LevelBoundaries {
         found
     }
 
-    /// Whether any boundary gives levels for an axis.
+    /// Returns whether any boundary gives levels for an axis.
     pub fn assesses(&self, axis: &str) -> bool {
         self.0
             .iter()
@@ -325,7 +325,7 @@ impl LevelBoundaries {
         Some(AssessedLevel::Level(last.saturating_add(1)))
     }
 
-    /// Returns these boundaries after replacing all for the axes in `others` by `others`.
+    /// Returns these boundaries, without those for any axis in `others`, followed by `others`.
     pub fn replaced_by(&self, others: &Self) -> Self {
         let mut boundaries = self.0.clone();
         boundaries.retain(|boundary| !others.0.iter().any(|other| other.axis == boundary.axis));
@@ -349,7 +349,7 @@ impl LevelBoundaries {
         Self(boundaries)
     }
 
-    /// Whether all boundaries in `others` are among these.
+    /// Returns whether all boundaries in `others` are among these.
     pub fn contains(&self, others: &Self) -> bool {
         others.0.iter().all(|other| self.0.contains(other))
     }

@@ -70,7 +70,7 @@ mod known_answers {
         case[name].as_f64().unwrap()
     }
 
-    /// The attitude responses of the cases in the file.
+    /// Returns the attitude responses for the cases in the file of reference results.
     pub(super) fn attitudes() -> [fn(Complex<f64>) -> Complex<f64>; 4] {
         fn second_order(
             gain: f64,

@@ -53,7 +53,7 @@ pub enum ModeVerdict {
     NotPaired,
 }
 
-/// A model's counterpart to a flown mode.
+/// A mode in a row: the flown mode, or a model's counterpart to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMode {
     /// Index among the model's modes.
@@ -76,14 +76,16 @@ impl ComparedMode {
 /// A mode identified from flight (the flown mode), and its counterparts in the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeRow {
-    /// Mode name; `None` if neither states nor frequency determine it.
+    /// Mode name; `None` if the states (the frequency and damping if no states are named) do not
+    /// determine it, or if another row keeps the same name.
     pub name: Option<ModeName>,
     pub named_by: NamedBy,
     pub flown: ComparedMode,
-    /// Standard deviations for `flown`; `None` if the identification result is unavailable.
+    /// Standard deviations for `flown`; `None` if identification has no estimate for its pole.
     pub deviation: Option<ModeValues>,
-    /// Whether flight determines the mode: its frequency is not below the band, and its standard
-    /// deviations are within the tolerance (if both are available).
+    /// Whether flight determines the mode: its frequency is not below the band and, if
+    /// identification has an estimate for its pole, that estimate is determined (M14.5) with
+    /// standard deviations within the tolerance, if there is one.
     pub is_determined: bool,
     /// The tolerance, if the table has one.
     pub tolerance: Option<ModeTolerance>,
@@ -98,9 +100,9 @@ pub struct ModeRow {
 /// measured response).
 ///
 /// A row takes its name from the first model with named states and a counterpart, the flown model
-/// first; without one, from the flown mode's frequency. No two rows have the same name: if two
-/// would, only the row with the lower pairing cost keeps it, and a name by frequency never prevails
-/// over a name by states.
+/// first; without one, from the flown mode's frequency and damping. No two rows have the same name:
+/// if two would, only the row with the lowest pairing cost keeps it, and a name by frequency never
+/// prevails over a name by states.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],

@@ -51,7 +51,7 @@ pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
 }
 
 /// Returns a partner in `model` for each of the [`single_modes`] in `flown`; `None` if unpaired. No
-/// mode is a partner twice.
+/// mode is a partner twice. `least_rad_s` is `omega_min`.
 pub(super) fn mode_pairs(
     flown: &[Mode],
     model: &[Mode],

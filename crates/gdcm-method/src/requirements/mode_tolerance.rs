@@ -38,7 +38,7 @@ pub struct ModeTolerance {
 #[serde(try_from = "Vec<ModeTolerance>")]
 pub struct ModeToleranceTable(Vec<ModeTolerance>);
 
-/// A tolerance that is not above zero.
+/// A tolerance that is not finite, or not above zero.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("mode tolerance {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
 pub struct ModeToleranceError {
@@ -92,7 +92,7 @@ impl ModeTolerance {
 
     /// Returns whether flight determines the mode to within the tolerance: the period's standard
     /// deviation is within its tolerance, and so is that of the time to half amplitude or the
-    /// damping ratio. A value that the flown mode lacks has the tolerance zero.
+    /// damping ratio. A value that the flown mode lacks is not determined.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
         let period_s = match flown.period_s {
             Some(period_s) => self.period_tolerance_s(period_s),

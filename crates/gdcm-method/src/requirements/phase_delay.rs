@@ -25,13 +25,13 @@ pub struct PhaseLine {
     pub departure_deg: f64,
     /// Phase delay from the two ends \[s\]: `-(Phi(2 omega_180) + pi) / (2 omega_180)`.
     pub two_points_s: f64,
-    /// Phase delay from the least-squares line \[s\]: half its negative slope.
+    /// Phase delay from the least-squares line \[s\]: minus half its slope.
     pub least_squares_s: f64,
 }
 
 impl PhaseLine {
-    /// Reads the phase from `omega_180` \[rad/s\] to twice that frequency; `None` if the response
-    /// ends below twice that frequency.
+    /// Reads the phase from `omega_180` \[rad/s\] to twice that frequency; `None` if a response is
+    /// missing in between, or ends below twice that frequency.
     pub(super) fn read(attitude: &AttitudeResponse<'_>, omega_180: f64) -> Option<Self> {
         let from = omega_180;
         let to = 2.0 * omega_180;

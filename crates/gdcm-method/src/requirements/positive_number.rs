@@ -7,7 +7,7 @@ pub(super) struct NamedLimit {
     pub(super) value: Option<f64>,
 }
 
-/// A limit that is not above zero.
+/// A limit that is not finite, or not above zero.
 pub(super) struct WrongLimit {
     pub(super) name: &'static str,
     pub(super) value: f64,

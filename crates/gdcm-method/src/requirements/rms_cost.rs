@@ -18,7 +18,8 @@ use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_facto
 pub struct RmsCost {
     /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
     pub value: f64,
-    /// Outputs without a weight, by index: their units are not for an angle, speed or acceleration.
+    /// Outputs without a weight, by index: their units are unknown, or not those of an angle, an
+    /// angular rate, a speed or an acceleration.
     pub left_out: Vec<usize>,
 }
 

@@ -42,16 +42,18 @@ pub struct SummarySource<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     pub cost: OnAxisAndAll,
-    /// `J_rms`; `None` without a record.
+    /// `J_rms`; `None` without a record, or if no output has a weight.
     pub rms: Option<RmsCost>,
-    /// Theil's coefficient by output, 0 to 1; empty without a record, `None` for a constant output.
+    /// Theil's coefficient by output, 0 to 1; empty without a record, `None` if flown and simulated
+    /// output are constant and equal.
     pub theil: Vec<Option<f64>>,
     /// Mean over responses: share of the band inside MUAD, 0 to 1.
     pub muad: OnAxisAndAll,
 }
 
 impl Summary {
-    /// Computes all costs under the correction in `source`.
+    /// Computes J and the MUAD share under the correction in `source`; the other costs are those of
+    /// its `validation`.
     pub fn compute(source: &SummarySource<'_>) -> Self {
         let SummarySource {
             mismatch,
@@ -83,14 +85,14 @@ impl Summary {
 /// Means over the on-axis responses and over all responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OnAxisAndAll {
-    /// Mean over the on-axis responses; `None` if none is defined.
+    /// Mean over the on-axis responses; `None` if none of them has a value.
     pub on_axis: Option<f64>,
-    /// Mean over all responses; `None` if none is defined.
+    /// Mean over all responses; `None` if none of them has a value.
     pub all: Option<f64>,
 }
 
 impl OnAxisAndAll {
-    /// Averages the defined values.
+    /// Averages the values; responses without a value are skipped.
     pub fn average(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
         let mut all_values = Vec::new();
         let mut on_axis_values = Vec::new();

@@ -8,9 +8,9 @@ use gdcm_model::units::number;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TestInputShape {
-    /// Constant over the duration.
+    /// `size` over the whole duration.
     Step,
-    /// Positive in the first half, negative in the second.
+    /// `size` in the first half of the duration, `-size` in the second.
     Doublet,
 }
 
@@ -111,7 +111,7 @@ impl TestInput {
         }
     }
 
-    /// Returns the input at `t = 0, dt, ...`, `samples` values.
+    /// Returns `samples` values of the input, at multiples of the sample time \[s\] from 0 on.
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
         (0..samples)
             .map(|n| {

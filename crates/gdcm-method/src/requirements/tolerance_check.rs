@@ -349,7 +349,7 @@ impl RecordCheck {
     }
 
     /// Returns the correlation between simulated and flown samples, each about its mean in its
-    /// window; `None` if either is constant.
+    /// window; `None` if either is constant in every window.
     pub fn correlation(&self) -> Option<f64> {
         let mut trend = TrendSums::default();
         for window in &self.windows {

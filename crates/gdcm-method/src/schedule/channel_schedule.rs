@@ -34,7 +34,7 @@ pub(super) const STEPS: u32 = 100;
 pub struct Schedule {
     pub settings: ScheduleSettings,
     pub airspeeds: Airspeeds,
-    /// Each channel's gain, or its logarithm.
+    /// Each channel's gain, or its logarithm; with a second variable, at its mid-range value.
     pub gains: Channels<Regression>,
     /// The second variable's contribution to each regression, if any.
     pub second: Option<SecondTerm>,
@@ -49,8 +49,8 @@ impl Schedule {
     /// Fits the schedule to the conditions' corrections and checks it between them.
     ///
     /// # Errors
-    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
-    /// effect cannot be separated from the airspeed's.
+    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if the
+    /// second variable's effect cannot be separated from the airspeed's.
     pub fn fit(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -109,8 +109,8 @@ impl Schedule {
         self.delays.is_some() || self.leads.is_some()
     }
 
-    /// Returns the price paid for the scheduled leads: for each channel the maximum over the
-    /// airspeeds. `None` for a schedule without lead filters.
+    /// Returns the gain that the scheduled lead filters add above the band: for each channel the
+    /// maximum over the airspeeds. `None` for a schedule without lead filters.
     pub fn lead_price(&self) -> Option<LeadPrice> {
         let leads = self.leads.as_ref()?;
         let steps = if leads.degree() == 0 { 0 } else { STEPS };
@@ -151,7 +151,8 @@ impl Schedule {
         self.evaluate(airspeed_kt, None)
     }
 
-    /// Evaluates the scheduled correction at a condition's airspeed and second variable.
+    /// Evaluates the scheduled correction at a condition's airspeed and second variable; without
+    /// one, at the mid-range value.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
         let second = self
             .settings
@@ -160,8 +161,8 @@ impl Schedule {
         self.evaluate(state.airspeed_kt, second)
     }
 
-    /// Evaluates the scheduled correction like [`Schedule::at`], with this second variable; beyond
-    /// the conditions' range the end value applies.
+    /// Evaluates the scheduled correction like [`Schedule::at`], but with the second variable at
+    /// `second`, if given; beyond the conditions' range the end value applies.
     pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
         let gains = self.gains.map(|channel, regression| {
             let contribution = match (&self.second, second) {

@@ -24,7 +24,7 @@ pub struct CoefficientRow {
 pub struct CoefficientTable {
     /// Powers multiplied by the coefficients ("1", "v", "v²", "v³"), or airspeeds ("60.0 kt").
     pub columns: Vec<String>,
-    /// Inputs, then outputs; gains, then delays if scheduled.
+    /// The gains of inputs and outputs, then their delays if scheduled.
     pub rows: Vec<CoefficientRow>,
     /// How `v` is defined: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
     pub scale: String,

@@ -25,7 +25,7 @@ pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
 ];
 
 /// Computes residuals and leave-one-condition-out errors (M11) for every schedule form; `settings`
-/// gives the regressed quantity and the cluster tolerance.
+/// gives the regressed quantity, the cluster tolerance and the second variable.
 ///
 /// Each condition is left out in turn. The schedule fitted to the others, evaluated at the omitted
 /// airspeed (beyond their range, its end value), is compared with the condition's own gain.
@@ -107,7 +107,7 @@ pub struct FormFit {
 
 impl FormFit {
     /// Returns the leave-one-condition-out error in `ln k_o k_i`, root mean square over these
-    /// responses; `None` if a residual is missing.
+    /// responses; `None` if a residual is missing, or without responses.
     pub fn left_out_rms_ln(&self, pairs: impl IntoIterator<Item = Pair>) -> Option<f64> {
         let mut squares = Vec::new();
         for pair in pairs {
@@ -123,8 +123,8 @@ impl FormFit {
 pub struct FitResiduals {
     /// Each condition's residual; `None` if the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
-    /// Each condition's residual against the schedule fitted without that condition; `None` for the
-    /// only condition.
+    /// Each condition's residual against the schedule fitted without that condition; `None` if that
+    /// schedule does not exist, as for the only condition, or gives no positive gain.
     pub left_out: Vec<Option<Residual>>,
 }
 

@@ -33,8 +33,8 @@ impl Regression {
         }
     }
 
-    /// Fits a polynomial to one value for each condition by least squares; its degree is less than
-    /// the cluster count.
+    /// Fits a polynomial to one value for each condition by least squares; its degree is `degree`,
+    /// or one less than the cluster count if that is lower.
     pub fn polynomial(airspeeds: &Airspeeds, values: &[f64], degree: usize) -> Self {
         let rows = design(airspeeds, ScheduleKind::Polynomial { degree });
         let powers = rows[0].len();

@@ -52,8 +52,9 @@ impl SecondVariable {
         }
     }
 
-    /// Returns a value for each condition: the altitude or mass, or -1 and 1 for two different
-    /// labels; `None` if a condition has neither.
+    /// Returns a value for each condition: its altitude or mass if all conditions give it,
+    /// otherwise -1 or 1 by its label. `None` if a label is missing, or if there are not exactly
+    /// two different labels.
     pub fn values(self, states: &[&FlightState]) -> Option<Vec<f64>> {
         let numbers: Option<Vec<f64>> = states.iter().map(|state| self.value(state)).collect();
         if numbers.is_some() {

@@ -70,7 +70,8 @@ fn condition_draft(id: i64, parts: &[&Part], rules: &Rules) -> ConditionDraft {
     }
 }
 
-/// Returns a condition's flight state; each value is taken from the first model that gives it.
+/// Returns a condition's flight state; each value is taken from the first model that gives it. The
+/// airspeed is NaN if none does.
 fn flight_state(id: i64, parts: &[&Part]) -> FlightState {
     let mut rows = parts.iter().map(|part| &part.row);
     let airspeed_kt = rows.clone().find_map(|row| row.airspeed_kt);

@@ -18,7 +18,8 @@ pub struct ChannelUse {
     pub index: usize,
     /// Dataset units per file unit; negative if the file has the opposite sign.
     pub factor: f64,
-    /// The conversion ("rad/s → deg/s") or an assumed unit, in words; `None` if neither applies.
+    /// The conversion ("rad/s → deg/s"), a declared factor, an assumed unit or a reversed sign, in
+    /// words; `None` if none of these applies.
     pub words: Option<String>,
 }
 
@@ -31,7 +32,8 @@ pub struct ChannelMatch {
     /// Remarks for the engineer to review: overridden units, and file channels that match no
     /// dataset channel.
     pub notes: Vec<ChannelNote>,
-    /// Whether the file has no channel names, so that the channels were matched by position.
+    /// Whether no channel has a name (from the file, its name or the rules), so that the channels
+    /// were matched by position.
     pub by_position: bool,
 }
 

@@ -32,8 +32,9 @@ pub struct Facts {
     pub altitude_ft: Option<f64>,
     pub mass_kg: Option<f64>,
     pub name: Option<String>,
-    /// Whether the file is a dataset written by this program; file and folder names are then
-    /// ignored.
+    /// Whether the file is a dataset written by this program. Its contents are then not compared
+    /// with the names of the file and its folders, and the origin "perturbed" counts as stated, not
+    /// as the default.
     pub is_of_dataset: bool,
     /// Flight records; file paths are relative to the requested path, the file or folder to be
     /// imported.

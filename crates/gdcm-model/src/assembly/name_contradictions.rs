@@ -15,7 +15,7 @@ const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Compares the values in a file with the rounded values in its name and folder names. If a file
 /// contains models at several airspeeds, only trim offsets are compared, because the other values
-/// in the names cannot apply to all its models.
+/// in the names cannot apply to all its models. Datasets written by this program are not compared.
 pub(super) fn name_contradictions(
     model: &FoundModel,
     models: &[FoundModel],

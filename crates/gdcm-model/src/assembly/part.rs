@@ -19,7 +19,7 @@ pub struct Part {
     pub inputs: ChannelMatch,
     pub outputs: ChannelMatch,
     /// Sample time \[s\] from the rules, 0 for continuous time; `None` if the file gives one or the
-    /// rules do not.
+    /// rules do not, and for a measured response.
     pub sample_time_s: Option<f64>,
 }
 

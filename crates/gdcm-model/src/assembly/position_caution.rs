@@ -22,8 +22,8 @@ impl PositionCaution {
 }
 
 impl Assembly {
-    /// Returns points for the engineer to review; unlike problems, they do not keep the dataset
-    /// from being built.
+    /// Returns a caution for each combination of sides (inputs, outputs) that were matched by
+    /// position in some model. Unlike problems, cautions do not keep the dataset from being built.
     pub fn cautions(&self) -> Vec<PositionCaution> {
         let mut cautions: Vec<PositionCaution> = Vec::new();
         for part in parts_in_use(self.parts()) {

@@ -289,7 +289,8 @@ pub(super) struct Question {
 /// A missing or contradictory fact, and the model to which it belongs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// Model index; `None` for a problem with the whole dataset.
+    /// Model index; for a problem with a condition, its first model; `None` for a problem with the
+    /// whole dataset.
     pub part: Option<usize>,
     pub kind: ProblemKind,
     /// Models to which the option's value applies; `None` if no command-line option settles the

@@ -16,7 +16,7 @@ use crate::names::name_pattern::{read_name, unread_offsets};
 /// Proposes a row for each model. A row contains the model's place in the dataset.
 ///
 /// 1. Read the facts in the file and in its name.
-/// 2. Number the conditions if no name does.
+/// 2. Number the conditions if no file or name gives a condition.
 /// 3. Propose the nominal model of each condition.
 /// 4. Apply the rules for single models.
 pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {

@@ -12,7 +12,7 @@ pub struct Row {
     pub left_out: bool,
     pub condition: Option<i64>,
     pub role: Option<RowRole>,
-    /// Model name, unique in its bundle.
+    /// Model name, unique in its bundle except for measured responses that form a single model.
     pub name: String,
     /// True airspeed \[kt\].
     pub airspeed_kt: Option<f64>,
@@ -25,7 +25,7 @@ pub struct Row {
     pub perturbation: BTreeMap<String, f64>,
     /// Named parameter moved in a physics run (M18.1).
     pub parameter: Option<ParameterChange>,
-    /// Parts of the model name that look like a trim offset but match no pattern.
+    /// Parts of the file or variable name that look like a trim offset but match no pattern.
     pub unread: Vec<String>,
     pub contradictions: Vec<NameContradiction>,
 }

@@ -78,7 +78,8 @@ impl RowRule {
         }
     }
 
-    /// Overrides the proposals in `row` with the values given here.
+    /// Overrides the proposals in `row` with the values given here. A moved parameter without a
+    /// role makes the model perturbed.
     pub fn apply(&self, row: &mut Row) {
         if let Some(left_out) = self.left_out {
             row.left_out = left_out;

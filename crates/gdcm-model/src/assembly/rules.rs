@@ -143,8 +143,9 @@ impl Rules {
         }
     }
 
-    /// Returns the units, factors and signs that apply to a model's channels. Declarations for a
-    /// file override those for a folder, then those for a role, then those for all models.
+    /// Returns the units, factors and signs that apply to a model's channels. Declarations override
+    /// one another in this order, from the lowest precedence: for all models, for a role, for a
+    /// folder or pattern, for a file, in the model's own [`RowRule`].
     pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> ModelDeclarations<'_> {
         let mut declarations = vec![signs_in_scope(FileScope::All, &self.signs)];
         for (role, signs) in &self.role_signs {

@@ -9,7 +9,8 @@ pub const LEAST_OMEGA: f64 = 1e-4;
 /// Maximum upper end of a band \[rad/s\]: 16 kHz.
 pub const GREATEST_OMEGA: f64 = 1e5;
 
-/// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
+/// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA` unless created by
+/// [`Band::beyond`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Band {

@@ -226,7 +226,7 @@ impl Condition {
         &self.records
     }
 
-    /// Returns the identification and flight state, without the models.
+    /// Returns the identifier, name and flight state, without the models.
     pub fn flight_state(&self) -> &FlightState {
         &self.flight_state
     }

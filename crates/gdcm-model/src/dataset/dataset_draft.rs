@@ -49,7 +49,8 @@ pub struct ModelDraft {
     pub timing: Timing,
     pub response: Option<ResponseDraft>,
     pub source: Option<Provenance>,
-    /// State names, for display only; empty if unknown.
+    /// State names; empty if unknown. They identify the states of runs (M18.1) and name modes
+    /// (M17.3).
     pub states: Vec<String>,
     /// Standard deviation of the response over frequency, if the file gives it.
     pub bands: Option<BandsDraft>,

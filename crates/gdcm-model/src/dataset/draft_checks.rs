@@ -20,7 +20,8 @@ use super::model_id::BundleKind;
 use super::pair_table::{Pair, PairTable};
 use super::physics_parameter::{MovedModel, check_parameters};
 
-/// Maximum number of collected faults; a wrong kind of file has a fault in every model.
+/// Number of faults from which no further condition is checked; a wrong kind of file has a fault in
+/// every model.
 const MOST_FAULTS: usize = 1000;
 
 impl DatasetDraft {

@@ -19,7 +19,7 @@ pub struct FlightState {
 }
 
 impl FlightState {
-    /// Creates a condition with only an airspeed \[kt\], named after its identifier.
+    /// Creates a condition's flight state with only an airspeed \[kt\], named after its identifier.
     pub fn at(id: ConditionId, airspeed_kt: f64) -> Self {
         let name = format!("condition {id}");
         Self {

@@ -55,7 +55,7 @@ pub enum MeasuredResponseError {
         /// Value count.
         found: usize,
     },
-    /// Valid band that starts below zero, or ends before it starts.
+    /// Valid band that starts below zero, ends before it starts, or is not finite.
     #[error(
         "valid_band_rad_s, output {output}, input {input}: expected a first and a last frequency, \
         not negative and in ascending order, found {} and {}",

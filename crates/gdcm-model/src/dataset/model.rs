@@ -41,7 +41,7 @@ pub struct Model {
     pub name: String,
     pub origin: Origin,
     pub dynamics: Dynamics,
-    /// Source file; `None` if unknown.
+    /// File, variable and flight records from which the model comes; `None` if unknown.
     pub source: Option<Provenance>,
     /// State names; empty if unknown.
     pub states: Arc<[String]>,
@@ -95,7 +95,7 @@ impl Model {
     }
 
     /// Returns a fingerprint that distinguishes models with the same name: 16 hexadecimal digits
-    /// from a hash over dynamics, bands, role and trim.
+    /// from a hash over dynamics, bands, trim, and whether the model is nominal.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         hash.update(ContentHash::new(&self.dynamics).bytes());

@@ -90,8 +90,8 @@ impl StateSpace {
     /// Returns the model with a sample time or delays (M2a).
     ///
     /// # Errors
-    /// [`TimingError`] if they are out of range, or if the delay count differs from the channel
-    /// count.
+    /// [`StateSpaceError::Timing`] if they are out of range, or if the delay count differs from the
+    /// channel count.
     pub fn timed(mut self, timing: Timing) -> Result<Self, StateSpaceError> {
         self.timing = timing.checked(self.outputs(), self.inputs())?;
         Ok(self)

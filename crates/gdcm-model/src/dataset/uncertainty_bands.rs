@@ -10,8 +10,9 @@ use super::pair_table::PairTable;
 /// Standard deviation of a model's response over frequency, as estimated by the identification
 /// (M14).
 ///
-/// The true magnitude lies between `H_dB - z sd_db` and `H_dB + z sd_db` with probability
-/// `1 - 2 Phi(-z)` at each frequency; likewise the phase.
+/// At each frequency, the true magnitude lies between `H_dB - z sd_db` and `H_dB + z sd_db` with
+/// the probability `1 - 2 Phi(-z)`, where `Phi` is the standard normal distribution function;
+/// likewise the phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelBands {
     omega: Vec<f64>,

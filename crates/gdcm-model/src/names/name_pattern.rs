@@ -36,7 +36,7 @@ const GROUPS: [&str; 14] = [
 const PARAMETER: &str = "parameter";
 /// Group name for a moved parameter's signed change.
 const DELTA: &str = "delta";
-/// Group name for that change's unit.
+/// Group name for the unit of a moved parameter's change.
 const DELTA_UNIT: &str = "delta_unit";
 /// Prefix for the group names of trim offsets.
 const OFFSET: &str = "by_";
@@ -48,7 +48,7 @@ const OFFSET: &str = "by_";
 /// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft` | the value of the field with the same name |
 /// | `weight`, `mass_kg`, `method`, `name` | the value of the field with the same name |
 /// | `by_roll_deg`, `by_...` | trim offset in `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
-/// | `nominal`, `perturbed`, `identified` | any text; sets the role of this name |
+/// | `nominal`, `perturbed`, `identified` | any text; the model has the role after which the group is named |
 /// | `parameter`, `delta`, `delta_unit` | name, change and unit of a parameter moved in a run (`Ixx`, `+5`, `%`); without a unit, "1" |
 #[derive(Clone, Debug)]
 pub struct NamePattern {

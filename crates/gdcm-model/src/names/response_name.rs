@@ -50,7 +50,8 @@ impl ResponseName {
     ///
     /// 1. Split the text into words.
     /// 2. From the left, take the longest sequence of words that names a known channel.
-    /// 3. Reject a word that may change the meaning of an adjacent channel name.
+    /// 3. Reject a word that may change what a channel name means: a modifier such as "dot"
+    ///    anywhere, or an unknown word between two names.
     /// 4. If both of two names can be input or output, read them as "output input", or as "input to
     ///    output".
     /// 5. Otherwise prefer, for each side, a name that belongs only to this side over a name that
@@ -222,7 +223,7 @@ const FILLERS: [&str; 44] = [
     "file",
 ];
 
-/// Words that change what an adjacent channel name means: "q dot" is not q.
+/// Words that change what a channel name in the same text means: "q dot" is not q.
 const MODIFIERS: [&str; 23] = [
     "dot",
     "ddot",

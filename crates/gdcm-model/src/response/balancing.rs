@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-/// Balances A: for each state k, row k and column k then differ in norm by less than a factor of
-/// two. The diagonal similarity `S` contains only powers of two, so that nothing is rounded: `a <-
-/// S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
+/// Balances A: for each state k, row k and column k then differ in norm by at most about a factor
+/// of two, unless one is zero. The diagonal similarity `S` contains only powers of two, so that
+/// nothing is rounded: `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
     let scales = balance_square(a);
     for (state, &scale) in scales.iter().enumerate() {
@@ -48,7 +48,7 @@ pub fn balance_square(a: &mut DMatrix<f64>) -> Vec<f64> {
 /// Returns the power of two that makes a column's norm and its row's norm most nearly equal; `None`
 /// if it reduces the sum of their squares by at most 5 %, or if either is zero.
 fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
-    /// Share of the sum below which the reduction is worth a further sweep.
+    /// Ratio of the new to the old sum of squares below which the factor is worth a further sweep.
     const WORTHWHILE: f64 = 0.95;
     let column = a.column(state).norm_squared();
     let row = a.row(state).norm_squared();

@@ -36,8 +36,8 @@ use super::hessenberg_form::HessenbergForm;
 use super::subdiagonal::Subdiagonal;
 use crate::dataset::{PairTable, StateSpace};
 
-/// Computes `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of
-/// `N` values.
+/// Computes `H(j omega) = C (j omega I - A)^-1 B + D`: a p x m table of curves, with a value at
+/// each `omega` \[rad/s\].
 ///
 /// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then
 /// eliminated from the system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p))
@@ -73,7 +73,7 @@ pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyRe
 /// Evaluates `H(s)` for a reduced model, compiled for an instruction set.
 pub(super) struct Elimination<'a> {
     pub(super) form: &'a HessenbergForm,
-    /// Values of `s` \[rad/s\] at which to evaluate.
+    /// Values of `s` at which to evaluate: \[rad/s\], or `z - 1` in discrete time.
     pub(super) s: &'a [Complex<f64>],
 }
 

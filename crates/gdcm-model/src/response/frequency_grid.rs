@@ -31,7 +31,7 @@ impl FrequencyGrid {
         self.omega.len()
     }
 
-    /// Always false: a grid has at least two frequencies.
+    /// Returns whether there are no frequencies: always `false`, because a grid has at least two.
     pub fn is_empty(&self) -> bool {
         self.omega.is_empty()
     }

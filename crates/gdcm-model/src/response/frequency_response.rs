@@ -6,8 +6,8 @@ use crate::dataset::{Pair, PairTable};
 
 /// A model's values `H(j omega)` on a grid of `N` frequencies: a p x m table of curves.
 ///
-/// A value is not finite if the response is undefined: at a pole on the imaginary axis, or outside
-/// the measured frequencies.
+/// A value is not finite if the response is undefined: at a pole on the imaginary axis, at and
+/// above `pi / T` in discrete time, or outside the measured frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
     pub(super) curves: PairTable<Vec<Complex<f64>>>,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 1  balance A; A = Q T Q^H, T triangular with the eigenvalues on its diagonal (schur_form.rs)
-//! 2  for each eigenvalue lambda: the pole is lambda, or ln(1 + lambda) / T in discrete time (s_plane.rs)
+//! 2  for each eigenvalue lambda: the pole is lambda; in discrete time ln(1 + lambda) / sample time (s_plane.rs)
 //! 3  participation of the states, and residues of the outputs, from its eigenvectors (eigenvectors.rs)
 //! 4  the conjugate of a pole above the real axis: conjugate residues, the same participation
 //! ```

@@ -61,8 +61,8 @@ impl PolarResponse {
         }
     }
 
-    /// Computes magnitude and phase for the marked responses only: a logarithm and an arc tangent
-    /// take longer than the response itself.
+    /// Computes magnitude and phase for the marked responses only, because a logarithm and an arc
+    /// tangent take longer than the response itself; the other entries are `None`.
     pub fn from_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
         Self {
             curves: response.curves.map(|pair, curve| {
@@ -77,8 +77,8 @@ impl PolarResponse {
 
     /// Returns the responses that are numerically zero (M6a): their peak over the band lies more
     /// than 120 dB (factor 1e-6) below the largest peak for the same output, and also below the
-    /// largest peak for the same input. Numerical differentiation produces such values instead of
-    /// exact zeros.
+    /// largest peak for the same input; `false` for a response without a curve. Numerical
+    /// differentiation produces such values instead of exact zeros.
     pub fn numerically_zero(&self) -> PairTable<bool> {
         /// Level of a numerically zero response, relative to the largest peaks.
         const LEAST_DB: f64 = -120.0;

@@ -19,7 +19,7 @@ pub struct ResponseShape {
 
 impl ResponseShape {
     /// Computes magnitude and phase; NaN where a value is zero or not finite. The phase is
-    /// principal at the first other value, then unwrapped (M2).
+    /// principal at the first of the remaining values, then unwrapped (M2).
     pub fn new(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> = (0..values.len())
             .filter(|&k| values[k].is_finite() && values[k].norm() > 0.0)
@@ -90,8 +90,8 @@ fn first_values(values: &[f64], points: usize) -> Arc<[f64]> {
     first.into()
 }
 
-/// Wraps a continuous phase \[deg\] to -180 to 180 degrees. A plot shows a gap at each jump, not a
-/// line from edge to edge, because one value there is NaN.
+/// Wraps a continuous phase \[deg\] to -180 to 180 degrees. The value after each jump becomes NaN,
+/// so that a plot shows a gap there instead of a line from edge to edge.
 pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
     let wrapped: Vec<f64> = phase_deg
         .iter()

@@ -228,8 +228,8 @@ impl Block {
 }
 
 /// Computes the real Schur form `A = Q T Q'` (step 1); returns Q and T. The iteration can stall,
-/// since a cyclic permutation is one of its fixed points; it is then repeated for the reflected
-/// matrix, which has the same eigenvalues, about two different axes. `None` if no attempt
+/// since a cyclic permutation is one of its fixed points; it is then repeated for the matrix
+/// reflected along two different axes in turn, which has the same eigenvalues. `None` if no attempt
 /// converges.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;

@@ -75,7 +75,8 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
 /// `s = ln z / T` (M2a).
 ///
 /// # Errors
-/// [`ZerosError`] if there is no response, or if the computation fails.
+/// [`ZerosError`] if the model has too large an entry, or lacks the output or the input; if the
+/// response is zero; or if the eigenvalue iteration does not converge.
 pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<TransmissionZeros, ZerosError> {
     if let Some(entry) = LargeEntry::find(model) {
         return Err(ZerosError::TooLarge(entry));

@@ -11,9 +11,9 @@ use super::window_simulation::best_simulation;
 use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
 
-/// Validates `model`, in the file's units, against `segments` in the time domain (M14, section 6).
-/// The windows are short enough for an unstable model, and each has its own initial state and
-/// output offsets.
+/// Validates `model`, in the file's units, against `segments` in the time domain (M14.6). The
+/// windows are short enough for an unstable model, and each has its own initial state and output
+/// offsets.
 ///
 /// ```text
 /// 1  window: 3 / max Re lambda, at most longest_window_s; each segment is divided into equal
@@ -121,7 +121,7 @@ pub struct Validation {
     /// constant.
     pub fit_percent: Vec<Option<f64>>,
     /// Each output's Theil coefficient, `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
-    /// `None` if both are constant.
+    /// `None` if both are constant and equal.
     pub theil: Vec<Option<f64>>,
 }
 

@@ -7,7 +7,7 @@ use crate::response::mode::poles;
 /// Default maximum window length \[s\].
 const LONGEST_WINDOW_S: f64 = 10.0;
 /// Maximum window length for an unstable model, in time constants of its fastest diverging mode
-/// (M14, section 6).
+/// (M14.6).
 pub(super) const TIME_CONSTANTS: f64 = 3.0;
 /// Minimum ratio of output samples to unknowns (initial state and offsets) in a window.
 const SAMPLES_PER_UNKNOWN: usize = 3;
@@ -26,7 +26,7 @@ pub struct ValidationSettings {
 
 impl ValidationSettings {
     /// Returns settings with 10 s windows and with signals low-pass filtered at twice `highest`
-    /// \[rad/s\], the highest spectral line in use (M14, section 6).
+    /// \[rad/s\], the highest spectral line in use (M14.6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
         Self {

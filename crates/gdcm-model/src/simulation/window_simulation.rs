@@ -9,9 +9,9 @@ use super::flight_record::centred;
 /// Relative singular value below which a combination of unknowns is not estimated.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Simulates `inputs` with the initial state and offsets that minimise the squared difference
-/// between the outputs and `measured`, each output divided by its standard deviation in `std`;
-/// `None` if the outputs are not finite.
+/// Simulates `inputs` about their means, with the initial state and offsets that minimise the
+/// squared difference between the outputs and `measured`, each output divided by its standard
+/// deviation in `std`; `None` if there is no such solution, or the outputs are not finite.
 ///
 /// `free` contains [`FirstOrderHold::free_responses`] for at least as many samples.
 pub(super) fn best_simulation(
@@ -50,8 +50,8 @@ pub(super) fn best_simulation(
 }
 
 /// Returns the least-squares solution `x` of `a x = b`, given as `[a | b]`; if there are several,
-/// the one with minimum norm after scaling the columns of `a` to unit length. `None` if it is not
-/// finite.
+/// the one with minimum norm after scaling the columns of `a` to unit length. `None` if an entry is
+/// not finite, or the singular values are not found.
 fn least_squares(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     let unknowns = rows.ncols() - 1;
     if !rows.norm().is_finite() {

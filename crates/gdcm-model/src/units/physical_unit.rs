@@ -187,8 +187,8 @@ fn folded_unit(text: &str) -> String {
     unit
 }
 
-/// Returns the factor from unit `from` to unit `to`: exactly 1 for the same unit, `None` if either
-/// is unknown or their dimensions differ.
+/// Returns the factor from unit `from` to unit `to`: exactly 1 for the same unit, even an unknown
+/// one; otherwise `None` if either is unknown or their dimensions differ.
 pub fn conversion_factor(from: &str, to: &str) -> Option<f64> {
     if from.trim() == to.trim() {
         return Some(1.0);

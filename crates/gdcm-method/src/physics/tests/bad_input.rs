@@ -92,7 +92,8 @@ fn values_that_are_missing_have_no_weight() {
     assert!((found.fit.z[1] + 0.6).abs() < 2e-3);
 }
 
-/// Replaces the runs of the toy, in every condition.
+/// Returns the reference problem after `change` has altered each condition's models; all its
+/// parameters are fitted.
 fn with_runs(change: impl Fn(&mut ToyCondition)) -> PhysicsProblem {
     let mut problem = toy("R");
     for (condition, mut toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
@@ -196,7 +197,8 @@ fn without_gains_or_delays_the_channels_stay_at_one() {
     }
 }
 
-/// Cancels after a number of polls, and records the reports.
+/// Receiver that cancels after a number of polls, and asserts that no more steps are reported than
+/// there are.
 struct Impatient(AtomicUsize);
 
 impl Progress for Impatient {

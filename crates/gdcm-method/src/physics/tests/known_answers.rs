@@ -76,7 +76,7 @@ fn assert_known(found: &PhysicsDiagnosis, known: &Value) {
     ] {
         assert_close(&values, &known["variance"][kind], tolerance, kind);
     }
-    // Three conditions have no intervals; the reference has their half-widths all the same.
+    // A diagnosis of three conditions has no half-widths, but the reference contains them.
     let quantile = student_quantile(0.9, 2.0);
     let half_widths: Vec<f64> = variances
         .iter()

@@ -12,7 +12,8 @@ use super::{ToyCondition, diagnosis, toy, toy_conditions, toy_omega};
 use crate::physics::problem::PhysicsOptions;
 use crate::physics::{ParameterValue, PhysicsDiagnosis, PhysicsProblem};
 
-/// Asserts that two results agree: values, half-widths' parts, scores, misfit.
+/// Asserts that two results agree in misfit, share explained, and each parameter's value, variance,
+/// ratio and step; the parameters in `found` are ordered as `parameters`.
 fn assert_same(found: &PhysicsDiagnosis, expected: &PhysicsDiagnosis, parameters: &[usize]) {
     assert!((found.fit.misfit - expected.fit.misfit).abs() < 1e-10);
     let explained = found.explained().unwrap() - expected.explained().unwrap();
@@ -36,7 +37,7 @@ fn assert_same(found: &PhysicsDiagnosis, expected: &PhysicsDiagnosis, parameters
     }
 }
 
-/// The responses of a problem in other units; the factors are new units per old unit.
+/// Returns responses in other units; the factors are new units per old unit.
 fn scaled(response: &FrequencyResponse, outputs: [f64; 2], inputs: [f64; 2]) -> FrequencyResponse {
     FrequencyResponse::new(response.curves().map(|pair, curve| {
         let factor = outputs[pair.output] / inputs[pair.input];
@@ -59,7 +60,8 @@ fn scaled_model(model: &StateSpace, outputs: [f64; 2], inputs: [f64; 2]) -> Stat
     StateSpace::new(model.a().clone(), b, c, d).unwrap()
 }
 
-/// The disturbed toy with its models and responses in other units of the channels.
+/// Returns the reference problem with disturbed flight, its models and responses in other channel
+/// units.
 fn in_other_units(outputs: [f64; 2], inputs: [f64; 2]) -> PhysicsProblem {
     let mut problem = toy("R_disturbed");
     for (condition, toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
@@ -74,7 +76,7 @@ fn in_other_units(outputs: [f64; 2], inputs: [f64; 2]) -> PhysicsProblem {
     problem
 }
 
-/// The disturbed toy in other coordinates of the states.
+/// Returns the reference problem with disturbed flight, its models in other state units.
 fn in_other_states(factors: [f64; 3]) -> PhysicsProblem {
     let scales = DMatrix::from_diagonal(&nalgebra::DVector::from_row_slice(&factors));
     let inverse = scales.clone().try_inverse().unwrap();
@@ -129,7 +131,8 @@ fn the_order_of_two_runs_does_not_matter() {
     assert_same(&diagnosis(&problem), &expected, &[0, 1]);
 }
 
-/// Flight of the toy with its parameters at `z`, ln gains and delays on its channels.
+/// Returns the exact response of a reference condition with its parameters at `z`, and with ln
+/// gains and delays in its channels (outputs first).
 fn exact_flight(
     condition: &ToyCondition,
     z: &[f64],
@@ -227,8 +230,8 @@ fn a_family_of_responses_fits_like_one_of_matrices_for_small_changes() {
     assert!((found.fit.z[1] + 0.04).abs() < 5e-3, "{}", found.fit.z[1]);
 }
 
-/// The normal equations summed over the conditions: `sum_c S'_kk (z_c - z) = z`, the pull of the
-/// prior. The passes stop when no value moves by more than 1e-3.
+/// Tests the normal equations summed over the conditions: `sum_c S'_kk (z_c - z) = z`, the pull of
+/// the prior. The passes stop when no value moves by more than 1e-3.
 #[test]
 fn values_of_single_conditions_average_to_the_common_value_but_for_the_prior() {
     let found = diagnosis(&toy("R_disturbed"));

@@ -20,7 +20,7 @@ fn offsets(airspeed_kt: f64) -> Option<BTreeMap<String, f64>> {
     Some(BTreeMap::from([("airspeed_kt".to_owned(), airspeed_kt)]))
 }
 
-/// A model of the toy at a trim, with named states.
+/// Creates a model from a reference system at a trim, with named states.
 fn model(name: &str, airspeed_kt: f64, system: &StateSpace) -> Model {
     let perturbation = offsets(airspeed_kt);
     let origin = if name == "nominal" {
@@ -44,7 +44,7 @@ fn run(name: &str, parameter: &str, delta: f64, system: &StateSpace) -> MovedMod
     }
 }
 
-/// Plausible standard deviations of the toy's parameters in their unit.
+/// Plausible standard deviations of the reference parameters, in their unit.
 const PLAUSIBLE: [f64; 2] = [5.0, 40.0];
 
 fn offered(plausible: [f64; 2]) -> Vec<OfferedParameter> {
@@ -59,7 +59,7 @@ fn offered(plausible: [f64; 2]) -> Vec<OfferedParameter> {
         .collect()
 }
 
-/// The runs of the toy, with steps of `scale` times those of the reference.
+/// Returns a reference condition's runs, with `scale` times their steps.
 fn toy_runs(condition: usize, scale: f64) -> Vec<MovedModel> {
     let toy = &toy_conditions()[condition];
     let mut runs = Vec::new();
@@ -72,7 +72,8 @@ fn toy_runs(condition: usize, scale: f64) -> Vec<MovedModel> {
     runs
 }
 
-/// A condition with the toy's nominal model, a model at another trim, and these runs.
+/// Creates a condition with the reference model as nominal model and at another trim, and with
+/// these runs.
 fn condition(index: usize, runs: Vec<MovedModel>) -> Condition {
     let base = &toy_conditions()[index].base;
     let state = FlightState::at(ConditionId(index as i64 + 1), 60.0);

@@ -1,4 +1,5 @@
-//! Stable codes for problems and cautions about record columns.
+//! Stable codes for problems and cautions about record columns, and messages from file errors and
+//! refused decisions, which have codes of their own.
 
 use gdcm_io::file_error::FileError;
 use gdcm_study::decisions::edit_refusal::EditRefusal;

@@ -19,7 +19,7 @@ use super::condition_messages::{ConditionMessage, shared_messages};
 use super::printed_lines::{decimals_or_dash, indented, line};
 
 /// Returns a table with bandwidth and phase delay for the responses for which either is defined,
-/// and the reasons why the other responses have none.
+/// and the reasons for missing values.
 pub(super) fn bandwidth_section(study: &Study, requirements: &Requirements) -> String {
     let responses: Vec<ResponseBandwidths> = requirements
         .bandwidth

@@ -10,7 +10,8 @@ use super::failure::Failure;
 use super::file_values::FileValue;
 use super::model_arguments::AssembleArguments;
 
-/// Rejects a second declaration for a channel's sign, unit or factor in the same models.
+/// Rejects a second sign for a channel in the same models, and a second unit or factor: a unit and
+/// a factor exclude each other.
 pub(super) fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for FileValue { channel, scope, .. } in &arguments.sign {

@@ -82,7 +82,7 @@ fn valid_sign(text: &str) -> Option<ChannelSign> {
     })
 }
 
-/// Parses a sign: -1 or 1.
+/// Parses a sign: `-1` or `-`; `1`, `+1` or `+`.
 pub(super) fn sign_factor(text: &str) -> Option<f64> {
     match text {
         "-1" | "-" => Some(-1.0),

@@ -113,7 +113,7 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Describes a study's decisions.
+/// Lists a study's rejected and pinned models, and its held-out and unscheduled conditions.
 fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {

@@ -49,7 +49,7 @@ fn on_axis_words(dataset: &Dataset) -> String {
         .map(|pair| sanitized(&dataset.pair_name(pair)))
         .collect();
     if pairs.is_empty() {
-        "none marked: all responses enter the objective".to_owned()
+        "none marked: distances and bounds are computed from all responses".to_owned()
     } else {
         pairs.join(", ")
     }

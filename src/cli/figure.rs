@@ -83,7 +83,8 @@ impl FigurePlace {
 /// for its condition.
 ///
 /// # Errors
-/// There is nothing to draw, the condition has no result, or the work was stopped.
+/// There is nothing to draw, the condition has no result, the couplings or physics parameters
+/// cannot be assessed, or the work was stopped.
 pub(super) fn drawn_figure(
     place: FigurePlace,
     analysed: &mut StudyAnalysis,
@@ -144,7 +145,8 @@ fn assessed_couplings(
     }
 }
 
-/// Diagnoses the physics parameters applied by the study; if it applies none, the named ones.
+/// Diagnoses the physics parameters, and assesses those that the study applies; if it applies none,
+/// those that the diagnosis names.
 fn assessed_physics(
     study: &Study,
     engine: &mut Engine,
@@ -209,7 +211,7 @@ fn figure_of_condition(
 }
 
 /// Builds the figure request from the command line. Without `--pair`, the responses are the
-/// constrained ones in the net-gain figure, else those in the objective (on-axis).
+/// constrained ones in the net-gain figure, else the on-axis ones (all if none is on-axis).
 fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRequest, Failure> {
     let dataset = &study.dataset;
     let pairs = match &arguments.pair {

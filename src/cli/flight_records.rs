@@ -45,9 +45,9 @@ pub(super) struct ReadRecords {
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// A record whose samples equal those in another record.
+/// A record left out because its samples equal those in an earlier record.
 pub(super) struct Duplicate {
-    /// Name of the record with the same samples.
+    /// Name of the earlier record, which is used.
     pub(super) original: String,
     pub(super) caution: CautionNote,
 }
@@ -247,8 +247,8 @@ impl Reported {
     }
 }
 
-/// Returns whether a record is a part without samples: a part requested for all records may lie
-/// outside some of them.
+/// Returns whether a record is a part with fewer than two samples: a part requested for all records
+/// may lie outside some of them.
 fn is_empty_part(record: &LaidOutRecord) -> bool {
     match (&record.table.part_s, &record.flight) {
         (Some(_), Some(flight)) => flight.time_s.len() < 2,
@@ -281,7 +281,8 @@ fn check_parts(
     Ok(())
 }
 
-/// Reports each record with the same samples as `record`, and returns the cautions about them.
+/// Reports the earlier records with the same samples as `record`, and returns the cautions about
+/// them.
 pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
     let mut duplicates = Vec::new();
     for reason in &record.cautions {

@@ -101,8 +101,8 @@ impl IdentificationTask {
     }
 
     /// Returns a caution if a channel in the measured responses lags behind the condition's nominal
-    /// physics model; it names the option that removes the delay, which adds the delay that is
-    /// already removed.
+    /// physics model; it names the option that removes the delay, with a value that includes the
+    /// delay already removed.
     fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;

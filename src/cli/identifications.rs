@@ -130,7 +130,8 @@ impl<'a> Identifications<'a> {
         Ok(())
     }
 
-    /// Returns the description written beside a task's models, and prints its notes.
+    /// Returns the description written beside a task's models; prints its notes, keeps its
+    /// cautions, and records whether an input is identified.
     pub(super) fn describe(
         &mut self,
         task: &IdentificationTask,

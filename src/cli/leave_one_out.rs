@@ -8,9 +8,10 @@ use gdcm_words::assessment::not_assessed_text;
 
 use super::printed_lines::{detail, fixed_digits, indented, line};
 
-/// Returns, for each condition's nominal model, the mean change in J over the responses in the
-/// objective: with the schedule fitted to all conditions, and fitted to the other conditions only.
-/// Below, the conditions without such a schedule, and which fits still contain the condition.
+/// Returns, for each condition's nominal model, the mean change in J over the on-axis responses
+/// (over all if none is on-axis): with the schedule fitted to all conditions, and fitted to the
+/// other conditions only. Below, the conditions that cannot be assessed, and notes that parameters
+/// and couplings are fitted to all conditions, if there are any.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let fitted_to_all = assessment(analysis, AssessedCorrection::Scheduled);
     let fitted_to_others = assessment(analysis, AssessedCorrection::ScheduleOfOthers);

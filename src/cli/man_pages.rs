@@ -11,7 +11,7 @@ use gdcm_io::output_set::{OutputSet, make_directory};
 use super::arguments::Arguments;
 use super::failure::Failure;
 
-/// Writes a page about the program and one for each command.
+/// Writes a page about the program and one for each command that the help lists.
 pub(super) fn write_man_pages(directory: &Path, existing: Existing) -> Result<(), Failure> {
     make_directory(directory)?;
     let mut outputs = OutputSet::new(existing, Vec::new());

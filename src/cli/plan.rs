@@ -40,8 +40,9 @@ use crate::executor::Pool;
 /// 4. The file, if requested, and the tables.
 ///
 /// # Errors
-/// An option or a file is wrong; the only task fails, or all do (otherwise a failed task is a
-/// caution); the work was stopped. After all is done: some records were not read.
+/// An option or a file is wrong; the only identification fails, or all do (otherwise a failed one
+/// is a caution); a plan cannot be computed; the work was stopped. After all is done: some records
+/// were not read.
 pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let source = &arguments.source;
     let read = source.records.iter().chain(&source.into);
@@ -202,8 +203,8 @@ impl<'a> WantedFlights<'a> {
         })
     }
 
-    /// Returns the failure for sweeps about which nothing can be predicted: those with no spectral
-    /// line in the band, if the options give their length or band.
+    /// Returns the failure for sweeps about which nothing can be predicted. If the options give
+    /// their length or band, the reason is that the sweeps have no spectral line in the band.
     fn no_plan(&self, task: &IdentificationTask) -> Failure {
         let reason = "the sweeps have no spectral line in the band";
         if self.arguments.length.is_some() {

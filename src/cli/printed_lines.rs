@@ -121,8 +121,8 @@ pub(super) fn indented_untitled(table: Table) -> String {
     indented(&table, DETAIL_INDENT)
 }
 
-/// Formats a number with `digits` decimals, or with an exponent if it is 1e7 or larger; "–" for
-/// `None`.
+/// Formats a number with `digits` decimals, or with an exponent if its magnitude is 1e7 or larger;
+/// "–" for `None`.
 pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
     let Some(value) = value else {
         return NO_VALUE.to_owned();

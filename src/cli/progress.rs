@@ -88,8 +88,8 @@ const QUICK: Duration = Duration::from_millis(500);
 /// incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
-    /// Whether the bar appears after [`QUICK`]; decided by the thread that begins the work, whose
-    /// output format it is.
+    /// Whether the bar appears after [`QUICK`]; decided at the start, because the output format is
+    /// a setting of the thread that begins the work.
     is_shown: bool,
     started: Instant,
     interruptible: Interruptible,
@@ -134,8 +134,8 @@ impl Progress for TerminalProgress {
     }
 }
 
-/// Returns where progress bars are drawn: nowhere if standard error is not a terminal or only
-/// results are requested.
+/// Returns where progress bars are drawn: nowhere if standard error is not a terminal, or if JSON
+/// or quiet output is requested.
 fn progress_target() -> ProgressDrawTarget {
     if shows_progress() {
         ProgressDrawTarget::stderr()

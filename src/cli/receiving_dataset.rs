@@ -195,8 +195,7 @@ pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
 }
 
 /// Adapts a dataset to a file in another folder: prefixes the record paths with `folder`, and
-/// replaces the description if a new one is given. Errors name the option of
-/// the description.
+/// replaces the description if a new one is given. Errors are attributed to `--description`.
 fn moved_dataset(
     dataset: &Dataset,
     folder: &str,

@@ -43,7 +43,8 @@ pub(super) fn requested_band(
 /// 5. Units, then factors; a channel has either.
 ///
 /// # Errors
-/// An option names an unknown channel or one twice, or contradicts the dataset's unit.
+/// An option names an unknown channel or one twice, contradicts the dataset's unit, or gives an
+/// input or output as reference.
 pub(super) fn requested_channels(
     arguments: &RecordArguments,
     dataset: Option<&Dataset>,

@@ -143,8 +143,8 @@ fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
     }
 }
 
-/// Reports missing results, first those that concern all conditions. Missing records are not
-/// reported if none were given.
+/// Reports missing results, first those that concern all conditions. Missing time histories are
+/// reported only if some record was compared: otherwise the printed section gives the reason.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     /// What is missing if a condition has no result.
     const EVERYTHING: &str = "all";
@@ -168,7 +168,8 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
 }
 
-/// Counts the met requirements, and returns the grid for the conditions' own corrections.
+/// Counts the met requirements, and returns the grid for the conditions' own corrections; with a
+/// schedule, also counts those met under it.
 fn grid_section(results: RequirementResults<'_>) -> String {
     let mut text = String::new();
     let own = results.grid(RequirementRole::Corrected);

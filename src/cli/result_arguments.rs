@@ -44,7 +44,7 @@ pub struct FigureArguments {
     /// Figure to write.
     #[arg(long, value_name = "VIEW", value_parser = one_of(FigureKind::ALL, FigureKind::name))]
     pub view: FigureKind,
-    /// Condition, by its id, for the figures bode, error and overview.
+    /// Condition, by its id, for the figures bode, error, overview, poles, leads and physics-change; adds its poles to the figure couplings.
     #[arg(long, value_name = "ID", allow_negative_numbers = true)]
     pub condition: Option<i64>,
     /// Responses, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON), or "on-axis", "off-axis", "all" [default: on-axis; for net-gain,

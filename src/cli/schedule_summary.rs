@@ -11,8 +11,8 @@ use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 use super::printed_lines::{detail, fixed_digits, indented, line};
 use super::terminal::keep_caution;
 
-/// Returns the responses listed in tables: the responses in the objective (on-axis; all if none is
-/// on-axis) and the constrained responses.
+/// Returns the responses listed in tables: the on-axis responses (all if none is on-axis) and the
+/// constrained responses.
 pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
@@ -21,7 +21,7 @@ pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
 
 /// Returns the schedule's kind, its cautions, the delays that it omits, and tables with the
 /// scheduled net gains and, if there are any, net delays over airspeed, for the responses in
-/// [`shown_pairs`]. Without a schedule, the reason.
+/// [`shown_pairs`]. Without a schedule, the reason. Also keeps the cautions for the JSON object.
 pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let schedule = match &analysis.schedule {
         Ok(schedule) => schedule,

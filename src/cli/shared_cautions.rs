@@ -32,8 +32,8 @@ struct RecurringRow {
 ///
 /// 1. Sorts each condition's cautions into recurring ones, a row for each condition, and others;
 ///    the limit of the leads is one of the others.
-/// 2. First, a single recurring caution in all becomes one of the others; else the rows become a
-///    table.
+/// 2. If there is only one recurring caution, it becomes one of the others; otherwise the rows
+///    become a table.
 /// 3. Merges the others with equal text.
 pub(super) fn cautions_section(analysis: &Analysis) -> String {
     let mut rows: Vec<RecurringRow> = Vec::new();
@@ -91,8 +91,8 @@ pub(super) struct CodedCaution {
     pub(super) conditions: Vec<ConditionId>,
 }
 
-/// Collects all caution codes: doubts about signs and units, cautions about conditions, couplings,
-/// and the schedule.
+/// Collects the codes of the doubts about signs and units, and of the cautions about conditions,
+/// couplings and the schedule.
 pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
     let mut coded = Vec::new();
     for doubt in &analysis.doubts {

@@ -105,7 +105,7 @@ pub struct StudyArguments {
     pub file: Option<PathBuf>,
     #[command(flatten)]
     pub settings: SettingOptions,
-    /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON), or "none" [default: the on-axis responses].
+    /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON), or "none" [default: those of the study, initially the on-axis responses].
     #[arg(long, value_name = "PAIRS", value_parser = pair_list)]
     pub on: Option<PairList>,
     #[command(flatten)]

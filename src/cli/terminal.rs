@@ -159,8 +159,8 @@ pub(super) fn shows_progress() -> bool {
     MESSAGES.with_borrow(|messages| messages.output == OutputFormat::default())
 }
 
-/// Prints a text, which includes its line end. If a reader closes the pipe early, as in `gdcm … |
-/// head`, this is not a failure.
+/// Prints a text, which includes its line end, or adds it to the JSON output; control characters
+/// are removed. If a reader closes the pipe early, as in `gdcm … | head`, this is not a failure.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut plain_text = String::new();
     for line in text.split_inclusive('\n') {

@@ -132,7 +132,8 @@ struct ConditionRecord {
 }
 
 impl ConditionRecord {
-    /// Returns whether the record is unusable because a unit is unknown.
+    /// Returns whether the record belongs to a known condition but is unusable because a unit is
+    /// unknown.
     fn lacks_unit(&self) -> bool {
         self.condition.is_some()
             && self

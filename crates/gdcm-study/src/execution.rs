@@ -46,7 +46,8 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Evaluates `work(0), work(1), ...`, in any order; each counts as `steps` steps.
+    /// Evaluates `work(0), work(1), ...`, in any order; each counts as `steps` steps. The results
+    /// are in the order of the indices.
     pub(crate) fn each<T: Send>(
         &self,
         count: usize,
@@ -71,7 +72,8 @@ impl<'a> Execution<'a> {
         Some(result)
     }
 
-    /// Works as [`Execution::each`] on mutable items, with work that may itself be cancelled.
+    /// Works as [`Execution::each`] on items passed by value, with work that may itself be
+    /// cancelled and counts its own steps.
     pub(crate) fn each_mut<S: Send, T: Send>(
         &self,
         items: Vec<S>,

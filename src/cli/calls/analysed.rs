@@ -135,7 +135,8 @@ impl AnalysedStudy {
     /// input. Delays are exact.
     ///
     /// # Errors
-    /// The analysis lacks the model or the correction.
+    /// The analysis lacks the condition, the model or the correction, or the order of the Padé
+    /// approximants is not from 1 to 8.
     pub fn response(&self, choice: &ModelChoice, omega: &[f64]) -> Result<Responses, CallError> {
         let analysis = &self.analysed.analysis;
         let response = called(|| {
@@ -149,7 +150,8 @@ impl AnalysedStudy {
     /// Returns a corrected model as state-space, as the text of a file `gdcm-models`.
     ///
     /// # Errors
-    /// The analysis lacks the model or the correction, or the model has no matrices.
+    /// The analysis lacks the condition, the model or the correction, the model has no matrices, or
+    /// the order of the Padé approximants is not from 1 to 8.
     pub fn model_json(&self, choice: &ModelChoice) -> Result<Vec<u8>, CallError> {
         let analysis = &self.analysed.analysis;
         let text = called(|| {

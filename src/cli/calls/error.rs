@@ -73,8 +73,8 @@ fn failure_fields(failure: &Failure) -> Map<String, Value> {
     }
 }
 
-/// Returns the path in a file error, and where it has them the place in the content, the line and
-/// the column.
+/// Returns the path in a file error and, where it has them, the paths of existing files, the place
+/// in the content and the line.
 fn file_fields(error: &FileError) -> Map<String, Value> {
     let mut fields = Map::new();
     if let Some(path) = error.path() {

@@ -139,7 +139,8 @@ impl IdentifiedRecords {
     /// ("measured").
     ///
     /// # Errors
-    /// The dataset has no such condition, or other channels.
+    /// The dataset has no such condition or other channels, `take` is none of these words, or the
+    /// models do not fit the condition.
     pub fn put_into(
         &self,
         data: &OpenedData,

@@ -50,7 +50,7 @@ impl OpenedData {
     /// a dataset that has changed since the study was saved is an error.
     ///
     /// # Errors
-    /// The files cannot be read.
+    /// The files cannot be read, or the dataset has changed and `is_strict` is set.
     pub fn load(
         file: &Path,
         dataset: Option<PathBuf>,
@@ -132,7 +132,8 @@ impl OpenedData {
         Ok(())
     }
 
-    /// Saves the study, and beside it its dataset if that is not in a file.
+    /// Saves the study, and beside it its dataset if that is not in a file; existing files are
+    /// replaced.
     ///
     /// # Errors
     /// A file cannot be written.

@@ -11,7 +11,7 @@ use super::edit_refusal::EditRefusal;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AdoptionChoice {
     /// Whether to adopt the refined model, the models with neighbouring orders, and those fitted
-    /// without one record each (M14, section 5).
+    /// without one record each (M14.5).
     pub refined: bool,
     /// Whether to adopt the CT-PBSID model without refinement.
     pub unrefined: bool,
@@ -21,7 +21,7 @@ pub struct AdoptionChoice {
 
 impl AdoptionChoice {
     /// The refined model, the models with neighbouring orders, and those fitted without one record
-    /// each (M14, section 5).
+    /// each (M14.5).
     pub const REFINED: Self = Self {
         refined: true,
         unrefined: false,
@@ -49,8 +49,9 @@ pub struct AdoptedModels {
 }
 
 impl AdoptedModels {
-    /// Collects the chosen models from an identification with `records`, the recommended model
-    /// first.
+    /// Collects the chosen models from an identification with `records`, in this order: the refined
+    /// model and its bundle, the unrefined model, the measured response (omitted if `found` has
+    /// none).
     pub fn from_identification(
         found: &Identification,
         offered: AdoptionChoice,
@@ -83,8 +84,8 @@ impl AdoptedModels {
     /// are added to the condition's records.
     ///
     /// # Errors
-    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] if the models do not fit the
-    /// condition.
+    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] if there are no models or they do
+    /// not fit the condition.
     pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
         let before = dataset
             .condition(id)

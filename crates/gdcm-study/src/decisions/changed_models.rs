@@ -38,14 +38,15 @@ impl Study {
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Restores a condition's models from the file.
+    /// Restores a condition's identified models from the file, and drops decisions about models
+    /// that the file does not have.
     pub(crate) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
         let mut models = self.taken.clone();
         models.remove(&condition);
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Reverses a channel's sign in the models, or restores it.
+    /// Reverses a channel's sign in the models with `role`; `None` restores it in all.
     pub(crate) fn set_sign(
         &mut self,
         channel: Channel,

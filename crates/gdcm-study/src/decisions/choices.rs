@@ -73,7 +73,8 @@ impl ConditionChoice {
         choice
     }
 
-    /// Returns the choices on which the model comparison depends.
+    /// Returns the choices on which the model comparison depends: without reasons, and with the
+    /// default membership in the schedule.
     pub(crate) fn of_models(&self) -> Self {
         Self {
             scheduled: true,

@@ -37,7 +37,7 @@ pub enum Difference {
     /// A bundle has a new model.
     ModelAdded(ModelId),
     ModelRemoved(ModelId),
-    /// A model's matrices, bands or trim have changed.
+    /// A model's dynamics, bands, role or trim have changed.
     ModelChanged(ModelId),
     /// A decision no longer applies.
     NotApplied {
@@ -146,7 +146,8 @@ impl Inventory {
     }
 }
 
-/// A condition's models: for each name, a fingerprint of matrices, bands and trim.
+/// A condition's airspeed and its models: for each name, a fingerprint of dynamics, bands, role and
+/// trim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionInventory {
     pub id: ConditionId,

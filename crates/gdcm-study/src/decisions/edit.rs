@@ -199,7 +199,7 @@ impl Study {
         Ok(self.choice_mut(id.condition)?.bundle_mut(id.bundle))
     }
 
-    /// Rejects a model, and releases it if it was pinned; refuses to reject a bundle's last kept
+    /// Rejects a model, and unpins it if it was pinned; refuses to reject a bundle's last kept
     /// model.
     fn reject(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
         let condition = self.dataset.condition(id.condition);

@@ -10,7 +10,7 @@ use super::study::Study;
 
 /// Maximum number of undo steps; a snapshot takes a few kilobytes, because models are shared.
 const MOST_STEPS: usize = 500;
-/// Maximum memory for models that only the undo steps keep \[bytes\]. Reversed signs, adopted
+/// Maximum memory for the models in all undo and redo steps \[bytes\]. Reversed signs, adopted
 /// models and reloaded files leave the former models in the earlier steps.
 const MOST_BYTES: usize = 48 << 20;
 /// Number of datasets that the undo steps may keep in memory whatever their size.
@@ -110,7 +110,8 @@ fn drop_if_unchanged<B, C>(steps: &mut Vec<Step<B, C>>, session: u64, after: &St
 }
 
 impl<B: Default, C> History<B, C> {
-    /// Stores `before`, the study before the change by `edit`, which may already be applied.
+    /// Stores `before`, the study before the change by `edit`, which may already be applied. Redo
+    /// steps are removed.
     ///
     /// A decision that continues the last one (see [`Edit::continues`]) adds no step until
     /// [`History::seal`].
@@ -249,8 +250,9 @@ impl<B: Default, C> History<B, C> {
         self.past = merged;
     }
 
-    /// Returns the study before the last decision. `now` is the present study; `exchange` restores
-    /// the state outside the study, and returns the value that it had.
+    /// Undoes the last step and returns the study before it; `None` if there is no step. `now` is
+    /// the present study, kept for a redo; `exchange` restores the state outside the study, and
+    /// returns the value that it had.
     pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;
@@ -263,8 +265,9 @@ impl<B: Default, C> History<B, C> {
         Some(step.study)
     }
 
-    /// Returns the study before the last decision if that was `edit`. The decision is removed
-    /// without a redo step, and the redo steps that it had removed are available again.
+    /// Withdraws the last decision if it was `edit` and is not sealed, and returns the study before
+    /// it; otherwise returns `None`. There is no redo step, and the redo steps that the decision
+    /// had removed are available again.
     pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
         if self.open.as_ref() != Some(edit) {
             return None;
@@ -275,8 +278,8 @@ impl<B: Default, C> History<B, C> {
         Some(step.study)
     }
 
-    /// Returns the study after the last undone decision. `now` is the present study; `exchange` is
-    /// as in [`History::undo`].
+    /// Redoes the last undone step and returns the study after it; `None` if there is no such step.
+    /// `now` is the present study, kept for an undo; `exchange` is as in [`History::undo`].
     pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.future.pop()?;
         self.open = None;

@@ -24,7 +24,7 @@ pub enum PhysicsCorrection {
     /// None: the physics models are unchanged.
     #[default]
     Off,
-    /// The named parameters, fitted again with the others off.
+    /// The parameters that the diagnosis names, fitted again with the others off.
     Named,
     /// All parameters that are on.
     All,
@@ -52,7 +52,8 @@ pub struct PhysicsSettings {
     /// Changes set by hand, in the parameter's unit.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub by_hand: BTreeMap<String, f64>,
-    /// The parameters that take no part in the fit.
+    /// The parameters that are off: they take no part in the fit, and their changes set by hand
+    /// have no effect.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     pub off: BTreeSet<String>,
     /// Plausible standard deviations that replace the dataset's, in the parameter's unit.
@@ -84,11 +85,12 @@ impl Default for PhysicsSettings {
 /// A decision about a single parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterDecision {
-    /// Sets its change by hand, in its unit; `None` lets the fit find it.
+    /// Sets the parameter's change by hand, in the parameter's unit; `None` lets the fit find it.
     Value(Option<f64>),
-    /// Switches it on or off.
+    /// Switches the parameter on or off.
     On(bool),
-    /// Sets its plausible standard deviation, in its unit; `None` takes the dataset's.
+    /// Sets the parameter's plausible standard deviation, in the parameter's unit; `None` takes the
+    /// dataset's.
     PlausibleSd(Option<f64>),
 }
 

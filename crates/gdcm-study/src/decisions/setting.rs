@@ -113,9 +113,9 @@ pub enum Digits {
 pub enum Place {
     /// Above the settings table, with a slider.
     Slider,
-    /// Above the table, on its own line.
+    /// Above the settings table, on its own line.
     Top,
-    /// On its own line.
+    /// In the settings table, on its own line.
     Line,
     /// On the previous setting's line.
     Beside,
@@ -432,7 +432,8 @@ impl Setting {
         Some(words)
     }
 
-    /// Parses the value from the command line; a flag without argument is set.
+    /// Parses the value from the command line; a flag is set by its presence. Only the range of
+    /// whole numbers is checked here; [`Self::check`] checks the others.
     ///
     /// # Errors
     /// The expected values and the text found.

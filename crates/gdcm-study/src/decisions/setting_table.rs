@@ -102,8 +102,8 @@ pub static PHASE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Definition of the D to which the delays are fitted: median of phase over frequency, or line over
-/// the band (M15.2).
+/// Definition of the D to which the delays are fitted: median of `Delta phi / omega`, or slope of a
+/// line through `Delta phi` over the band (M15.2).
 pub static DELAY_FROM: Setting = Setting {
     name: "delay estimate",
     key: "delay_from",
@@ -204,8 +204,8 @@ pub static COUPLINGS: Setting = Setting {
     ..DEFAULT
 };
 
-/// Physics parameters that move the physics models: none, the named ones, all, or values set by hand
-/// (M18.5).
+/// Physics parameters that move the physics models: none, those that the diagnosis names, all, or
+/// values set by hand (M18.5).
 pub static PHYSICS: Setting = Setting {
     name: "physics parameters",
     key: "physics",
@@ -617,7 +617,7 @@ pub static SCHEDULE_DELAYS: Setting = Setting {
     ..DEFAULT
 };
 
-/// Polynomial degree for the signed delays.
+/// Degree of the schedule's polynomials for the signed delays.
 pub static TAU_DEGREE: Setting = Setting {
     name: "degree of the signed delays",
     key: "schedule.tau_degree",
@@ -686,8 +686,9 @@ pub static SECOND_VARIABLE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Every setting except the constrained and ignored responses, in display order: a control placed
-/// [`Place::Beside`] joins the line of the control before it.
+/// Every setting except the constrained and ignored responses and the decisions about physics
+/// parameters, in display order: a control placed [`Place::Beside`] joins the line of the control
+/// before it.
 pub static SETTINGS: [&Setting; 30] = [
     &ALPHA_GAIN,
     &ALPHA_DELAY,

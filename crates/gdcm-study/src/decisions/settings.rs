@@ -1,4 +1,4 @@
-//! Every setting that changes a result, with its value as stored in files. Names, ranges and
+//! Settings common to all conditions, with their values as stored in files. Names, ranges and
 //! controls are in [`super::setting`].
 
 use std::fmt;
@@ -38,7 +38,7 @@ pub enum PhaseCorrection {
     Lead,
 }
 
-/// Correction to couplings and modes in the physics models, applied before the channel correction
+/// Correction for couplings and modes in the physics models, applied before the channel correction
 /// (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -113,9 +113,9 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
     }
 }
 
-/// All settings that change a result, common to all conditions in a study. `R` is the type for a
-/// set of responses: a table over the dataset, or names in files. A setting that an older file does
-/// not contain has its field's default, which may differ from its value in a new study
+/// Settings common to all conditions in a study; requirement settings are separate. `R` is the type
+/// for a set of responses: a table over the dataset, or names in files. A setting that an older
+/// file does not contain has its field's default, which may differ from its value in a new study
 /// ([`Settings::for_dataset`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings<R = PairTable<bool>> {

@@ -84,7 +84,7 @@ impl Study {
         }
     }
 
-    /// Returns the choices in a condition; empty choices if the dataset does not have the
+    /// Returns the choices in a condition; default choices if the dataset does not have the
     /// condition.
     pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
         static NONE: LazyLock<ConditionChoice> = LazyLock::new(ConditionChoice::default);

@@ -17,8 +17,8 @@ impl Study {
             .map(Arc::as_ref)
     }
 
-    /// Returns the study with a variant's decisions instead of the present ones, and without
-    /// variants. It is analysed for comparisons.
+    /// Returns the study with a variant's settings and choices instead of the present ones, and
+    /// without variants, to be analysed for comparisons; `None` if there is no such variant.
     pub fn of_variant(&self, name: &str) -> Option<Study> {
         let Variant {
             settings, choices, ..

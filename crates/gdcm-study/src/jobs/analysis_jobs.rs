@@ -132,8 +132,8 @@ impl PartialEq for VariantJob {
 }
 
 impl Job for VariantJob {
-    /// An engine that caches the responses and distances: the band is the only decision that they
-    /// depend on, so that most variants share them.
+    /// An engine that caches the responses and distances: they depend only on the band, the number
+    /// of frequencies and the coherence threshold, so that most variants share them.
     type Tools = Engine;
     type Output = Arc<Analysis>;
 

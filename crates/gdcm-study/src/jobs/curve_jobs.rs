@@ -57,7 +57,8 @@ impl Job for ModesJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
-    /// The dataset with the physics models moved by the physics parameters; `dataset` without them.
+    /// The dataset with the physics models moved by the physics parameters; the same as `dataset`
+    /// if there are none.
     pub moved_dataset: Shared<Dataset>,
     /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
@@ -79,8 +80,8 @@ pub struct AcrossCurves {
 pub struct AcrossModel {
     pub model: ModelId,
     pub response: Arc<FrequencyResponse>,
-    /// A physics model's response with physics parameters and couplings applied; `None` without
-    /// both, and for an identified model.
+    /// A physics model's response with physics parameters and couplings applied; `None` if neither
+    /// is applied, and for an identified model.
     pub coupled: Option<Arc<FrequencyResponse>>,
 }
 
@@ -139,7 +140,8 @@ impl AcrossJob {
     }
 
     /// Returns a physics model's response after the physics parameters and the couplings, to which
-    /// gains and delays apply (M18.5); `None` if neither changes it.
+    /// gains and delays apply (M18.5); `None` for an identified model, or if neither changes the
+    /// response.
     fn response_before_gains(
         &self,
         id: &ModelId,
@@ -258,7 +260,7 @@ impl AcrossRole {
     }
 }
 
-/// A model's modes; an error for a measured response.
+/// A model's modes, none for a measured response; an error if they cannot be computed.
 pub type ModelModes = Result<Vec<Mode>, ModesError>;
 
 /// A condition's modes, model by model in file order.

@@ -107,7 +107,7 @@ pub struct IdentificationNews {
     pub step: String,
     /// First model, before refinement.
     pub first_model: Option<Arc<StateSpace>>,
-    /// Duration, once complete \[s\].
+    /// Duration of the run, once it has ended \[s\].
     pub duration_s: Option<f64>,
     /// What further sweeps would bring, once complete.
     pub next_flight: Option<Arc<FlightPlan>>,
@@ -209,7 +209,7 @@ fn next_flight(found: &Identification, executor: &dyn Executor) -> Option<Flight
     FlightPlanner::new(information, executor)?.standard_plan()
 }
 
-/// Job that simulates a model with a flight record's inputs (M14, section 6).
+/// Job that simulates a model with a flight record's inputs (M14.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     pub record: Shared<FlightRecord>,

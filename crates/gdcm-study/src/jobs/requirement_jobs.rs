@@ -78,7 +78,8 @@ impl Job for TimeHistoriesJob {
     }
 }
 
-/// Job that compares a flight record with its condition's models, within the tolerances.
+/// Job that compares a flight record with its condition's models, and the differences with the
+/// tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     pub analysis: Shared<Analysis>,

@@ -33,7 +33,8 @@ pub struct TradeOffJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TradeOff {
     pub condition: ConditionId,
-    /// By increasing α; an α without a solution is left out.
+    /// By increasing α; an α without a solution, or without a response that can be compared, is
+    /// left out.
     pub points: Vec<TradeOffPoint>,
 }
 
@@ -43,7 +44,7 @@ pub struct TradeOffPoint {
     pub alpha: f64,
     /// Root mean square of `ln k` over the outputs.
     pub output_deviation: f64,
-    /// Mean J over the responses in the objective.
+    /// Mean J over the responses in the objective that can be compared.
     pub mean_cost: f64,
 }
 

@@ -161,9 +161,10 @@ pub struct ConditionAnalysis {
     pub condition: Arc<Condition>,
     /// Distances within the bundles, and discontinuity ratios.
     pub figures: Arc<BundleMetrics>,
-    /// The condition as in the dataset; `None` if its physics models are not moved.
+    /// The condition and its comparison before its physics models are moved; `None` if they are not
+    /// moved.
     pub moved: Option<MovedCondition>,
-    /// Changes due to the couplings; `None` without couplings.
+    /// The couplings, and the comparison without them; `None` without couplings.
     pub coupled: Option<CoupledCondition>,
     /// Representatives, G and D, with the couplings on the physics models where there are any
     /// (M16.3).
@@ -191,7 +192,7 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Compares the models without couplings; returns [`Self::comparison`] if there are none.
+    /// Returns the model comparison without couplings; [`Self::comparison`] if there are none.
     pub fn before_couplings(&self) -> &Comparison {
         match &self.coupled {
             Some(coupled) => &coupled.before,
@@ -237,7 +238,7 @@ impl ConditionAnalysis {
     }
 
     /// Returns whether the delays are fitted to D by M15.2 (always so for leads) instead of eq.
-    /// (9).
+    /// (9); `false` if both definitions give the same D in every response.
     pub fn asks_band_delays(&self) -> bool {
         let asked = &self.delay_problem.delta;
         let delta = &self.comparison.delta;

@@ -26,7 +26,7 @@ pub struct AppliedPhysics {
     /// Diagnosis with all parameters that are on; `None` for values set by hand.
     pub findings: Option<Arc<PhysicsFindings>>,
     /// Fit with the named parameters only, the others off; `None` if all are applied, if none is
-    /// named, and for values set by hand.
+    /// named or set by hand, and if the values set by hand alone are applied.
     pub refit: Option<Arc<PhysicsDiagnosis>>,
     /// The moved parameters, in dataset order; empty if none is moved.
     pub values: Vec<AppliedValue>,
@@ -131,7 +131,8 @@ impl AppliedPhysics {
         values
     }
 
-    /// Returns the diagnosis behind the applied values: with the named parameters, or with all.
+    /// Returns the diagnosis behind the applied values: with the named parameters, or with all;
+    /// `None` for values set by hand.
     pub fn diagnosis(&self) -> Option<&PhysicsDiagnosis> {
         match (&self.refit, &self.findings) {
             (Some(refit), _) => Some(refit),

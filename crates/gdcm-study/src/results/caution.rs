@@ -52,8 +52,8 @@ pub enum Caution {
         model: BundleModel,
         responses: Vec<Pair>,
     },
-    /// Two models differ in some responses by a factor outside the computable range: above 1e50 or
-    /// below 1e-50 (M6).
+    /// A physics and an identified model differ in some responses by a factor outside the
+    /// computable range: above 1e50 or below 1e-50 (M6).
     GainsOutOfRange {
         physics: String,
         identified: String,
@@ -270,7 +270,7 @@ pub enum NotFinite {
         /// Last measured frequency \[rad/s\].
         max: f64,
     },
-    /// The model is discrete-time, and the band extends beyond its Nyquist frequency (M2a).
+    /// The model is discrete-time, and the band reaches its Nyquist frequency (M2a).
     Sampled {
         /// Sample time \[s\].
         sample_time_s: f64,

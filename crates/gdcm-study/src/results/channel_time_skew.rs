@@ -1,4 +1,5 @@
-//! A channel logged late in all records alike, detected against a physics model (M14, section 10).
+//! A channel logged late in all records alike, detected against a physics model (section "Limits"
+//! in `docs/identification.md`).
 //!
 //! The records alone cannot distinguish a common delay from dynamics. Comparison with a physics
 //! model can, where the responses to or from a channel lag in proportion to frequency and the other
@@ -13,13 +14,13 @@
 //!       common = median d of all other responses,   s = 1.48 median |d - common| over them
 //!       delay = median d of its own responses - common
 //! 3  late where |delay| > t and |d - common - delay| <= t for each own response, where
-//!    t = max(5 ms, 2.5 s), and the delay explains four fifths of sum W (phi + omega common)^2
+//!    t = max(5 ms, 2.5 * s), and the delay explains four fifths of sum W (phi + omega common)^2
 //! 4  of the late channels that explain at least half as much as the best: the smallest |common|.
 //!    Of an input the delay is reversed: responses to an input that is logged late appear early
 //! ```
 //!
 //! `common`, the delay that all channels share, cannot be assigned to a channel; it is reported
-//! with the leads (M15, section 6).
+//! with the leads (M15.6).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
@@ -32,7 +33,7 @@ use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
 /// Minimum share of the band's frequencies at which a response must be coherent.
 const LEAST_SHOWN: f64 = 0.5;
-/// Lower bound on the standard deviation of a physics model's phase \[rad\].
+/// Standard deviation assumed for a physics model's phase \[rad\].
 const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Minimum delay that is reported \[s\].
 const LEAST_S: f64 = 5e-3;

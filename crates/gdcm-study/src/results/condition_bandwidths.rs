@@ -132,7 +132,8 @@ struct ConditionBandwidths<'a> {
     physics: usize,
     /// The physics representative and the models that replace it in swaps.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
-    /// The models in `plain` with the couplings, where they have matrices; empty without couplings.
+    /// The models in `plain` with the couplings, where these can be applied; empty without
+    /// couplings.
     coupled: BTreeMap<usize, EvaluatedModel<'a>>,
     identified: EvaluatedModel<'a>,
     swaps: &'a [ModelSwap],

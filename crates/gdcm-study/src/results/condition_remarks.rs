@@ -147,7 +147,8 @@ fn held_farther_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
     Some(Remark::HeldFarther(farther))
 }
 
-/// Returns a remark on the unconstrained responses that the leads move away from flight (M15.6).
+/// Returns a remark on the unconstrained responses that a correction with leads moves away from
+/// flight (M15.6); `None` without leads.
 fn free_farther_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     if study.settings.phase != PhaseCorrection::Lead {
         return None;

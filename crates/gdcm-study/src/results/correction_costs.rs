@@ -19,7 +19,7 @@ pub struct CorrectionCost {
     pub with: AxisCost,
 }
 
-/// Mean J over the conditions, for each response that can be compared both without and with the
+/// Mean J over the conditions and over the responses that can be compared both without and with the
 /// correction (M16.4, M18.5).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CorrectionCosts {

@@ -62,8 +62,8 @@ impl ConditionAnalysis {
     /// approximants, or delays by whole samples in discrete time.
     ///
     /// # Errors
-    /// [`CoupledModelError`] where the loop through the feed-through is singular or
-    /// ill-conditioned.
+    /// [`CoupledModelError`] if the loop through the feed-through is singular or ill-conditioned,
+    /// if the channel delays cannot become states, or if a resulting matrix is not finite.
     pub fn coupled_model<'a>(
         &self,
         physics: &'a StateSpace,
@@ -73,8 +73,8 @@ impl ConditionAnalysis {
         coupled_model(fitted, physics, self.airspeed_kt(), pade)
     }
 
-    /// Returns `M_O H~ M_I`: a physics model with the couplings, and then with its channel
-    /// corrections.
+    /// Returns `M_O H~ M_I`: a physics model with the couplings, and then with the channel gains,
+    /// delays and leads in `correction`.
     ///
     /// # Errors
     /// As for [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads

@@ -79,7 +79,7 @@ pub enum CouplingRemark {
         condition: ConditionId,
         why: NoPoles,
     },
-    /// The couplings cannot be applied to a model.
+    /// The poles of a kept physics model with the couplings are unavailable.
     ModelRefused {
         condition: ConditionId,
         model: String,

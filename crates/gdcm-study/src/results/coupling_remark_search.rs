@@ -23,7 +23,8 @@ const MOST_REPORTED: usize = 3;
 const LEAST_SHARE: f64 = 0.005;
 
 /// Returns the remarks on an analysis's couplings: the reason why requested couplings are
-/// unavailable, or the remarks from [`coupling_remarks`]; empty if none were requested.
+/// unavailable, or the remarks from [`coupling_remarks`]; empty if none were requested, or until
+/// they are assessed.
 pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<CouplingRemark> {
     match (&analysis.couplings, &analysis.coupling_assessment) {
         (Some(Err(error)), _) => vec![CouplingRemark::Unavailable(error.clone())],
@@ -156,7 +157,8 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<CouplingRemark
     })
 }
 
-/// Returns the largest change in an on-axis response above the band.
+/// Returns the largest change in an on-axis response above the band; `None` if it is unknown or not
+/// finite.
 fn largest_change_above_band(
     assessment: &CouplingsAssessment,
     dataset: &Dataset,

@@ -24,11 +24,12 @@ pub type AssessedCouplings = Result<Arc<CouplingsAssessment>, CouplingError>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingEntry {
     pub value: f64,
-    /// Error bar half-width; `None` with fewer than three conditions.
+    /// Error bar half-width; `None` with fewer than three left-out fits.
     pub half_width: Option<f64>,
     /// Jackknife standard deviation.
     pub deviation: Option<f64>,
-    /// Whether the value without coupling lies within the error bar.
+    /// Whether the entry may be 0 (no coupling): its value is 0, or 0 lies within its error bar;
+    /// `false` on the diagonal of `M~`, which is 1 by definition.
     pub is_within_bar: bool,
 }
 
@@ -45,9 +46,11 @@ pub struct ConditionCouplings {
     pub margin: Option<LoopMargin>,
     /// `20 log10 |H~ - H| / |H|` at ten times the band's upper end, response by response.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit.
+    /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit
+    /// or could not be left out.
     pub left_out: Option<CorrectionCost>,
-    /// The other kept physics models with matrices for which the feedback loop cannot be closed.
+    /// The other kept physics models with matrices whose poles with couplings are unavailable, for
+    /// example because the feedback loop cannot be closed.
     pub refused: Vec<RefusedModel>,
 }
 
@@ -70,7 +73,7 @@ impl NoPoles {
     }
 }
 
-/// A physics model to which the couplings cannot be applied.
+/// A physics model whose poles with couplings are unavailable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefusedModel {
     pub model: String,
@@ -98,7 +101,8 @@ pub struct CouplingsAssessment {
     /// Confidence level for the error bars.
     pub level: f64,
     pub band: Band,
-    /// The fits without each condition in turn; empty with fewer than three conditions.
+    /// The fits without each condition in turn, where they succeeded; empty with fewer than three
+    /// conditions.
     pub left_out_fits: Vec<LeftOutFit>,
     /// J without and with the couplings.
     pub costs: CorrectionCosts,

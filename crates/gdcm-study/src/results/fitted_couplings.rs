@@ -40,7 +40,7 @@ impl FittedCouplings {
     }
 }
 
-/// Changes that the couplings make in a condition.
+/// A condition's couplings, and its comparison without them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledCondition {
     /// Comparison of the models without couplings, which selects the representatives.

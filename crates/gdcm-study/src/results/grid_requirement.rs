@@ -89,7 +89,7 @@ impl Requirement {
     }
 
     /// Returns the response that a requirement concerns: for a peak error, its output's on-axis
-    /// response; `None` for modes and summary costs.
+    /// response; `None` for modes and summary values, and if the dataset has no such output.
     pub fn pair(self, dataset: &Dataset, tolerances: &ToleranceTable) -> Option<Pair> {
         match self {
             Self::Bandwidth(pair) | Self::PhaseDelay(pair) | Self::Level(pair) => Some(pair),
@@ -116,7 +116,7 @@ pub enum RequirementLimit {
     AtLeast(f64),
     /// The identified model's level.
     IdentifiedLevel,
-    /// Tolerance for a time history: a peak error up to 1.
+    /// Tolerance for a time history; the values are multiples of it, and met up to 1.
     Tolerance(Tolerance),
     /// Tolerances for a mode: the period, and the time to half amplitude or the damping ratio.
     Mode(ModeTolerance),

@@ -14,7 +14,7 @@ use crate::decisions::study::Study;
 const APART_S: f64 = 0.02;
 /// Minimum absolute signed delay \[s\] that needs a correction.
 const LEAST_DELAY_S: f64 = 2e-3;
-/// Minimum gain increase \[dB\] that is reported.
+/// Minimum magnitude of a gain change due to leads \[dB\] that is reported.
 const LEAST_RISE_DB: f64 = 0.05;
 /// Maximum range of leads with a common cause, relative to their median.
 const COMMON_RANGE: f64 = 0.5;
@@ -32,8 +32,8 @@ pub fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Reports the median lead if all constrained responses need lead, and their leads differ by at
-/// most half the median.
+/// Reports the median lead if it is at least [`LEAST_DELAY_S`], if all constrained responses (two
+/// or more) need lead, and if their leads differ by at most half the median.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let mut wanted_s: Vec<f64> = result
         .held()
@@ -76,8 +76,8 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports the gain increase within the band due to the lead filters, for which the channel gains
-/// compensate.
+/// Reports the largest gain change that the lead filters cause in a constrained response within the
+/// band, for which the channel gains compensate.
 fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {

@@ -60,7 +60,7 @@ pub struct ConditionPhysics {
     /// are not moved.
     pub responses: Vec<ResponseShapes>,
     /// The condition's J with parameters and schedule fitted to the others; `None` if the condition
-    /// takes no part in the fit.
+    /// takes no part in the fit or could not be left out.
     pub left_out: Option<CorrectionCost>,
 }
 

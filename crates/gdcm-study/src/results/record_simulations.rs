@@ -4,7 +4,7 @@
 //! ```text
 //! 1  a record is prepared as for identification, but pieces of 2 s and more are used
 //! 2  each model is simulated with the recorded inputs in windows of at most 10 s, each with
-//!    estimated initial state and offsets (M14, section 6); all models of a condition have the same
+//!    estimated initial state and offsets (M14.6); all models of a condition have the same
 //!    windows, so that the compared manoeuvres begin at the same samples
 //! 3  each row of the tolerance table whose output and unit exist: share inside, largest excess,
 //!    peak error, correlation
@@ -49,8 +49,8 @@ struct Simulation<'a> {
     settings: ValidationSettings,
 }
 
-/// Simulates each condition's models with its `records`, and compares the results within
-/// `tolerances` (M17.2). The step count is [`HistoryRecords::steps`].
+/// Simulates each condition's models with its `records`, and compares the results with `tolerances`
+/// (M17.2). The step count is [`HistoryRecords::steps`].
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.
@@ -169,7 +169,7 @@ fn prepare_records<'a>(
 /// Each condition's models with their roles.
 type RoleModels = BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>>;
 
-/// Builds the models for every condition with a record.
+/// Builds the models for every condition with a record; adds to `missing` why a role has no model.
 fn role_models(
     analysis: &Analysis,
     prepared: &[PreparedRecord<'_>],

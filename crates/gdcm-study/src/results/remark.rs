@@ -70,9 +70,10 @@ pub enum Remark {
     CoherenceUsed { responses: usize },
     /// Constrained responses that the correction moves away from flight.
     HeldFarther(Vec<FartherResponse>),
-    /// Number of unconstrained responses that the leads move away from flight.
+    /// Number of unconstrained responses that a correction with leads moves away from flight, among
+    /// those `compared`.
     FreeFarther { farther: usize, compared: usize },
-    /// The condition does not enter the schedule fit.
+    /// The engineer has excluded the condition from the schedule.
     LeftOutOfSchedule,
     /// A caution about the condition.
     Caution(Caution),

@@ -36,7 +36,8 @@ impl ReportedErrors {
     }
 
     /// Returns the standard error in a gain or delay: from coherence where available, otherwise
-    /// from the model's standard deviations.
+    /// from the model's standard deviations. `None` if neither is available, or if the error does
+    /// not enter the value's error bar ([`takes_reported_error`]).
     pub(crate) fn of_scalar(
         &self,
         result: &ConditionAnalysis,

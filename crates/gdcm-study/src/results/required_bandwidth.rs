@@ -68,11 +68,13 @@ pub struct BandwidthFinding {
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoBandwidth {
     NetGainNotPositive,
-    /// The physics model has no matrices to which couplings can be applied.
+    /// The couplings cannot be applied to the physics model, for example because it has no
+    /// matrices.
     NotCoupled,
     NoAttitudeResponse(AttitudeResponseError),
     NoMetric(NoMetric),
-    /// No interval: the bundles contain no other model from which to compute a spread.
+    /// No interval: no other model from which to compute a spread, or the error bars are not
+    /// computed.
     NoOtherModel,
     /// No interval: the schedule is not refitted for each model swap.
     ScheduleNotRefitted,

@@ -152,7 +152,8 @@ pub struct ModeFinding {
 /// Compares a condition's modes.
 ///
 /// # Errors
-/// [`NoModes`] where a model has no modes.
+/// [`NoModes`] if a model is a measured response, if its modes cannot be computed, or if the
+/// couplings cannot be applied.
 pub(crate) fn mode_findings(
     asked: &RequestedCondition<'_>,
     known: &KnownPoles,
@@ -208,7 +209,8 @@ pub(crate) fn mode_findings(
     Ok(findings)
 }
 
-/// Returns a physics model's modes with the study's couplings; `None` without couplings.
+/// Returns a physics model's modes with the study's couplings; `None` without couplings, and for a
+/// measured response.
 fn coupled_modes(
     asked: &RequestedCondition<'_>,
     physics: &Model,

@@ -46,7 +46,7 @@ pub struct GridCount {
     pub judged: usize,
     /// Cells that the physics model meets.
     pub physics_met: usize,
-    /// Cells with a limit whose value or verdict is not determined.
+    /// Cells whose value or verdict is not determined for the corrected model.
     pub not_determined: usize,
 }
 

@@ -93,7 +93,7 @@ impl Analysis {
     ///
     /// # Errors
     /// [`RoleModelError`] where the model has no matrices or is discrete-time, there is no
-    /// schedule, or the matrices cannot be used in computations.
+    /// schedule, or delays, couplings or the correction cannot be applied to its matrices.
     pub fn role_model(
         &self,
         result: &ConditionAnalysis,

@@ -57,7 +57,7 @@ pub struct Requirements {
     pub bandwidth: Vec<BandwidthFinding>,
     /// The physics modes against the identified modes.
     pub modes: Vec<ModeFinding>,
-    /// The summary costs for every condition and role.
+    /// The summary costs for every condition and every physics role.
     pub summary: Vec<SummaryFinding>,
     pub missing: Vec<MissingFinding>,
     pub cautions: Vec<ReversedPhase>,

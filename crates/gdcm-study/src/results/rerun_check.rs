@@ -7,7 +7,7 @@ use gdcm_model::dataset::physics_parameter::ParameterChange;
 
 use super::correction_costs::AxisCost;
 
-/// Maximum J between prediction and rerun at which the model family is good.
+/// J between prediction and rerun below which the prediction is good.
 pub const GOOD_PREDICTION: f64 = 1.0;
 /// J between prediction and rerun above which the parameters' effect is not linear enough.
 pub const POOR_PREDICTION: f64 = 5.0;

@@ -13,8 +13,8 @@ use super::analysis::{Analysis, ConditionAnalysis, Outcomes};
 use crate::decisions::study::Study;
 
 impl Analysis {
-    /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
-    /// result.
+    /// Returns the conditions in the schedule, in the dataset's order: those that are chosen, not
+    /// held out, and have a result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
         in_schedule(&self.study, &self.conditions)
             .map(|result| result.condition.id())
@@ -56,7 +56,8 @@ impl Analysis {
     }
 }
 
-/// Returns each scheduled condition's airspeed and correction, to which the schedule is fitted.
+/// Returns the data to which the schedule is fitted: each scheduled condition's airspeed, second
+/// variable, correction and delay bound.
 pub(crate) fn scheduled_points<'a>(
     study: &Study,
     outcomes: &'a Outcomes,

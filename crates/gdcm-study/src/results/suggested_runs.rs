@@ -28,8 +28,8 @@ const NOTABLE_SHARE: f64 = 0.01;
 const NOTABLE_LEAD_S: f64 = 0.005;
 /// Maximum ratio of standard deviation to mean at which leads count as equal.
 const EQUAL_LEADS: f64 = 0.5;
-/// Minimum `|ln G|`, as mean over the conditions or as half the range over them, for the rate
-/// commanded by the pedals.
+/// Minimum magnitude of the mean ln G over the conditions, or of half its range over them, for the
+/// rate commanded by the pedals.
 const NOTABLE_LN_GAIN: f64 = 0.1;
 /// Minimum difference in ln G between fast and slow conditions.
 const NOTABLE_LN_CHANGE: f64 = 0.08;
@@ -63,7 +63,7 @@ pub enum RunPattern {
     /// damping feedback.
     PedalGainAndYawDamping {
         pair: Pair,
-        /// Mean G over the conditions.
+        /// Geometric mean of G over the conditions.
         gain: f64,
         /// Peak share of the stick; `None` without assessed couplings.
         damping_share: Option<f64>,
@@ -71,9 +71,9 @@ pub enum RunPattern {
     /// The pitch rate's G differs between fast and slow conditions.
     PitchGainOverAirspeed {
         pair: Pair,
-        /// Mean G in the slower half of the conditions.
+        /// Geometric mean of G in the slower half of the conditions.
         slow: f64,
-        /// Mean G in the faster half.
+        /// Geometric mean of G in the faster half.
         fast: f64,
     },
 }
@@ -436,7 +436,8 @@ fn mean(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Returns the pattern if all signed delays are leads and nearly equal.
+/// Returns the pattern if all signed delays (two or more) are leads and nearly equal, and their
+/// mean is notable.
 fn equal_lead(side: LeadSide, delays_s: &[f64]) -> Option<RunPattern> {
     let mean_s = mean(delays_s)?;
     let squares: Vec<f64> = delays_s

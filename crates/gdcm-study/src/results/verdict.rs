@@ -137,7 +137,7 @@ pub fn shared_channel(pairs: &[Pair]) -> Option<Channel> {
 /// Verdict on the constrained responses' phases in a condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PhaseVerdict {
-    /// The study leaves the phase as it is.
+    /// The study requests no phase correction.
     NotCorrected,
     /// No response is constrained.
     NoneHeld,

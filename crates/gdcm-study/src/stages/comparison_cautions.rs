@@ -41,8 +41,8 @@ impl ComparisonInput<'_> {
         })
     }
 
-    /// Returns the caution about the identified representative's frequencies that coherence
-    /// excludes from the comparison (M4a).
+    /// Returns the caution about the identified representative's frequencies that have no weight,
+    /// or that its coherence is not used (M4a).
     pub(super) fn coherence_caution(
         &self,
         compared: &ComparedModel,

@@ -121,7 +121,8 @@ fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// Returns whether the phase difference is near half a turn at most frequencies.
+/// Returns whether the phase difference is near half a turn at the weighted majority of
+/// frequencies.
 fn is_turned(mismatch: &Mismatch) -> bool {
     let near = weighted_sum(mismatch, |phase| {
         if PI - phase.abs() <= NEAR_HALF_A_TURN {
@@ -260,8 +261,8 @@ fn doubt_from(
     })
 }
 
-/// Compares the nominal physics model with the first kept identified model in each condition,
-/// before any analysis.
+/// Finds sign and unit differences before any analysis: compares the nominal physics model with the
+/// first kept identified model in each condition.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.

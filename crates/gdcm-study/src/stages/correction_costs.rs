@@ -73,7 +73,8 @@ impl LeftOutCost {
     }
 }
 
-/// Returns the representative's J before and after a correction.
+/// Returns the representative's J before and after a correction; `None` if the condition cannot be
+/// assessed.
 fn changes(
     analysis: &Analysis,
     condition: ConditionId,

@@ -86,7 +86,7 @@ struct ConditionPoles {
     representative: Result<Vec<PoleShift>, NoPoles>,
     /// Newly unstable poles in every kept model.
     unstable: Vec<UnstablePole>,
-    /// The other kept models with matrices for which the feedback loop cannot be closed.
+    /// The other kept models with matrices whose poles with couplings are unavailable.
     refused: Vec<RefusedModel>,
 }
 

@@ -144,7 +144,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Builds the fit problem for these conditions (steps 2 and 3, M16.1).
+    /// Builds the fit problem for these conditions (step 3, M16.1).
     fn problem(
         &self,
         study: &Study,
@@ -186,7 +186,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Fits couplings to these conditions (steps 2 to 4), or returns why there are none.
+    /// Fits couplings to these conditions (steps 3 and 4), or returns why there are none.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.

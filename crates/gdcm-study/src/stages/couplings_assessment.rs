@@ -40,7 +40,8 @@ const LEFT_OUT_SHARE: f64 = 0.6;
 const EFFECTS_SHARE: f64 = 0.2;
 
 impl Engine {
-    /// Assesses a study's couplings; `None` where it requests none.
+    /// Assesses `couplings` for a study, whose own coupling setting is ignored; `None` for
+    /// [`CouplingCorrection::None`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.
@@ -105,8 +106,8 @@ impl Engine {
         }))))
     }
 
-    /// Repeats the fit and the schedule without each condition in turn; empty with fewer than three
-    /// conditions.
+    /// Repeats the fit and the schedule without each condition in turn; conditions for which that
+    /// is impossible are omitted. Empty with fewer than three conditions.
     fn leave_out_each(
         &self,
         without: &Analysis,

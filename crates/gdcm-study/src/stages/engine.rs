@@ -273,8 +273,8 @@ impl Engine {
         requirements_of(analysis, known, &execution)
     }
 
-    /// Simulates an analysis's models with `records`, and compares the results within `tolerances`;
-    /// see [`time_histories_of`].
+    /// Simulates an analysis's models with `records`, and compares the results with the study's
+    /// tolerances; see [`time_histories_of`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.

@@ -146,8 +146,8 @@ impl SolvedProblems {
     }
 
     /// Estimates the benefit of leads, where they are not requested and all constrained responses
-    /// need them; `None` otherwise, or if no leads meet the constraints. `now` is J under the
-    /// present correction.
+    /// need them; `None` otherwise, if the signed delays have no solution, or if J would not fall
+    /// by a tenth. `now` is J under the present correction.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.

@@ -48,9 +48,10 @@
 //! and the gains at many conditions become a single correction by regressing `ln k` on airspeed
 //! (M11).
 //!
-//! Where a delay cannot help, because the physics model lags, *signed* delays are optional: eq. (11)
-//! without `tau >= 0`. A negative delay becomes a filter `L(s)` that acts as a faster servo and has
-//! that delay over the band; the gains are then found for the filtered model:
+//! Where a delay cannot help, because the physics model lags, *signed* delays are optional: eq.
+//! (11) without `tau >= 0`. A negative delay becomes a filter `L(s)` that acts as a faster servo
+//! and has that delay over the band; the gains are then found for the filtered model. `W` is the
+//! coherence weight, or 1:
 //!
 //! ```text
 //! D_oi = sum W omega Delta phi / sum W omega^2,                                            (M15)
@@ -66,8 +67,8 @@
 //! ```
 //!
 //! Models linearised with one named parameter moved show which parameter is wrong, and by how much.
-//! Their differences make a family `H(z)`, fitted to all conditions with free channel gains and
-//! delays:
+//! Their differences make a family `H(z)`, fitted to all conditions c with free channel gains
+//! (logarithms `a_oc` and `b_ic`) and delays:
 //!
 //! ```text
 //! ln R = ln H_oi(z) + a_oc + b_ic - j omega (tau_o + tau_i).                               (M18)

@@ -9,7 +9,7 @@ use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
 
 use crate::caution::{failure_text, undefined_text};
 
-/// Says where an assessed correction comes from.
+/// Describes the origin of an assessed correction.
 pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64) -> String {
     let at = format!("at {} kt", number(airspeed_kt));
     match correction {
@@ -85,7 +85,8 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     ))
 }
 
-/// Describes the change in J over the on-axis responses of the selected conditions.
+/// Describes the change in J over the on-axis responses (over all, if none is on-axis) of the
+/// selected conditions.
 fn change_words(
     analysis: &Analysis,
     table: &AssessmentTable,

@@ -6,17 +6,18 @@ use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{Caution, GainOutOfRange, NotFinite, USUAL_GAINS, Undefined};
 
-/// Range in which gains can be computed.
+/// Clause on the range in which gains can be computed.
 const GAIN_RANGE: &str = "the computable range is 1e-50 to 1e50";
 
-/// Meaning of "numerically zero" (M6a).
+/// Clause that explains "numerically zero" (M6a).
 const NOTHING: &str = "over the band, below 1e-6 of the largest response of the same output and \
                        of the same input";
 
 /// Maximum number of models or responses that are listed by name.
 const LISTED: usize = 3;
 
-/// Returns why a condition has no result, with the cautions that explain it.
+/// Returns why a condition has no result; if nothing can be compared, with the cautions that
+/// explain it.
 pub fn failure_text(failure: &ConditionFailure, dataset: &Dataset) -> String {
     let mut text = failure.to_string();
     if let ConditionFailure::NothingToCompare { cautions, .. } = failure {
@@ -124,9 +125,8 @@ fn names(pairs: &[Pair], pair_name: &impl Fn(Pair) -> String) -> String {
 
 /// Describes a model that is set aside, and why; empty for any other caution.
 ///
-/// Each missing response is zero at every frequency with a value (`zero`), not finite (`why`), or
-/// zero somewhere. The reason names the first that explains all: all of them zero; some zero
-/// somewhere; all not finite; some zero, the others not finite.
+/// Among the missing responses `lacks`, those in `zero` are zero at every frequency with a value.
+/// `why` is the reason why others are not finite; if it is `None`, all others are zero somewhere.
 fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> String {
     let Caution::SetAside {
         model,

@@ -237,7 +237,8 @@ impl ConflictText<'_> {
     }
 
     /// Describes a net value below its minimum: twice the lower bound, or its square for gains;
-    /// ends with a sufficient change in the bounds, if there is one, and "or".
+    /// ends with a sufficient change and "or"; for delays, which have no such change, with a
+    /// semicolon.
     fn minimum_and_change(&self, channels: [Channel; 2], asked: f64, lower: Option<f64>) -> String {
         let [first, second] = channels.map(|channel| self.symbol(channel));
         let bound = self.conflict.bounds.lower;

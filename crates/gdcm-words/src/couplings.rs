@@ -1,4 +1,4 @@
-//! Tables of couplings, their costs and their poles (M16.5).
+//! Tables of couplings, their costs and their poles (M16.4).
 
 use nalgebra::{Complex, DMatrix};
 
@@ -30,8 +30,8 @@ pub fn coupling_cost_table(assessment: &CouplingsAssessment) -> Table {
 /// Headings of the table of J in narrow panels: each "with" refers to the column before it.
 pub const NARROW_COST_COLUMNS: [&str; 5] = ["mean J", "on-axis", "with", "others", "with"];
 
-/// Tabulates J on-axis and off-axis, without and with a correction; `with_uncorrected` is J with
-/// it, but without gains and delays.
+/// Tabulates mean J on-axis and off-axis, without and with couplings or physics parameters;
+/// `with_uncorrected` is J with these, but without gains and delays.
 pub(crate) fn cost_table(costs: &CorrectionCosts, with_uncorrected: AxisCost) -> Table {
     let columns = [
         "mean J",
@@ -142,7 +142,8 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates each physics representative's poles without and with couplings, largest shift first.
+/// Tabulates each physics representative's poles without and with couplings, by condition, the
+/// largest shift first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",

@@ -14,7 +14,7 @@ use gdcm_study::decisions::setting_table::SETTINGS;
 /// A decision that differs between two studies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
-    /// What was decided: "α of the gains", "LON → Q", "nominal (condition 10)".
+    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
     /// Previous value: "1", "held", "rejected".
     pub before: String,
@@ -49,8 +49,9 @@ impl YesNo {
     }
 }
 
-/// Lists the decisions in which `after` differs from `before`: settings, responses, then condition
-/// by condition. Both studies must have the same dataset. Variants are not compared.
+/// Lists the decisions in which `after` differs from `before`: settings, responses, signs, physics
+/// parameters, then condition by condition. Both studies must have the same channels and
+/// conditions. Variants, adopted models, requirement settings and export choices are not compared.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let mut differences = setting_differences(before, after);
     let held = YesNo {

@@ -57,7 +57,7 @@ pub fn file_summary_text(summary: &FileSummary) -> String {
     }
 }
 
-/// States in a few words what files omit or approximate: "NX lead of condition 4 not scheduled".
+/// States in a few words what files omit or approximate: "NX delay of condition 4 not scheduled".
 pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
     match note {
         ExportNote::DelaysNotScheduled { .. } => "Delays: none in the schedule".to_owned(),

@@ -53,7 +53,7 @@ impl PlannedChannels {
             .to_owned()
     }
 
-    /// Describes a sweep: `60 s sweep of PED (amplitude 5.0 %, 0.50 to 16 rad/s)`.
+    /// Describes a sweep: `60 s sweep of PED (amplitude 5.0 %; 0.50 to 16 rad/s)`.
     pub fn sweep(&self, sweep: &StandardSweep) -> String {
         let PlannedSweep {
             input,
@@ -122,7 +122,7 @@ fn interval_text(half_db: f64) -> String {
     }
 }
 
-/// Returns a number up to twelve as a word, a larger one in digits.
+/// Returns a number from one to twelve as a word, any other in digits.
 fn number_word(number: usize) -> String {
     const WORDS: [&str; 12] = [
         "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
@@ -178,7 +178,7 @@ pub fn advice_text(advice: &SweepAdvice, channels: &PlannedChannels) -> String {
     }
 }
 
-/// Returns a caution, followed by the advice for responses that are not identified.
+/// Returns a caution; if it is about responses that are not identified, the advice follows.
 pub fn caution_with_advice(
     caution: &IdentificationCaution,
     advice: &[SweepAdvice],
@@ -195,9 +195,10 @@ pub fn caution_with_advice(
     format!("{text}. Predicted: {}", sentences.join("; "))
 }
 
-/// Returns the ways to a target: a line that it is reached now; else a heading, and a line each for
-/// more sweeps, a longer sweep, a larger amplitude, and more sweeps over a narrow band. The last
-/// line says that no number of such flights reaches it, if that is so.
+/// Returns the ways to a target, as lines. If the target is already reached, a single line says so;
+/// otherwise there are a heading, and a line each for more sweeps, a longer sweep, a larger
+/// amplitude, and more sweeps over a narrow band. A last line is added if no number of such flights
+/// reaches the target.
 pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String> {
     let target = &plan.target;
     let wanted = format!(

@@ -3,8 +3,8 @@
 use gdcm_method::correction::delta::GainSource;
 use gdcm_study::decisions::settings::Settings;
 
-/// Describes the models from which G is computed: "the representatives". The text includes the
-/// reason why the source has no effect with leads.
+/// Describes the models from which G is computed: "the representatives". With leads, the mean over
+/// all pairs has no effect; the text then adds the reason.
 pub fn gain_source_text(settings: &Settings) -> String {
     let source = match settings.gain_source {
         GainSource::Representatives => "the representatives",

@@ -15,10 +15,11 @@ use gdcm_study::{ConditionAnalysis, Study};
 use crate::lead_price::pair_price_text;
 use crate::remark::remark_text;
 
-/// Describes the lead that responses and channels need: "LAT → P needs 65 ms of lead over the
-/// band: 24 ms at P, 41 ms at LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36
-/// rad/s; +12.4 dB above the band". With `uncertainty`, a response's lead has its error bar: "65 ±
-/// 4 ms" (M13).
+/// Describes the lead or delay that each constrained response needs, and the lead filter of each
+/// channel: "LAT → P needs 65 ms of lead over the band: 24 ms at P, 41 ms at LAT; +19.1 dB at 120
+/// rad/s"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the
+/// band; +11.3 dB at 120 rad/s". The last sentence is [`lead_limit_words`]. With `uncertainty`, a
+/// response's lead has its error bar: "65 ± 4 ms" (M13). Empty if leads are not requested.
 pub fn lead_words(
     study: &Study,
     result: &ConditionAnalysis,

@@ -17,7 +17,7 @@ use gdcm_study::results::rerun_check::{RerunCheck, RerunRefusal, RerunVerdict};
 use crate::couplings::cost_table;
 use crate::table::Table;
 
-/// Displayed beside every verdict.
+/// Sentence displayed beside every verdict.
 pub const LIKE_EFFECT: &str =
     "A parameter with a similar effect that is not listed may be the real cause.";
 
@@ -25,7 +25,7 @@ pub const LIKE_EFFECT: &str =
 pub const BARS_KEEP_VALUES: &str =
     "error bars hold these values fixed: the uncertainty of the values is not included";
 
-/// Maximum number of pulls that are listed.
+/// Maximum number of listed pulls: changes in a value if a condition is left out.
 const LISTED_PULLS: usize = 3;
 
 /// Formats a change with its half-width in the parameter's unit: "+1.6 ± 0.2 deg".
@@ -166,7 +166,7 @@ fn joined(parts: &[String]) -> String {
     }
 }
 
-/// States what the diagnosis says about a parameter.
+/// Describes the diagnosis of a parameter: the change that it needs, or why it is not named.
 pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
     let parameter = found.parameter;
     let change = change_text(parameter, found.change(), found.half_width());
@@ -204,8 +204,8 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
     }
 }
 
-/// Says in a few words what the diagnosis says about a parameter, for a narrow column; `why_not` is
-/// `None` for a named one.
+/// Describes the diagnosis of a parameter in a few words, for a narrow column; `why_not` is `None`
+/// for a named parameter.
 pub fn naming_words(why_not: Option<WhyNotNamed>) -> &'static str {
     match why_not {
         None => "change needed",
@@ -225,8 +225,10 @@ fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
     format!("{}{}", signed(end, count), unit_text(&found.parameter.unit))
 }
 
-/// Tabulates the parameters: change, half-width, plausible change, share explained alone, decrease
-/// in the ratio by its step, share that channels can take, verdict.
+/// Tabulates the parameters: change and half-width; plausible change; share of the misfit explained
+/// alone; step that adds the parameter to the fit, and share explained by this step; share of the
+/// prior variance removed by the data; share of the effect that channels can take; verdict. The
+/// last rows are the parameters that are switched off.
 pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
     let bar = format!("± {} %", number(100.0 * level));
     let columns = [
@@ -485,7 +487,8 @@ pub fn channel_delay_table(
     table
 }
 
-/// States what a rerun says about the prediction (M18.6).
+/// Describes how well the prediction agrees with a rerun of the physics model, or why they are not
+/// compared (M18.6).
 pub fn rerun_text(check: &RerunCheck) -> String {
     let place = format!("condition {}, rerun \"{}\"", check.condition, check.model);
     let cost = match &check.outcome {

@@ -1,4 +1,4 @@
-//! Facts about how a record was used that are no cautions.
+//! Notes on the use of a record that are not cautions.
 
 use gdcm_sysid::spectra::record_use::RecordUse;
 

@@ -213,7 +213,7 @@ pub fn lead_ms_text(lead_s: f64) -> String {
     telling(s_to_ms(lead_s), 0)
 }
 
-/// Formats a gain increase \[dB\] by its absolute value.
+/// Formats a change in gain \[dB\] without its sign.
 pub fn raised_gain_text(rise_db: f64) -> String {
     telling(rise_db.abs(), 1)
 }

@@ -255,8 +255,8 @@ fn rounded(value: f64) -> String {
     number((1e6 * value).round() / 1e6)
 }
 
-/// Describes the verdict on a cell: "met", "outside ±10 %", "no tolerance", or the reason why there
-/// is none.
+/// Describes the verdict on a cell: "met", "outside ±10 %", "not ≤ 100", "no tolerance", or "not
+/// determined" with the reason.
 pub fn verdict_text(requirement: Requirement, limit: &RequirementLimit, cell: &RoleCell) -> String {
     match &cell.verdict {
         CellVerdict::Met => "met".to_owned(),

@@ -72,9 +72,9 @@ pub fn has_levels(requirements: &Requirements, levels: &LevelBoundaries) -> bool
         .any(|finding| levels.assesses(&finding.output))
 }
 
-/// Returns why a bandwidth or phase delay has no value, if that is so, and the cautions: the rule
-/// that gives the bandwidth, if it is the gain margin or every value exists; dependence on the
-/// model outside the band; a phase delay from the least-squares line.
+/// Joins the remarks on a bandwidth: why it or the phase delay has no value; the rule that gives
+/// it, if both have values or the gain margin limits it; that it depends on the model outside the
+/// band; that the phase delay is from the least-squares line.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     let mut words: Vec<String> = Vec::new();
     let absent = finding

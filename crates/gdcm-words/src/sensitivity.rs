@@ -1,4 +1,5 @@
-//! Sentences about what constraints cost: by their sensitivity, and by solving without them.
+//! Sentences about the cost of constraints: from their sensitivity, and from solutions in which one
+//! entry is released or additionally constrained.
 
 use gdcm_method::correction::Quantity;
 use gdcm_method::correction::channels::pair_name;

@@ -14,13 +14,13 @@ pub struct SettingWords {
     pub label: &'static str,
     /// Description in one sentence.
     pub help: &'static str,
-    /// Accessible names for a range's lower and upper end.
+    /// Accessible names for a range's lower and upper end; empty for other settings.
     pub ends: [&'static str; 2],
-    /// What each choice means, in the setting's order.
+    /// Meaning of each choice, in the setting's order; empty for a setting without choices.
     pub meanings: &'static [&'static str],
 }
 
-/// Returns a setting's texts.
+/// Returns a setting's texts; empty texts if it has none.
 pub fn setting_words(setting: &Setting) -> &'static SettingWords {
     let words = SETTING_WORDS.iter().find(|words| words.key == setting.key);
     words.unwrap_or(&NO_WORDS)
@@ -253,8 +253,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "error_bars.half_overlap",
         caption: "",
         label: "windows overlap",
-        help: "Assumes that the windows of measured responses overlap by half, if their files do not state \
-    it",
+        help: "Assumes that the windows of all measured responses overlap by half",
         ..NO_WORDS
     },
     SettingWords {

@@ -8,8 +8,9 @@ use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 use crate::conflict_text::miss_text;
 use crate::sensitivity::sensitivity_text;
 
-/// Lists details about the solution: other minima, the phase error at the upper end of the band due
-/// to each missed delay, and the sensitivity to constraints and active bounds.
+/// Lists details about the solution: whether the gains are proven to be optimal, other minima of
+/// the gains, with leads the KKT residual, the phase error at the upper end of the band due to each
+/// missed delay, and the sensitivity to constraints and active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     /// Sensitivities up to this value, relative to the objective, are not listed.
     const NOTABLE: f64 = 1e-3;
@@ -51,7 +52,7 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
 pub fn proof_text(outcome: Outcome) -> String {
     match outcome {
         Outcome::Proven { .. } => {
-            "Proven: no better gains satisfy the bounds and the held responses.".to_owned()
+            "Proven: no better solution satisfies the bounds and the held responses.".to_owned()
         }
         Outcome::NotProven { gap, limit } => {
             let ended = match limit {
@@ -61,7 +62,7 @@ pub fn proof_text(outcome: Outcome) -> String {
             };
             let percent = 100.0 * gap;
             format!(
-                "Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}."
+                "Not proven: a solution that is up to {percent:.2} % better may exist; the search ended {ended}."
             )
         }
     }

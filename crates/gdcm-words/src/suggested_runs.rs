@@ -19,7 +19,7 @@ pub fn suggestion_text(suggestion: &SuggestedRuns, dataset: &Dataset) -> String 
     )
 }
 
-/// States the observed pattern; a parameter "acts like" it, no cause is stated.
+/// States the observed pattern, but not its cause.
 pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
     let (inputs, outputs) = dataset.names_of_channels();
     match pattern {

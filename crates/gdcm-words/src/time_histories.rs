@@ -89,9 +89,9 @@ pub fn history_cost_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Tabulates a condition's records for every tolerance: each model's largest excess, and its time.
-/// Rows in which every model stays inside, with the correct trend off-axis, are omitted and
-/// counted.
+/// Tabulates a condition's records for every tolerance: each model's share of time inside, and its
+/// largest excess with the time. Rows in which every model stays inside, with the correct trend
+/// off-axis, are omitted and counted.
 pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table {
     let mut columns = ["record", "quantity"].map(str::to_owned).to_vec();
     columns.extend(RequirementRole::ALL.map(|role| format!("{}: inside [%]", role.name())));

@@ -77,8 +77,8 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
     }
 }
 
-/// Describes the test for a second variable: "net gain −7 % from the lowest to the highest
-/// altitude, which is not needed in the schedule; an effect below ± 6 % could not have been
+/// Describes the test for a second variable: "net gain −7.2 % from the lowest to the highest
+/// altitude, which is not needed in the schedule; an effect below ± 6.1 % could not have been
 /// detected"; or the reason why it could not be tested.
 pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let variable = test.variable.name();

@@ -10,8 +10,8 @@ use gdcm_study::{Analysis, ConditionAnalysis, PhaseCorrection, Study};
 use crate::caution::failure_text;
 use crate::table::Table;
 
-/// Returns the verdict on the gains: "matched", "LAT → P stops at a bound", "2 share PED", "3
-/// disagree".
+/// Returns the verdict on the gains: "matched", "LAT → P stops at a bound", "2 responses share
+/// PED", "3 responses disagree".
 pub fn gain_verdict_text(verdict: GainVerdict, dataset: &Dataset) -> String {
     match verdict {
         GainVerdict::NoneHeld => "fitted, none held".to_owned(),
@@ -56,7 +56,8 @@ pub fn unbroken(name: &str) -> String {
     name.replace(' ', "\u{a0}")
 }
 
-/// Returns "lags by ≈ 66 ms", "lags 20–110 ms", "leads −5 to 60 ms".
+/// Describes the lag, which is a lead if negative: "lags by ≈ 66 ms", "lags 20–110 ms", "lags −5 to
+/// 60 ms".
 fn remaining_lag_text(lag: RemainingLag) -> String {
     match lag {
         RemainingLag::Equal(lag_ms) => {
@@ -125,8 +126,8 @@ pub fn study_verdict_text(analysis: &Analysis) -> String {
 }
 
 /// Tabulates the verdict on each condition, one row each: gains, phases, and mean J over the
-/// constrained responses before and after the condition's own correction; models that are suggested
-/// to be rejected, if there are any.
+/// constrained responses before and after the condition's own correction; if any model is suggested
+/// to be rejected, also the number of such models.
 pub fn verdict_table(analysis: &Analysis) -> Table {
     let study = &analysis.study;
     let suggests = study

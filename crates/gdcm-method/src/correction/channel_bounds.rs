@@ -6,8 +6,8 @@
 //! delays                             UB = max(0, (1-q)-quantile)    of Delta phi(H_sim, H_ref) / omega
 //! ```
 //!
-//! The quantiles pool all frequencies and responses. The lower bound on a signed delay follows from
-//! the lead filters instead (`lead_design`).
+//! The quantiles pool the frequencies of the on-axis responses. The lower bound on a signed delay
+//! follows from the lead filters instead (`lead_design`).
 
 use serde::{Deserialize, Serialize};
 
@@ -39,7 +39,8 @@ impl From<Bounds> for [f64; 2] {
 }
 
 /// Computes the gain bounds `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` of
-/// `|H_ref| / |H_sim|`, pooled over frequencies and responses (M7).
+/// `|H_ref| / |H_sim|`, pooled over the frequencies and the responses in `measuring` (over all
+/// responses if none of these has a mismatch), M7. Both are 1 if no response has a mismatch.
 pub fn gain_bounds(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
@@ -52,7 +53,7 @@ pub fn gain_bounds(
 }
 
 /// Computes the upper delay bound `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega`,
-/// pooled over frequencies and responses (M7).
+/// pooled like the ratios in [`gain_bounds`] (M7); 0 if no response has a mismatch.
 pub fn delay_upper_s(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,

@@ -29,7 +29,8 @@ impl Channel {
         Self::of_pair(pair).contains(&self)
     }
 
-    /// Returns the channel name; if the name list is too short, the index counted from 1.
+    /// Returns the channel name; "input 1" or "output 1", counted from 1, if the name list is too
+    /// short.
     pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Channel::Input(index) => inputs

@@ -17,8 +17,8 @@ use super::branch_and_bound::rounded::Rounded;
 use super::constraints::{Constraints, PairNodes};
 use super::interval::Interval;
 
-/// Infeasibility up to which a component is accepted as feasible: well below 1e-8, the tolerance in
-/// M8, so that a gain product's relative error stays below 1e-9.
+/// Infeasibility, in coordinates, up to which a component is accepted as feasible: a relative error
+/// of 1e-9 in a gain product, well below the tolerance for a met entry (`infeasible_entries`).
 pub(crate) const ACCEPTED_INFEASIBILITY: f64 = 1e-9;
 
 /// The components, each with the permitted interval for its scale. A channel without a constrained
@@ -120,7 +120,7 @@ impl Components {
     }
 
     /// Step 3: shifts the offsets so that scale 0 is in the middle of each component's interval,
-    /// and no channel is far outside the box there. Leaves the intervals unchanged.
+    /// and no channel is far outside the box there. The intervals must then be set again.
     fn centre_offsets(&mut self, range: Interval) {
         // A scale at an interval end has two rounding errors: in the range end, and from
         // subtracting the offset.

@@ -7,12 +7,13 @@ use super::channels::Channel;
 use super::quantity::Quantity;
 
 /// Minimal infeasible set of constrained entries and bounds: releasing any one makes the others
-/// feasible.
+/// feasible. A conflict of kind [`ConflictKind::Unclear`] is not minimal: it has all constrained
+/// entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
     /// Constrained quantity: gains, delays \[s\], or signed delays \[s\].
     pub quantity: Quantity,
-    /// Constrained entries; releasing any one resolves the conflict.
+    /// Constrained entries; releasing any one resolves the conflict, unless it is unclear.
     pub entries: Vec<Pair>,
     /// Bounds in force, in the unit of `quantity`.
     pub bounds: Bounds,
@@ -75,7 +76,8 @@ impl ConflictKind {
 }
 
 impl Conflict {
-    /// Lists the channels whose bounds take part in the conflict; empty for a loop.
+    /// Lists the channels whose bounds take part in the conflict; empty for a loop or an unclear
+    /// conflict.
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
             ConflictKind::AboveUpper { channels, .. }

@@ -1,6 +1,6 @@
 //! Corrected model `M_O H M_I` in matrix form (M10): the model `H` in series with a gain and a
-//! delay or lead filter on each input (`M_I`) and output channel (`M_O`). Its delays are
-//! approximated by rational functions if they require states.
+//! delay or lead filter on each input (`M_I`) and output channel (`M_O`). In continuous time its
+//! delays are approximated by rational functions.
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::limits::MOST_STATES;
@@ -88,7 +88,7 @@ pub enum CorrectedModelError {
         supported"
     )]
     TooManyStates {
-        /// States that the model would need.
+        /// State count of the model, or of the first delay that alone exceeds the maximum.
         states: usize,
     },
     /// A matrix in the corrected model is not finite.
@@ -214,7 +214,8 @@ fn longest(delays_s: &[f64]) -> f64 {
     delays_s.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns a channel's delay \[s\], the correction's plus the model's own.
+/// Returns a channel's delay \[s\], the correction's plus the model's own; 0 below
+/// [`LEAST_DELAY_S`].
 fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
     let (own_delays_s, index) = match channel {
         Channel::Input(index) => (&timing.input_delays_s, index),

@@ -34,8 +34,9 @@ pub enum GainSource {
 /// Delta gain `G = median |H_ref| / |H_sim|`, delta delay `D = median Delta phi(H_sim, H_ref) /
 /// omega` (M6), and band delay (M15.2) for every response.
 ///
-/// `None` if the ratio is zero or not finite at any frequency, or if no frequency counts. The
-/// medians are weighted if the reference is measured with coherence (M4a).
+/// `None` if a model lacks the response, if the ratio is zero or not finite at a frequency that
+/// counts, or if no frequency counts. The medians are weighted if the mismatch has coherence
+/// weights (M4a).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delta {
     /// G, `[output, input]`; a ratio, not in dB.

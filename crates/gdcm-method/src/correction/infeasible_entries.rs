@@ -14,7 +14,7 @@ use super::reachable_targets::Reached;
 use super::solution::Unmatched;
 
 /// Residual up to which a constrained entry meets its delta, in natural logarithms or relative to
-/// the problem's longest delay (M8).
+/// the problem's longest delay.
 const MATCHED: f64 = 1e-8;
 
 /// Residual \[s\] up to which a constrained delay meets its delta, however short the problem's

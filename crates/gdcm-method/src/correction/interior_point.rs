@@ -7,7 +7,7 @@ use super::branch_and_bound::expansion::{Curvature, Differentiable, Expansion};
 use super::branch_and_bound::objective::Objective;
 use super::problem::ProblemError;
 
-/// Returns the minimum over the box, to about 1e-9.
+/// Returns the scales at the minimum over the box, accurate to about 1e-9.
 ///
 /// # Errors
 /// [`ProblemError::Program`] unless Clarabel reports the problem as solved ("almost solved" is an

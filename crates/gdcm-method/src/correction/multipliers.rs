@@ -102,7 +102,7 @@ impl ConstrainedMinimum {
     }
 }
 
-/// Derivatives of the minimum objective, see the formulas above.
+/// Derivatives of the minimum objective with respect to the constrained sums and the active bounds.
 pub(super) struct Multipliers {
     /// `lambda_e`, in the order of [`ConstrainedMinimum::constrained`].
     pub(super) entries: Vec<f64>,

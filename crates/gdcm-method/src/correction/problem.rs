@@ -10,14 +10,16 @@ use super::channel_bounds::Bounds;
 use super::interval::Interval;
 use super::quantity::{Coordinate, GainObjective, Quantity};
 
-/// Valid delta gains; outside this range, their squares overflow or underflow.
+/// Valid delta gains: their squares, and products of such squares, stay clear of overflow and
+/// underflow.
 const GAINS: RangeInclusive<f64> = 1e-50..=1e50;
 
-/// Valid gain bounds (-180 to 180 dB); outside this range, products overflow during the search for
-/// a proof.
+/// Valid gain bounds (-180 to 180 dB): products in the search for a proof stay clear of overflow
+/// and underflow.
 const GAIN_BOUNDS: RangeInclusive<f64> = 1e-9..=1e9;
 
-/// Maximum delta delay or bound \[s\]; larger values overflow when squared.
+/// Maximum magnitude of a delta delay or a delay bound \[s\]: squares, and products of squares,
+/// stay clear of overflow.
 const MOST_DELAY_S: f64 = 1e50;
 
 /// Valid regularisation weights `alpha`.
@@ -86,8 +88,8 @@ impl Problem {
         }
     }
 
-    /// Creates the problem in eq. (11) with every entry fitted and `alpha = 1`; all times are in
-    /// seconds.
+    /// Creates the problem in eq. (11) with every entry fitted, `alpha = 1` and no tolerance for
+    /// loops; all times are in seconds.
     pub fn delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -103,8 +105,8 @@ impl Problem {
         }
     }
 
-    /// Creates the problem for signed delays (M15.4) with every entry fitted and `alpha = 1`; all
-    /// times are in seconds.
+    /// Creates the problem for signed delays (M15.4) with every entry fitted, `alpha = 1` and no
+    /// tolerance for loops; all times are in seconds.
     pub fn signed_delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -237,9 +239,9 @@ impl Problem {
             .filter_map(|pair| self.delta[pair].map(|delta| Entry { pair, delta }))
     }
 
-    /// Returns the coordinate in which a constrained entry is a sum. Times are divided by the
-    /// problem's longest time (1 s if every time is 0), so that the values are around 1; this
-    /// scaling does not change the solution.
+    /// Returns the coordinate in which a constrained entry is a sum. Delays are divided by the
+    /// largest magnitude among the deltas (or the bounds, if every delta is 0; or 1 s), so that the
+    /// values are around 1; this scaling does not change the solution.
     pub(crate) fn coordinate(&self) -> Coordinate {
         if self.quantity.is_gain() {
             return Coordinate::Logarithm;

@@ -29,7 +29,7 @@ pub enum ProblemError {
     /// A constrained entry has no delta.
     #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
     ConstrainedUndefined { quantity: Quantity, pair: Pair },
-    /// A delta gain is not a positive number with a representable square.
+    /// A delta gain is not a number from 1e-50 to 1e50.
     #[error("the delta gain of output {} and input {} is {gain}; it must be from 1e-50 to 1e50", pair.output + 1, pair.input + 1)]
     Gain {
         pair: Pair,

@@ -11,7 +11,8 @@ use gdcm_model::dataset::Pair;
 use super::constraints::{Constraints, PairNodes};
 use super::reachable_targets::Reached;
 
-/// Residual, relative to `1 + |sum|`, up to which it is a rounding error in stage 1.
+/// Residual of a constrained entry, relative to `1 + |sum|` with its prescribed sum, up to which it
+/// is a rounding error in stage 1.
 const RESIDUAL_ROUNDING: f64 = 1e-11;
 
 /// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the actual

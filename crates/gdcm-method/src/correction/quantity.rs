@@ -26,8 +26,8 @@ pub enum GainObjective {
     Decibel,
 }
 
-/// What a channel's value is. In a response, the gains of input and output multiply; their delays
-/// add.
+/// Quantity that a channel's value represents. In a response, the gains of input and output
+/// multiply; their delays add.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Gains, dimensionless, compared as given by the objective (eq. (7), M8).

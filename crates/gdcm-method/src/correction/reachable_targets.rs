@@ -25,7 +25,7 @@ pub(crate) struct Reached {
     pub(crate) point: Option<Vec<f64>>,
 }
 
-/// Finds the targets.
+/// Finds the targets: the feasible sums nearest to the prescribed sums.
 ///
 /// ```text
 /// 1  components with the prescribed sums; if all are feasible, these are the targets

@@ -22,10 +22,11 @@ const RANGE_ROUNDING: f64 = 1e-12;
 pub struct Remedy {
     /// Constrained quantity: gains, delays \[s\] or signed delays \[s\].
     pub quantity: Quantity,
-    /// Minimum sufficient upper bound if the lower bound is unchanged, rounded up to three digits.
+    /// Minimum sufficient upper bound if the lower bound is unchanged, rounded up to three digits;
+    /// `None` if no upper bound suffices.
     pub upper: Option<f64>,
     /// Maximum sufficient lower bound if the upper bound is unchanged, rounded down to three
-    /// digits; `None` for delays, whose lower bound is fixed.
+    /// digits; `None` if no lower bound suffices, and for delays, whose lower bound is fixed.
     pub lower: Option<f64>,
     /// Constrained entries whose release alone is sufficient.
     pub free: Vec<Pair>,

@@ -1,4 +1,4 @@
-//! What each constrained entry and each active bound costs at the solution, from its multiplier.
+//! Cost of each constrained entry and each active bound at the solution, from its multiplier.
 //!
 //! The multipliers and the conditions that they satisfy are defined in `multipliers`.
 
@@ -51,8 +51,8 @@ impl Sensitivity {
     }
 }
 
-/// Computes the sensitivity to every constrained entry and every active bound, largest magnitude
-/// first.
+/// Computes the sensitivity to every constrained entry and every bound with a nonzero multiplier,
+/// largest magnitude first.
 ///
 /// `solution` is [`super::solve`]'s result for `problem`.
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {

@@ -59,8 +59,9 @@ pub struct Proof {
     /// Lower bound on the objective over all channel values that are within the bounds and meet the
     /// targets.
     pub lower_bound: f64,
-    /// Whether the minimum is proven. The gap is relative to the objective, or to 1e-9 `sum w G^2`
-    /// if the objective is smaller, because rounding errors then dominate.
+    /// Whether the minimum is proven. The gap is relative to the objective, or to about 1e-9 `sum w
+    /// G^2` (delays: `sum w D^2`) if the objective is smaller, because rounding errors then
+    /// dominate.
     pub outcome: Outcome,
     pub nodes: usize,
     /// Distinct local minima within 1 % above the objective, best first; the first is the solution.
@@ -115,7 +116,7 @@ pub struct Solution {
     /// logarithm, and 1e-8 times the problem's longest delay (at least a nanosecond) for a delay;
     /// in a loop it is [`Problem::agreement`](super::problem::Problem::agreement).
     pub matched: bool,
-    /// Constrained entries that do not meet their delta.
+    /// Constrained entries that do not meet their delta, without those in `agreeing` loops.
     pub unmatched: Vec<Unmatched>,
     /// Loops whose deviation is within the tolerance; their entries are constrained to the nearest
     /// consistent values.

@@ -26,7 +26,7 @@ use super::solution::{LocalMinimum, Outcome, Proof, Solution};
 /// ```text
 /// 1  targets: the sums nearest to the deltas that the box and the loops permit (stage 1)
 /// 2  objective over the scales that the constrained sums leave free (M8, proof)
-/// 3  global minimum by branch and bound, from a start near it (stage 2)
+/// 3  global minimum by branch and bound (stage 2)
 /// 4  limit alpha -> 0+ if a common scale is free
 /// 5  for each infeasible delta of stage 1: its conflict, and the single changes that would resolve all conflicts
 /// ```
@@ -51,7 +51,8 @@ use super::solution::{LocalMinimum, Outcome, Proof, Solution};
 /// ```
 ///
 /// # Errors
-/// [`ProblemError`] if the problem is not well posed ([`Problem::check`]), and
+/// [`ProblemError`] if the problem is not well posed ([`Problem::check`]),
+/// [`ProblemError::Program`] if the interior-point method fails for delays, and
 /// [`ProblemError::Stopped`] as soon as `stop`, which is polled about every half millisecond,
 /// returns true.
 pub fn solve(
@@ -111,8 +112,9 @@ pub fn solve(
     })
 }
 
-/// Returns a starting point for Newton's method. For delays it is so close to the minimum that
-/// Newton's method converges to the minimum exactly, with the correct active bounds.
+/// Returns a starting point for Newton's method: for gains, the point in the box nearest to 0; for
+/// delays, a point so close to the minimum that Newton's method converges to the minimum exactly,
+/// with the correct active bounds.
 fn newton_start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
     if quantity.is_gain() {
         Ok(objective.nearest_to_zero())

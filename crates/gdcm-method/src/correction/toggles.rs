@@ -21,7 +21,7 @@ pub struct Toggle {
     pub after: f64,
     /// Count of infeasible constrained entries after the toggle.
     pub unmatched_after: usize,
-    /// Whether the toggled entry itself is feasible, if it is now constrained.
+    /// Whether the toggled entry meets its delta after the toggle; true if it was released.
     pub matched_after: bool,
     /// Whether the objective after the toggle is proven.
     pub outcome: Outcome,
@@ -47,7 +47,7 @@ impl Toggle {
 /// does not contain every entry.
 ///
 /// # Errors
-/// [`ProblemError`], as in [`solve`].
+/// [`ProblemError`], as in [`solve`]; a stopped solution only ends the list.
 pub fn toggles(
     problem: &Problem,
     solution: &Solution,

@@ -58,9 +58,9 @@ impl CoupledModelError {
 }
 
 impl CouplingMatrices {
-    /// Builds the physics model with mixing and feedback, in continuous or discrete time. Channel
-    /// delays, which lie inside the loop, are first converted to states: by the Padé approximant
-    /// `pade`, or to whole samples.
+    /// Builds the physics model with the normalised mixing `M~` and the feedback `K`, in continuous
+    /// or discrete time. Channel delays, which lie inside the loop, are first converted to states:
+    /// by the Padé approximant `pade`, or to whole samples.
     ///
     /// ```text
     /// K~ = K (I - D K)^-1
@@ -123,7 +123,8 @@ fn algebraic_loop(
     Ok(difference.lu())
 }
 
-/// Returns the model with its channel delays converted to states.
+/// Returns the model with its channel delays converted to states, in continuous time by the
+/// approximant `pade`.
 ///
 /// # Errors
 /// [`CorrectedModelError`] if the delays need more states than a model may have, or if a

@@ -11,7 +11,8 @@ use super::error::CouplingError;
 use super::unknown::Unknown;
 use crate::schedule::{Airspeeds, Regression};
 
-/// Input mixing `M(V)`, m x m, and output feedback `K`, m x p: `y = H (u' + K y)`, `u' = M~(V) u`.
+/// Input mixing `M(V)`, m x m, and output feedback `K`, m x p: `y = H (u' + K y)`, `u' = M~(V) u`,
+/// where `M~` is the normalised mixing ([`CouplingMatrices::normalised_mixing`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingMatrices {
     airspeeds: Airspeeds,
@@ -65,7 +66,7 @@ impl CouplingMatrices {
     /// Checks that the mixing preserves every input's sign at the conditions' airspeeds.
     ///
     /// # Errors
-    /// [`CouplingError::ReversedInput`] for the first input whose sign is reversed.
+    /// [`CouplingError::ReversedInput`] for the first input whose factor `M_ii` is not positive.
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         for &airspeed_kt in &self.airspeeds.values_kt {
             let diagonal = self.mixing(airspeed_kt).diagonal();

@@ -7,7 +7,7 @@ use gdcm_model::units::{number, telling};
 /// Reasons why no couplings can be fitted (M16.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
-    /// No condition has a response that both representatives contain.
+    /// No condition has a response that both representatives contain, or there is no condition.
     #[error(
         "no coupling fit: none of the conditions ({conditions}) has a response that is available in \
         both its physics and its identified representative"

@@ -24,7 +24,7 @@ pub struct CouplingFit {
     /// residual in the normal equations relative to their largest right-hand side.
     pub residual: f64,
     /// Outputs that cannot be fed back, because their response to some input is missing in every
-    /// condition.
+    /// condition, in flight or in the physics model; empty for a mixing alone.
     pub not_fed_back: Vec<usize>,
     /// Unknowns that no response determines; they keep their uncoupled values.
     pub undetermined: Vec<Unknown>,
@@ -48,7 +48,7 @@ const FITTING: &str = "mixing and feedback";
 /// ```
 ///
 /// The result is identical to the last bit in any order of execution. `progress` is notified after
-/// every condition in every pass, and polled every few frequencies for cancellation.
+/// every condition in every pass, and polled for cancellation every 64 frequencies.
 ///
 /// # Errors
 /// [`CouplingError`] if tables differ in shape, no response has a weight, the loop is singular in a

@@ -97,7 +97,7 @@ impl PairProducts {
         }
     }
 
-    /// Adds the sums over other frequencies.
+    /// Adds another condition's sums.
     pub(super) fn add(&mut self, other: &Self) {
         self.real += &other.real;
         self.imaginary += &other.imaginary;

@@ -84,7 +84,8 @@ impl PoleShift {
         Some((self.after - self.before?).norm())
     }
 
-    /// Returns whether coupling moved the pole into the right half-plane.
+    /// Returns whether coupling moved the pole into the right half-plane; true also for an
+    /// additional state's unstable pole.
     pub fn is_newly_unstable(&self) -> bool {
         let was_unstable = self.before.is_some_and(|before| before.re > 0.0);
         self.after.re > 0.0 && !was_unstable

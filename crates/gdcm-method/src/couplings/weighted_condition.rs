@@ -49,18 +49,19 @@ pub(super) struct WeightedCondition<'a> {
     inputs: usize,
     /// `H`, ordered like [`columns_by_frequency`].
     physics: Vec<Complex<f64>>,
-    /// `R'`, in the same order.
+    /// `R'`, ordered like `physics`.
     flight: Vec<Complex<f64>>,
-    /// Weight for each response, in the same order.
+    /// Weight for each response, ordered like `physics`.
     weights: Vec<FixedWeight>,
 }
 
 impl<'a> WeightedCondition<'a> {
     /// Arranges a condition; `fed_back` are the outputs with a column in `K`.
     ///
-    /// A missing value has weight 0 and value 0. If flight lacks a response that is fed back, its
-    /// input column has weight 0; if the physics model lacks such a response, the whole frequency
-    /// has weight 0. The value 0 is then never used.
+    /// A missing value is replaced by 0, and its response has weight 0; so have all responses in an
+    /// output for which the physics model lacks a response. If flight lacks a response that is fed
+    /// back, its input column has weight 0; if the physics model lacks such a response, the whole
+    /// frequency has weight 0. The value 0 is then never used.
     pub(super) fn new(
         problem: &'a CouplingProblem,
         condition: &CouplingCondition,

@@ -1,5 +1,6 @@
 //! Frequency weights from a measured reference's coherence (M4a): a frequency with a coherence
-//! below a threshold is left out, the others are weighted by `W` ([`coherence_weight`]).
+//! below a threshold, or outside the response's valid band, is left out; the others are weighted by
+//! `W` ([`coherence_weight`]).
 
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
 use gdcm_model::response::interpolation::coherence_at;
@@ -24,7 +25,8 @@ pub fn coherence_weight(coherence: f64) -> f64 {
 
 impl CoherenceWeights {
     /// Selects the frequencies in `omega` \[rad/s\] whose coherence is at least `threshold` and
-    /// which lie in the response's valid band.
+    /// which lie in the response's valid band (`None`: any frequency). Frequencies with zero
+    /// coherence are left out.
     pub fn select(
         omega: &[f64],
         coherence: &[f64],
@@ -52,8 +54,8 @@ impl CoherenceWeights {
         selected
     }
 
-    /// Returns the weights for every response in a model; `None` without coherence: all frequencies
-    /// then have equal weight.
+    /// Returns the weights for every response in a model. `None` unless the model is a measured
+    /// response with coherence and `threshold` is given: all frequencies then have equal weight.
     pub fn of_model(
         dynamics: &Dynamics,
         omega: &[f64],

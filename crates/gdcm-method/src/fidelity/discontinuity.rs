@@ -10,7 +10,7 @@ use super::distance::BundleDistance;
 
 /// Discontinuity ratio above which a model is suggested as an outlier.
 pub const SUGGESTION_RATIO: f64 = 2.5;
-/// Minimum bundle size for the outlier search.
+/// Minimum count of models for the outlier search, without models that are set aside.
 const LEAST_MODELS: usize = 5;
 
 /// A physics model's name and trim.
@@ -25,8 +25,8 @@ pub struct PerturbedModel<'a> {
 /// perturbation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discontinuity {
-    /// `r_a` for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no
-    /// two models have a fitted distance.
+    /// `r_a` for each model: near 1 in a smooth bundle. `None` for a model that is set aside, or
+    /// whose fitted distance from every other model is zero.
     pub ratios: Vec<Option<f64>>,
     /// Fitted weight for each perturbed coordinate.
     pub weights: Vec<CoordinateWeight>,
@@ -167,13 +167,13 @@ impl CoordinateWeight {
 /// Reasons for a missing discontinuity ratio.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DiscontinuityError {
-    /// The bundle is too small for a fit.
+    /// The bundle has too few models, not counting those set aside.
     #[error(
-        "outliers are suggested only in bundles of at least {LEAST_MODELS} physics models; this \
-        bundle has {found}"
+        "outliers are suggested only in bundles of at least {LEAST_MODELS} physics models that \
+        are not set aside; this bundle has {found}"
     )]
     TooFewModels {
-        /// Models in the bundle.
+        /// Models in the bundle that are not set aside.
         found: usize,
     },
     /// A model has no perturbation data.

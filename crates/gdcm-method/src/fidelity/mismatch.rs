@@ -171,7 +171,7 @@ impl Mismatch {
     }
 
     /// Shifts the phase by whole turns so that its median is nearest to `median_phase` \[rad\]:
-    /// aligns a swapped pair with the representatives (M13.1).
+    /// aligns a substituted pair of models with the representatives (M13.1).
     pub fn align_branch(mut self, omega: &[f64], median_phase: f64) -> Self {
         self.turn += TAU * ((median_phase - self.median_phase(omega)) / TAU).round();
         self

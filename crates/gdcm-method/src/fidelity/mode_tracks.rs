@@ -30,7 +30,8 @@ const LEAST_JUMP_RAD_S: f64 = 0.05;
 pub struct ModeTrack {
     /// The mode's index in the reference model.
     pub reference: usize,
-    /// The matched mode's index in each model; `None` if the model has fewer poles.
+    /// The matched mode's index in each model; `None` if the model has fewer poles than the
+    /// reference, and none for this mode.
     pub modes: Vec<Option<usize>>,
     /// The poles' centre \[rad/s\]: median real part and median imaginary part.
     pub centre: Complex<f64>,

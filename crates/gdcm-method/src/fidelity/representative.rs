@@ -24,8 +24,8 @@ pub struct Representative {
 
 impl Representative {
     /// Returns the accepted model with the smallest score (ties: the first in file order), or
-    /// `pinned`; `None` if every model is rejected or set aside. A pinned model that is set aside
-    /// is ignored.
+    /// `pinned`; `None` if every model is rejected or set aside. A pinned model that is rejected or
+    /// set aside is ignored.
     pub fn select(
         distance: &BundleDistance,
         rejected: &BTreeSet<usize>,

@@ -11,14 +11,15 @@
 use super::distributions::student_quantile;
 use super::variance_component::{VarianceComponent, satterthwaite};
 
-/// Where a bar's identification part comes from.
+/// Source of a bar's identification part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IdentificationSource {
     /// Spread among the identified models, pooled with the other conditions (M13.2).
     Spread,
-    /// The measured response's coherence, if the resulting standard error exceeds the spread.
+    /// The measured response's coherence; the resulting standard error replaces a smaller or
+    /// missing spread.
     Coherence,
-    /// The identified model's confidence band, if it exceeds the spread.
+    /// The identified model's confidence band, which replaces a smaller or missing spread.
     ModelBand,
 }
 
@@ -27,10 +28,11 @@ pub enum IdentificationSource {
 pub struct Bar {
     /// Value with both representatives, `q_0`.
     pub value: f64,
-    /// Variance due to the unknown trim, `s_phys^2`; `None` if no other physics model is kept.
+    /// Variance due to the unknown trim, `s_phys^2`; `None` if no other kept physics model yields a
+    /// value.
     pub trim: Option<VarianceComponent>,
-    /// Variance from the identification, `s_id^2`; `None` if no condition has a second identified
-    /// model and no standard error is available from coherence or a model's band.
+    /// Variance from the identification, `s_id^2`; `None` if there is neither a spread, own or
+    /// borrowed from other conditions, nor a standard error from coherence or a model's band.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
     /// Count of substitutions for which the value does not exist.
@@ -67,18 +69,19 @@ impl Bar {
     }
 
     /// Returns the inner bar's half-width, `t(nu_id) s_id`, the uncertainty for a fixed physics
-    /// model.
+    /// model; `None` if the identification part is missing or zero.
     pub fn inner_half_width(&self, level: f64) -> Option<f64> {
         let part = self.identification.filter(|part| part.variance > 0.0)?;
         Some(student_quantile(level, part.degrees_of_freedom) * part.variance.sqrt())
     }
 
-    /// Returns the whole bar's interval, clamped to the admissible values.
+    /// Returns the whole bar's interval, clamped to the admissible values; `None` without spread.
     pub fn interval(&self, level: f64) -> Option<[f64; 2]> {
         Some(self.clamped_interval(self.half_width(level)?))
     }
 
-    /// Returns the inner bar's interval, clamped to the admissible values.
+    /// Returns the inner bar's interval, clamped to the admissible values; `None` if the
+    /// identification part is missing or zero.
     pub fn inner_interval(&self, level: f64) -> Option<[f64; 2]> {
         Some(self.clamped_interval(self.inner_half_width(level)?))
     }
@@ -131,7 +134,7 @@ pub enum BarRemark {
     NoTrim,
     /// The identification's uncertainty is not included.
     NoIdentification,
-    /// All models in the bundle give the same value.
+    /// All models in both bundles give the same value.
     NoSpread,
     /// The identification part is computed from the coherence.
     FromCoherence,

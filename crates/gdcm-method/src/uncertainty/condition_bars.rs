@@ -15,7 +15,7 @@ use super::variance_component::{VarianceComponent, pooled};
 pub struct BarSource<'a> {
     /// Scalars with both representatives.
     pub figures: Figures,
-    /// How the scalars change if other models are substituted.
+    /// Changes in the scalars if other models are substituted.
     pub spread: &'a ConditionSpread,
     /// The identified representative's standard errors; `None` where unavailable.
     pub reported: ScalarTable<Option<ReportedUncertainty>>,
@@ -73,7 +73,7 @@ impl BarSource<'_> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
     pub part: VarianceComponent,
-    /// Where the standard error comes from: coherence or confidence band.
+    /// Source of the standard error: coherence or confidence band.
     pub source: IdentificationSource,
 }
 

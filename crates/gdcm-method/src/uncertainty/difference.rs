@@ -1,4 +1,4 @@
-//! How significant differences between two conditions are (M13.4).
+//! Significance of differences between two conditions (M13.4).
 //!
 //! ```text
 //! ratio <- |delta| / u_delta,   delta = q_c - q_c',   u_delta = sqrt(u_c^2 + u_c'^2);   p from Student's distribution
@@ -41,7 +41,8 @@ impl Difference {
         Some(self.delta.abs() / self.deviation)
     }
 
-    /// Returns the probability that a ratio this large arises without a true difference.
+    /// Returns the probability that a ratio this large arises without a true difference, before
+    /// Holm's correction; `None` without a spread.
     pub fn p(&self) -> Option<f64> {
         Some(student_two_sided(self.ratio()?, self.degrees_of_freedom?))
     }

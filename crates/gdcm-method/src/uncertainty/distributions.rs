@@ -11,8 +11,8 @@ const NORMAL_FROM: f64 = 1e8;
 /// converge for some larger values.
 const EXPANDED_FROM: f64 = 1e3;
 
-/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, at least 1; the
-/// normal quantile for infinite `nu`.
+/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, which counts as 1 if
+/// smaller; the normal quantile for infinite `nu`.
 ///
 /// Above a thousand degrees of freedom the expansion 26.7.5 in M. Abramowitz, I. A. Stegun,
 /// *Handbook of Mathematical Functions*, 1964, is used.

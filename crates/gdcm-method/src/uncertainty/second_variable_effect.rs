@@ -96,11 +96,12 @@ pub struct SecondVariableEffect {
     /// Half-width of the confidence interval for `effect`, `2 t se`; smaller effects are not
     /// detectable.
     pub visible: f64,
-    /// Probability that an effect this large arises without a true effect.
+    /// Probability that an effect this large arises without a true effect, before Holm's
+    /// correction.
     pub p: f64,
     /// Rms leave-one-out error without the variable; `None` if no condition can be left out.
     pub left_out_without: Option<f64>,
-    /// Rms leave-one-out error with the variable.
+    /// Rms leave-one-out error with the variable; `None` if no condition can be left out.
     pub left_out_with: Option<f64>,
 }
 
@@ -121,10 +122,11 @@ pub enum SecondVariableError {
     /// A condition lacks the variable, or all values are equal.
     #[error("the conditions must have at least two different values")]
     NotVaried,
-    /// In these conditions the variable depends linearly on the columns for airspeed.
+    /// In these conditions the variable depends linearly on the columns for airspeed, or these
+    /// columns alone determine no fit.
     #[error("its effect cannot be separated from the effect of airspeed")]
     NotToldApart,
-    /// The fit has too few degrees of freedom.
+    /// The schedule's fit has fewer than two degrees of freedom.
     #[error("there are too few conditions to separate its effect from the effect of airspeed")]
     TooFewConditions,
 }

@@ -33,7 +33,7 @@ pub struct VarianceDecomposition {
 
 impl VarianceDecomposition {
     /// Splits the scatter of the bars' values about the fit with `design`; `None` without degrees
-    /// of freedom.
+    /// of freedom, or if there is not one bar for each condition.
     pub fn new(design: &Design, bars: &[Bar]) -> Option<Self> {
         let freedom = design.freedom();
         if freedom == 0 || bars.len() != design.conditions() {
@@ -84,7 +84,8 @@ impl VarianceDecomposition {
         Some((self.scatter / self.explained()).sqrt())
     }
 
-    /// Returns the probability that a scatter this large arises if the bundles explain it fully.
+    /// Returns the probability that a scatter this large arises if the bundles explain it fully;
+    /// `None` without spread.
     pub fn p(&self) -> Option<f64> {
         fisher_upper(
             self.scatter / self.explained(),

@@ -9,8 +9,8 @@ use super::deltas::{delays_ms, gain_ratios};
 use super::sample_words::spread;
 use super::{Context, Derivation};
 
-/// Collects the mismatches in the responses that are in the objective (on-axis; all if none is
-/// on-axis), or in all responses if none of these has a mismatch.
+/// Collects the mismatches in the on-axis responses, or in all responses if none is on-axis or no
+/// on-axis response has a mismatch.
 fn pooled<'a>(
     context: &Context<'a>,
     mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,

@@ -40,8 +40,8 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
     Some(lines)
 }
 
-/// Returns the condition and the key that a result's error bar has; `None` for results without
-/// error bars.
+/// Returns the condition and the scalar whose error bar belongs to a result; `None` for results
+/// without error bars.
 fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),

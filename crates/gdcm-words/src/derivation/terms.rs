@@ -11,7 +11,7 @@ const TERMS: [(&str, &str); 30] = [
     ("H_sim", "response of the physics representative"),
     (
         "Δφ",
-        "phase of H_ref minus phase of H_sim, unwrapped [rad; deg in J]",
+        "phase of H_sim minus phase of H_ref, unwrapped [rad]; in J the principal value [deg]",
     ),
     ("ΔdB", "magnitude of H_sim minus magnitude of H_ref [dB]"),
     ("ω", "frequency [rad/s]"),

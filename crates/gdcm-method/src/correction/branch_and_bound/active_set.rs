@@ -1,12 +1,12 @@
-//! Minimises a convex quadratic function over a box by a primal active-set method: the step in
-//! `newton`.
+//! Minimises a convex quadratic function over a box by a primal active-set method; the minimum is
+//! the step taken in `newton`.
 //!
 //! ```text
 //! min g' d + d' H d / 2   subject to   low <= d <= high
 //! ```
 //!
-//! A bound is *active* if it fixes its scale; the other scales are *free*. Source: Nocedal &
-//! Wright, "Numerical Optimization", 2nd ed. 2006, 16.5.
+//! A bound is *active* if it fixes its scale; a scale without an active bound is *free*. Source:
+//! Nocedal & Wright, "Numerical Optimization", 2nd ed. 2006, 16.5.
 
 use super::effort::Effort;
 use super::expansion::{Expansion, ScaleBox};
@@ -41,7 +41,8 @@ pub(super) struct QuadraticModel {
     /// Lower Cholesky factor for the free scales' Hessian. Its rows and columns are places in
     /// `free`, not scales; each row has memory for all scales.
     factor: Vec<f64>,
-    /// Further step to the unbounded minimum over the free scales, by scale.
+    /// Further step to the unbounded minimum over the free scales, by scale; meaningless for the
+    /// others.
     move_to: Vec<f64>,
 }
 
@@ -132,8 +133,8 @@ impl QuadraticModel {
         1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
     }
 
-    /// Computes `move_to = -H_ff^-1 slope_f` over the free scales, where `H_ff` is their Hessian.
-    /// `None` if it is not positive definite.
+    /// Lists the free scales in `free`, and computes `move_to = -H_ff^-1 slope_f` over them, where
+    /// `H_ff` is their Hessian. `None` if `H_ff` is not positive definite.
     fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         self.free.clear();
         self.free

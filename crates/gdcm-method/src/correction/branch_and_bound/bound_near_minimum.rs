@@ -66,9 +66,9 @@ impl NodeExclusion<'_> {
         }
     }
 
-    /// Chooses a reference for each floating piece: a fixed scale or, if bounds are active, the
-    /// scale with the largest pressure. Returns `None` if this pressure is less than the summed
-    /// slope magnitudes of the piece's scales without pressure.
+    /// Chooses a reference for each floating piece: a fixed scale, otherwise the scale with the
+    /// largest pressure (any scale if none has pressure). Returns `None` if this pressure is
+    /// positive, but less than the summed slope magnitudes of the piece's scales without pressure.
     fn anchors(&self, at: &Expansion, pressures: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {

@@ -17,7 +17,8 @@ const NEWTON_STEPS: usize = 60;
 const NEWTON_ROUNDING: f64 = 1e-15;
 /// Maximum number of times that the outer end of a bracket is moved to double distance.
 const DOUBLINGS: usize = 40;
-/// Relative width at which the bisection ends, well below the interval's slack.
+/// Relative bracket width at which the bisection ends. The bracket's convex side is returned, so
+/// that the remaining width only makes the concave interval slightly too wide.
 const BRACKET_WIDTH: f64 = 1e-12;
 
 /// Finds the only interval on which the exponentials' sum is concave, widened slightly; `None` if

@@ -27,10 +27,10 @@
 //!  5     node.bound <- minimum, over the node's box, of a tangent plane to its underestimator (each term's convex envelope),
 //!        less the rounding error;  if node.bound >= 1.01 best, close the node
 //!  6     best <- local minimum of F from the tangent point, if it may be a new one worth listing
-//!  7     if node.bound >= best: close the node if F is convex over it or line 4 now closes it;
+//!  7     if node.bound >= (1 - 2e-10) best: close the node if every term is convex over it or line 4 now closes it;
 //!        otherwise keep it for the listing (proof) or branch it (listing)
-//!  8     if node.bound < best: close the node if F is convex over the hull of node and best (convexity test),
-//!        with the bound from best's gradient and Hessian; otherwise branch it
+//!  8     otherwise: close the node if F is convex over the hull of node and best (convexity test) and the bound from
+//!        best's gradient and Hessian is at least (1 - 2e-10) best; if not, branch it
 //!  9     branch: proof: at the difference whose term lies furthest above its envelope;
 //!        if there is none, and in the listing: at the ends of concave intervals;
 //!        if there is none: at the difference whose term's slope varies most;  if its range is too narrow, close the node

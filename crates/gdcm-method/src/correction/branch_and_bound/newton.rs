@@ -57,8 +57,8 @@ impl<'a> Newton<'a> {
     }
 
     /// Moves `scales`, a point inside the box, downhill until `enough(scales, expansion)` holds,
-    /// the descent reaches rounding level, or the effort is stopped. Stores the expansion at the
-    /// final point in `reached`.
+    /// the descent reaches rounding level, 100 steps are made, or the effort is stopped. Stores the
+    /// expansion at the final point in `reached`.
     pub(crate) fn minimise(
         &mut self,
         function: &impl Differentiable,

@@ -7,9 +7,10 @@
 //!               definite: the region contains at most one minimum
 //! ```
 //!
-//! Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004. The scales in a *floating
-//! piece*, which no term connects with the ground, can be shifted together without changing the
-//! objective: one scale, the *reference*, does not move in the tests.
+//! Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004. Both tests are
+//! sufficient, not necessary: if one fails, it proves nothing. The scales in a *floating piece*,
+//! which no term connects with the ground, can be shifted together without changing the objective:
+//! one scale, the *reference*, does not move in the tests.
 
 use nalgebra::DMatrix;
 
@@ -94,7 +95,7 @@ impl<'a> NodeExclusion<'a> {
         self.is_convex_in(&hull, free)
     }
 
-    /// Convexity test: returns whether the objective is convex over the region.
+    /// Convexity test: returns whether the objective is certainly convex over the region.
     pub(super) fn is_convex(&self, region: &DifferenceBounds) -> bool {
         self.is_convex_in(region, (0..self.objective.ground()).collect())
     }
@@ -151,9 +152,9 @@ impl<'a> NodeExclusion<'a> {
         least
     }
 
-    /// Returns whether the objective is convex in the `free` scales over the region: the Hessian
-    /// built from every term's minimum curvature is positive definite, and the true Hessian exceeds
-    /// it by a positive semidefinite matrix.
+    /// Returns whether the objective is certainly convex in the `free` scales over the region: the
+    /// Hessian built from every term's minimum curvature is positive definite, and the true Hessian
+    /// exceeds it by a positive semidefinite matrix. References do not count as free.
     fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
         // The reference in a floating piece does not move.
@@ -172,9 +173,9 @@ pub(super) struct LeastHessian {
 }
 
 impl LeastHessian {
-    /// Returns the Hessian in the `free` scales. Its diagonal is reduced by a margin for the
-    /// rounding in its sums (up to n terms) and in its factorisation (n (n + 1) roundings: Higham,
-    /// *Accuracy and Stability of Numerical Algorithms*, 2002, theorem 10.3).
+    /// Returns the Hessian in the `free` scales. For n scales, its diagonal is reduced by a margin
+    /// for the rounding in its sums (up to n terms) and in its factorisation (n (n + 1) roundings:
+    /// Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, theorem 10.3).
     pub(super) fn reduced(&self, free: &[usize]) -> DMatrix<f64> {
         let scales = self.sizes.len();
         let roundings = ((scales + 1) * (scales + 2)) as f64;

@@ -11,7 +11,8 @@
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};
 
-/// An entry in a least-squares objective: `weight (delta - offset - (s_input - s_output))^2`.
+/// An entry in an objective: once `delta` is in the coordinate (`Coordinate`), its square is
+/// `weight (delta - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
     /// Index of the output's scale; the ground, if the entry is an input's deviation from neutral.
@@ -19,9 +20,10 @@ pub(crate) struct SquareEntry {
     /// Index of the input's scale; the ground, if the entry is an output's deviation from neutral.
     pub(crate) input: usize,
     pub(crate) weight: f64,
-    /// Target: delta gain or delta delay; in a quadratic term, converted to the coordinate.
+    /// Target: delta gain, delta delay or neutral value; converted to the coordinate before
+    /// quadratic terms are formed.
     pub(crate) delta: f64,
-    /// The entry's value, its two coordinates added up, if both scales are 0.
+    /// Coordinate of the entry's net value if both scales are 0.
     pub(crate) offset: Rounded,
 }
 
@@ -102,7 +104,8 @@ impl SquareGroup {
 }
 
 /// Combines the entries into one quadratic term for each pair of scales that share an entry. The
-/// constant is the sum of the squared residuals at the terms' minima.
+/// constant is the weighted sum of the squared residuals at the terms' minima, and of the entries
+/// that no scale changes.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     // The group for the scales `from < to` is at `from * scales + to`.
     let mut groups = vec![SquareGroup::default(); scales * scales];

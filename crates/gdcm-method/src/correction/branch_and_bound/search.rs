@@ -97,14 +97,15 @@ struct Search<'a> {
     nodes: usize,
     /// Work spent until the best minimum was proven; `None` before the proof.
     proven_at: Option<u64>,
-    /// Whether every closed node was shown to contain no local minimum other than those found.
+    /// `false` once the listing has closed a node that could contain a further local minimum.
     all_minima: bool,
     /// Scratch memory: lower bound on each scale in a part of the box.
     lower: Vec<f64>,
     /// Scratch memory: upper bound on each scale in a part of the box.
     upper: Vec<f64>,
-    /// Underestimators' curvature outside their node. It is well above the objective's curvature at
-    /// the best minimum, so that next to a minimum a node's bound is attained at the node's edge.
+    /// Underestimators' curvature outside their terms' ranges in the node. It is well above the
+    /// objective's curvature at the best minimum, so that next to a minimum a node's bound is
+    /// attained at the node's edge.
     outer_curvature: f64,
 }
 
@@ -288,7 +289,8 @@ impl<'a> Search<'a> {
     }
 
     /// Line 6: minimises the objective from `start` over the whole box, and stores the minimum if
-    /// it is new.
+    /// it is new or lower than its duplicate. Updates `best`, and `outer_curvature` if the minimum
+    /// is the new best.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         self.newton.minimise(

@@ -113,8 +113,8 @@ impl Function {
         }
     }
 
-    /// Returns the concave interval's end that is nearest to `u`; `None` if `u` is inside the
-    /// concave interval, or if the end is outside the open interval `within`.
+    /// Returns the concave interval's end that is nearest to `u`; `None` if there is no concave
+    /// interval, `u` is inside it, or the end is outside the open interval `within`.
     pub(crate) fn concave_end(&self, u: f64, within: Interval) -> Option<f64> {
         let Function::Exponential {
             concave: Some(concave),

@@ -166,9 +166,9 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Finds the terms that are not convex over the node but convex at `scales`, each with its
-    /// concave interval's end, the furthest end first. The parts beyond the ends are easily
-    /// bounded, and the rest is convex in these terms.
+    /// Finds the terms that are not convex over the node but convex at `scales`, each with the
+    /// nearer end of its concave interval if that is inside the node's range; the furthest end
+    /// first. A split at an end separates a part in which the term is convex.
     pub(super) fn concave_ends(&self, scales: &[f64]) -> Vec<ConcaveEnd> {
         let mut ends = Vec::new();
         for (term, underestimator) in self.nonconvex() {

@@ -10,7 +10,8 @@ use std::cmp::Ordering;
 use super::fit_constraints::{Fit, ZERO};
 use super::vertex::Vertex;
 
-/// Relative change in the summed deviations below which an edge counts as flat.
+/// Slope of the summed deviations, relative to its maximum possible magnitude, below which an edge
+/// counts as flat.
 const FLAT: f64 = 1e-10;
 
 /// Destinations along a vertex's edges.

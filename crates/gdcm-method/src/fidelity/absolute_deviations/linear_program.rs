@@ -5,8 +5,8 @@ use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 use super::FitError;
 
 /// Step 4: solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >=
-/// 0`. Columns: the weights `w`, then a `t` for each row. Rows: the three inequality groups in this
-/// order.
+/// 0`, and returns `w`. Columns: the weights `w`, then a `t` for each row. Rows: the three
+/// inequality groups in this order.
 pub(super) fn solve_linear_program(
     x: &[Vec<f64>],
     y: &[f64],

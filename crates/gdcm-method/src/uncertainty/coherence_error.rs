@@ -69,19 +69,21 @@ impl Measurement {
         coherence: &[f64],
         threshold: f64,
     ) -> Option<CoherenceError> {
+        let mut used = Vec::new();
         let mut gain_errors = Vec::new();
         let mut delay_errors = Vec::new();
         for (omega, &coherence) in omega.iter().zip(coherence) {
             if coherence > 0.0 && coherence >= threshold {
                 let deviation = self.deviation(coherence);
+                used.push(*omega);
                 gain_errors.push(deviation);
-                delay_errors.push(deviation / omega);
+                delay_errors.push(deviation / *omega);
             }
         }
         if gain_errors.is_empty() || self.averages.is_nan() || self.averages <= 0.0 {
             return None;
         }
-        let kappa = self.averaging(omega);
+        let kappa = self.averaging(&used);
         Some(CoherenceError {
             ln_gain: kappa * median(&mut gain_errors),
             delay_s: kappa * median(&mut delay_errors),

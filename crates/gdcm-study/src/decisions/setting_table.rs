@@ -541,7 +541,7 @@ pub static WINDOW: Setting = Setting {
     ..DEFAULT
 };
 
-/// Whether windows are assumed to overlap by half for measured responses that do not state it.
+/// Whether the windows of measured responses are taken to overlap by half.
 pub static HALF_OVERLAP: Setting = Setting {
     name: "windows overlap",
     key: "error_bars.half_overlap",

@@ -3,6 +3,7 @@
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::counted;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::model_swap::ModelSwap;
 use gdcm_study::results::reported_error::{reports_error, takes_reported_error};
@@ -71,9 +72,10 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     ];
     lines.extend(bar_remark_texts(bar).into_iter().map(str::to_owned));
     if bar.left_out > 0 {
+        let verb = if bar.left_out == 1 { "gives" } else { "give" };
         lines.push(format!(
-            "{} model exchanges give no value for this result",
-            bar.left_out
+            "{} {verb} no value for this result",
+            counted(bar.left_out, "model exchange")
         ));
     }
     lines

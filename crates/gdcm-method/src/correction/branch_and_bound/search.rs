@@ -97,7 +97,7 @@ struct Search<'a> {
     nodes: usize,
     /// Work spent until the best minimum was proven; `None` before the proof.
     proven_at: Option<u64>,
-    /// `false` once the listing has closed a node that could contain a further local minimum.
+    /// `false` once a node that could contain a further local minimum has been closed.
     all_minima: bool,
     /// Scratch memory: lower bound on each scale in a part of the box.
     lower: Vec<f64>,
@@ -434,8 +434,9 @@ impl<'a> Search<'a> {
                 return;
             }
         }
-        // Not branched: the bound is as sharp as rounding permits.
-        self.all_minima &= !listing;
+        // Not branched: the bound is as sharp as rounding permits. The node, also one closed before
+        // the proof, could contain a further minimum within 1 % above the best.
+        self.all_minima = false;
         self.close(bound);
     }
 

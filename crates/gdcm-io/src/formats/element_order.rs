@@ -13,7 +13,7 @@ pub(crate) struct Places {
     strides: Vec<usize>,
     /// Indices of the next element.
     index: Vec<usize>,
-    /// Where the file stores the next element, counted in elements from 0.
+    /// Place of the next element in the file, counted in elements from 0.
     place: usize,
     /// Number of remaining elements.
     left: usize,
@@ -91,7 +91,8 @@ impl Iterator for Places {
 
 impl ExactSizeIterator for Places {}
 
-/// Reorders elements from row-major to column-major order.
+/// Reorders elements from row-major to column-major order; returns no elements if the element count
+/// overflows.
 pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
     let Some(places) = Places::row_major(shape) else {
         return Vec::new();

@@ -16,11 +16,11 @@ use crate::reading_budget::ReadingBudget;
 /// Maximum file size \[bytes\].
 pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 
-/// Receives progress while files are read, and can cancel it.
+/// Receives progress while files are read, and can cancel the reading.
 pub trait FolderProgress {
     /// Called before a file is read, with its number (from 1), the number of files, and its name.
     fn reading(&self, number: usize, count: usize, name: &str);
-    /// Receives the memory taken for a file's contents \[bytes\].
+    /// Receives the memory taken so far for the current file \[bytes\], whenever more is taken.
     fn taken(&self, _bytes: u64) {}
     /// Returns the flag that cancels the reading when set.
     fn stop(&self) -> Arc<AtomicBool> {
@@ -66,9 +66,13 @@ pub(crate) fn import_file<'f>(
     import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
 }
 
-/// Reads files and folders recursively and passes each file to `take`. Returns the number of files,
-/// and the reasons why files were skipped or could not be read. If only a single file is requested,
-/// its error is returned instead.
+/// Reads files and folders recursively and passes each file to `take`; a cancellation ends the
+/// reading silently. Returns the number of files found, whether read or not, and the reasons why
+/// files were skipped or could not be read.
+///
+/// # Errors
+/// [`FileError`] if a folder cannot be listed. If a single path leads to a single file, also the
+/// error from reading this file.
 pub(crate) fn import(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,

@@ -40,9 +40,13 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     }
 }
 
-/// Lists the given files, and all files with supported extensions in the given folders, sorted by
+/// Lists the given files, and the files with supported extensions in the given folders, sorted by
 /// name within each folder. Each pipe, socket or device in a folder is skipped with a message in
-/// `skipped`.
+/// `skipped`; [`Listing::add_folder`] says what is skipped silently.
+///
+/// # Errors
+/// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many
+/// files.
 pub(super) fn list_files(
     paths: &[PathBuf],
     skipped: &mut Vec<String>,
@@ -82,7 +86,8 @@ struct Listing<'p> {
 impl Listing<'_> {
     /// Adds the files in a folder and in its subfolders, down to `deeper` subfolder levels; each
     /// recursion lowers `deeper` by 1. Skips silently: hidden entries, linked folders, files with
-    /// unsupported extensions, and `.log` and `.bin` files in no supported log format.
+    /// unsupported extensions, and `.log` and `.bin` files whose first bytes show no supported
+    /// format.
     ///
     /// # Errors
     /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many
@@ -139,10 +144,10 @@ impl Listing<'_> {
     }
 }
 
-/// Returns whether a `.log` or `.bin` file, an extension that many programs use, has no supported
-/// log format.
+/// Returns whether this is a `.log` or `.bin` file whose first bytes show no supported format: many
+/// programs use these extensions.
 fn is_other_log(path: &Path) -> bool {
-    /// Number of leading bytes by which the log formats are recognised.
+    /// Number of leading bytes by which the formats are recognised.
     const FIRST: usize = 64;
     if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
         return false;
@@ -156,7 +161,7 @@ fn is_other_log(path: &Path) -> bool {
 /// Part of a name, in lower case, and the number after it.
 type TextAndNumber = (String, u64);
 
-/// Returns a sort key that puts "c2" before "c10".
+/// Returns a sort key that ignores case and compares numbers by value: "c2" comes before "C10".
 fn natural_key(name: &str) -> Vec<TextAndNumber> {
     /// Maximum number of digits read as one number, so that it fits in 64 bits.
     const LONGEST: usize = 18;

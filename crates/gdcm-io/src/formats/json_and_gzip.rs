@@ -28,7 +28,8 @@ pub(crate) const JSON: Importer = Importer {
     read: read_json,
 };
 
-/// Reads a file in the format that its member "format" names; other JSON is read as variables.
+/// Reads JSON as a dataset or as models if its member "format" names one of these, otherwise as
+/// variables; passes on gzip-compressed content that does not begin like JSON.
 fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
     let text = text_of(bytes, path, budget)?;
     let text = without_mark(&text);
@@ -58,8 +59,8 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
     Contents::row_major(read_variables(text, budget), path)
 }
 
-/// Reads decompressed content that is not JSON, in the format given by the content and by the file
-/// name without ".gz".
+/// Reads decompressed content that does not begin like a JSON object or list, in the format given
+/// by the content and by the file name without ".gz".
 fn read_unpacked(
     text: &[u8],
     path: &Path,

@@ -8,7 +8,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
 
-/// Overhead per allocation, and a list's initial capacity \[bytes\].
+/// Memory charged for an allocation: its overhead and a list's initial capacity \[bytes\].
 const ALLOCATION: usize = 64;
 
 /// Any JSON value.
@@ -61,7 +61,7 @@ struct TreeReader<'r> {
 }
 
 impl TreeReader<'_> {
-    /// Takes a value's memory, `size` bytes, from the budget.
+    /// Takes the memory for `size` bytes from the budget; keeps the budget's error in `refused`.
     fn take<E: Error>(self, size: usize) -> Result<(), E> {
         // Lists grow by doubling, hence the factor 2; each value is one work step.
         self.budget.take(1, 2 * size as u64, "").map_err(|fault| {

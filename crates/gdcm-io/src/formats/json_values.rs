@@ -56,8 +56,8 @@ fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableF
     })
 }
 
-/// Converts a list: strings become a string array; else numbers, or rectangular nested lists of
-/// numbers, an array (row by row); anything else a cell array.
+/// Converts a list: strings become a string array; numbers, or rectangular nested lists of numbers
+/// (row by row), become a numeric array, as does an empty list; anything else becomes a cell array.
 fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     let shape = vec![1, list.len()];
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {
@@ -81,8 +81,9 @@ fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, Vari
     Ok(Value::Cell(CellArray { shape, values }))
 }
 
-/// Converts nested lists of numbers to an array; returns `None` if they are not rectangular or are
-/// nested too deeply.
+/// Converts a list of numbers to a row, and nested lists to an array with a dimension for each
+/// level. Returns `None` if an item is not a number, or if the lists are not rectangular or have
+/// more than `MOST_DIMENSIONS` levels.
 fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
     let shape = shape_of(list);
     if shape.len() > MOST_DIMENSIONS {
@@ -110,7 +111,8 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
     }))
 }
 
-/// Returns the length along each dimension, from the list, its first entry, and so on.
+/// Returns the length along each dimension, taken from the list, its first item, that item's first
+/// item, and so on; other items may have other lengths.
 fn shape_of(list: &[Tree]) -> Vec<usize> {
     let mut shape = vec![list.len()];
     let mut inner = list;
@@ -121,8 +123,8 @@ fn shape_of(list: &[Tree]) -> Vec<usize> {
     shape
 }
 
-/// Appends the numbers in nested lists row by row; returns whether the lists have the shape
-/// `shape`.
+/// Appends the numbers in nested lists row by row; stops and returns false if the lists do not have
+/// the shape `shape` or hold anything but numbers.
 fn append_numbers(
     list: &[Tree],
     shape: &[usize],

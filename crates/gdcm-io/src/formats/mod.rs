@@ -7,9 +7,9 @@
 //!       -> models or records                  (recognise)
 //! ```
 //!
-//! Readers take memory and work from a `ReadingBudget` before they use it. The last argument is the
-//! variable name for errors; where it is empty, a caller adds the name or there is none. A factor
-//! of 2 allows for vectors, which grow by doubling.
+//! Readers take memory and work from a `ReadingBudget` before they use it. The last argument to
+//! `ReadingBudget::take` and `work` is the variable name for errors; where it is empty, a caller
+//! adds the name or there is none. A factor of 2 allows for vectors, which grow by doubling.
 //!
 //! A new format is an `Importer` in its own file in this folder, and an entry in `FORMATS`.
 
@@ -69,8 +69,9 @@ pub(crate) struct Importer {
     pub(crate) endings: &'static [&'static str],
     /// Returns whether a file has the format, given its bytes and its extension.
     pub(crate) recognises: fn(&[u8], &str) -> bool,
-    /// Reads the bytes of a file. Takes memory from the budget before using it; the path is for
-    /// errors only.
+    /// Reads the bytes of a file. Takes memory from the budget before using it. The path is for
+    /// errors; some formats also take a variable's name or the format of compressed content from
+    /// it.
     pub(crate) read: fn(&[u8], &Path, &ReadingBudget<'_>) -> Result<Contents, FileError>,
 }
 
@@ -111,11 +112,12 @@ pub(crate) enum Contents {
     /// Aircraft logs: records whose columns may have different time axes.
     Logs(Vec<Columns>),
     Archive {
-        /// Arrays in the archive; they form one set of variables.
+        /// NumPy arrays in the archive; together they form one set of variables.
         variables: Vec<Variable>,
-        /// Other files in the archive, by path.
+        /// Other files in the archive: path, and contents or the error from reading them.
         files: Vec<(String, Result<Contents, FileError>)>,
-        /// Descriptions of archived files with an unknown format.
+        /// Messages about archived files that were not read: unsupported formats and nested
+        /// archives.
         ignored: Vec<String>,
     },
 }

@@ -223,14 +223,14 @@ pub enum NamedColumn {
     Number(usize),
 }
 
-/// Why a statement was skipped.
+/// Reason why a statement was skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SkippedStatement {
     #[error("is not understood")]
     NotUnderstood,
     #[error("is not executed")]
     NotExecuted,
-    /// A condition or a loop begins.
+    /// A word such as `if`, `for` or `try` begins a block.
     #[error("is not executed, and values set in it are not read")]
     Block,
 }
@@ -301,7 +301,7 @@ impl ReadingNote {
     }
 }
 
-/// Returns notes as texts.
+/// Formats notes as messages for the user.
 pub(crate) fn note_texts(notes: &[ReadingNote]) -> Vec<String> {
     notes.iter().map(ToString::to_string).collect()
 }

@@ -69,9 +69,9 @@ pub(crate) struct CompressedColumns {
     pub(crate) kind: ElementKind,
     /// Row index for each element, from 0.
     pub(crate) rows: Vec<usize>,
-    /// Index of each column's first element, then the element count.
+    /// Index in `rows` of each column's first element, then the element count.
     pub(crate) starts: Vec<usize>,
-    /// Real parts; there may be unused numbers at the end.
+    /// Real parts; `rows`, `re` and `im` may have unused entries at the end.
     pub(crate) re: Vec<f64>,
     /// Imaginary parts; `None` for real numbers.
     pub(crate) im: Option<Vec<f64>>,

@@ -2,7 +2,7 @@
 
 use crate::formats::variables::ElementKind;
 
-/// How the bits represent a number.
+/// Binary number representation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberClass {
     /// True if any bit is set.

@@ -176,8 +176,7 @@ impl Value {
             .chain(fields.iter().flat_map(|(_, values)| values))
     }
 
-    /// Returns an upper bound for this value's memory \[bytes\], without the values that it
-    /// contains.
+    /// Estimates this value's memory \[bytes\], without the values that it contains.
     pub(crate) fn own_memory(&self) -> u64 {
         let bytes = match self {
             Self::Array(array) => {

@@ -18,7 +18,7 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 /// Maximum ratio of decompressed to compressed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// Number of bytes decompressed between two checks against the budget.
+/// Number of bytes decompressed between two checks for cancellation.
 const CHUNK: u64 = 1 << 20;
 
 /// File name ending for NumPy arrays.
@@ -34,7 +34,12 @@ pub(crate) const ZIP: Importer = Importer {
     },
 };
 
-/// Reads the arrays and the other files in an archive; nested archives are ignored.
+/// Reads the arrays and the other files in an archive. Nested archives and unsupported formats are
+/// ignored with a message.
+///
+/// # Errors
+/// [`VariableFault`] for a damaged archive, an entry that cannot be decompressed, an invalid or
+/// duplicate array, or an exhausted budget. Any other error in a file is stored with this file.
 pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -107,7 +112,7 @@ impl ArchiveReading {
     /// Stores a file's contents, or the error from reading it.
     ///
     /// # Errors
-    /// Only an exhausted budget.
+    /// Only an exhausted budget or a cancellation.
     fn add_contents(
         &mut self,
         file: &ZipFile<'_, '_>,
@@ -164,7 +169,7 @@ fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Decompresses the file, up to the size stated in the archive, because a few kilobytes can
-    /// expand to gigabytes; `name` is the file name in errors.
+    /// expand to gigabytes; `name` is the variable or file name in errors.
     fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
             return Err(VariableFault::unsupported(

@@ -20,7 +20,7 @@ pub enum Damage {
     // MATLAB files up to version 7.
     #[error("{found} at the expected start of a matrix")]
     NoMatrix {
-        /// What is there instead, for example "a negative size".
+        /// Contradiction found there, for example "a negative size".
         found: &'static str,
     },
     #[error("the sparse matrix is inconsistent")]
@@ -184,8 +184,9 @@ pub enum Damage {
 }
 
 impl Damage {
-    /// Returns the end of the message: the position in the file, and the remedy. Faults of logs
-    /// have no position; a log is copied again, not written again.
+    /// Returns the end of the message: `offset`, the position in the file \[bytes\], and the
+    /// remedy. The messages about logs have no position: a log without usable data calls for
+    /// another log, a damaged layout for a new copy from the vehicle.
     pub(super) fn remedy(&self, offset: u64) -> String {
         match self {
             Self::NoTimedMessage | Self::NoFlight { .. } => "; choose another log".to_owned(),

@@ -1,4 +1,4 @@
-//! What a file contains instead of the expected format.
+//! Content found in a file instead of the expected format.
 
 use std::fmt::{Display, Formatter, Result};
 
@@ -6,7 +6,7 @@ use gdcm_model::number_format::counted;
 
 use crate::variable_fault::column_place::ColumnPlace;
 
-/// What a file contains instead of the expected format.
+/// Content found in a file instead of the expected format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FoundContent {
     #[error("nothing")]
@@ -39,11 +39,11 @@ pub enum FoundContent {
     NotAResponse { lacking: ResponseLack },
 }
 
-/// Remedy for columns without names.
+/// Remedy for missing or unrecognised columns: where and how to name the columns.
 const NAME_COLUMNS: &str = "name each column in the first line, with --headings, or under \
     \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\"";
 
-/// What a table lacks to be a frequency response.
+/// Missing part without which a table cannot be read as a frequency response.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ResponseLack {
     Frequency,

@@ -65,7 +65,7 @@ pub enum MatlabFault {
     NotAssigned { name: String },
     #[error("{path} has no field {field}; assign the field first")]
     NoField { path: String, field: String },
-    /// The copied variable or field is itself opaque.
+    /// The value is a copy of a variable or field that could not be read itself.
     #[error("{path} itself could not be read; write the value here")]
     CopyOfUnread { path: String },
     #[error(

@@ -16,8 +16,9 @@ use crate::variable_fault::found_content::FoundContent;
 use crate::variable_fault::line_fault::LineFault;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Reason why variables could not be read. Field `variable` is the affected variable's path, such
-/// as "sys.A" or "models{3}.B"; it is empty if no variable was begun.
+/// Reason why variables could not be read or written. Field `variable` is the affected variable's
+/// path, such as "sys.A" or "models{3}.B"; it is empty if the fault concerns the whole file, or if
+/// the variable is unknown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VariableFault {
     /// The file has another format.
@@ -112,8 +113,9 @@ impl VariableFault {
         }
     }
 
-    /// Returns the message about a file named `file`, which the remedies for unsupported contents
-    /// mention; `stem` is the name without its extension.
+    /// Returns the message about a file named `file`; `stem` is the name without its extension.
+    /// Both occur only in remedies for unsupported content, such as a command that converts the
+    /// file.
     pub(crate) fn words_for_file(&self, file: &str, stem: &str) -> String {
         match self {
             Self::Unsupported { variable, content } => {
@@ -133,7 +135,7 @@ impl VariableFault {
         Self::Format { expected, found }
     }
 
-    /// Creates the error for a file with another format, with a description of its first bytes.
+    /// Creates the error for bytes in another format; its message says so if there are no bytes.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
         let found = if bytes.is_empty() {
             FoundContent::Nothing
@@ -184,7 +186,7 @@ impl VariableFault {
         }
     }
 
-    /// Adds the affected variable's name, unless the error already has one.
+    /// Adds the affected variable's name, unless the error already has one or has no field for it.
     #[must_use]
     pub(crate) fn in_variable(mut self, name: impl FnOnce() -> String) -> Self {
         match &mut self {

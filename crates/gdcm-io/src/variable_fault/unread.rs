@@ -1,4 +1,4 @@
-//! Reasons why a value in a file could not be read although the others could.
+//! Reasons why a single value could not be read, although the file as a whole could.
 
 use crate::variable_fault::VariableFault;
 use crate::variable_fault::damage::Damage;
@@ -54,7 +54,8 @@ pub enum Unread {
     NeitherDatasetNorGroup,
     #[error("expected numbers or strings in an HDF5 dataset; save its values as one of these")]
     NeitherNumbersNorStrings,
-    /// A record field in an HDF5 dataset.
+    /// A field in the records of an HDF5 dataset that is neither a number nor a string of fixed
+    /// length.
     #[error("expected a number or a string of fixed length; save it as one of these")]
     RecordField,
     #[error("{}", .0.remedy())]
@@ -133,7 +134,8 @@ impl ObjectFault {
     }
 }
 
-/// Returns the message for a fault; for damaged bytes without their position and remedy.
+/// Returns the message for a fault; for damaged bytes only the damage, without variable, position
+/// and remedy.
 fn reason(fault: &VariableFault) -> String {
     match fault {
         VariableFault::Damaged { damage, .. } => damage.to_string(),

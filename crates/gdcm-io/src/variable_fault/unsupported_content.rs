@@ -1,6 +1,6 @@
-//! Contents that a format permits but this program does not read.
+//! Contents that a format permits but this program does not read, or that it cannot write.
 
-/// Content that the format permits but this program does not read.
+/// Content that the format permits but this program does not read, or that it cannot write.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnsupportedContent {
     /// Another program's file, recognised by its first bytes.
@@ -45,7 +45,8 @@ pub enum UnsupportedContent {
     NpyVersion { version: u8 },
     #[error("data after the array")]
     DataAfterArray,
-    /// A value other than numbers and strings, which a NumPy archive cannot contain.
+    /// A value that is neither numbers nor strings, and is therefore not written into NumPy
+    /// archives.
     #[error("{value}")]
     ValueNotWritten {
         /// Description of the value, for the message.
@@ -58,7 +59,7 @@ pub enum UnsupportedContent {
 }
 
 impl UnsupportedContent {
-    /// Returns what is impossible: "read" or "written".
+    /// Returns the verb in the message "CONTENT cannot be …": "read" or "written".
     pub(super) fn action(&self) -> &'static str {
         match self {
             Self::ValueNotWritten { .. }
@@ -68,8 +69,8 @@ impl UnsupportedContent {
         }
     }
 
-    /// Returns how to export the data in another format; `{file}` and `{stem}` represent the file
-    /// name with and without its extension.
+    /// Returns the remedy, usually how to save the data in another way; `{file}` and `{stem}`
+    /// represent the file name with and without its extension.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::ForeignFile { remedy, .. } => remedy,

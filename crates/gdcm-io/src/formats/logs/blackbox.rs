@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! H Product:Blackbox …        begins a flight
-//! H Field I name:time,…       intra frame fields; P: encodings in predicted frames
+//! H Field I name:time,…       fields in intra frames; Field P: their predictors and encodings in
+//!                             predicted frames
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
@@ -34,7 +35,7 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 const MARK: &[u8] = b"H Product:Blackbox";
 /// Maximum time step between main frames \[µs\]; a longer step marks damaged data.
 const LONGEST_STEP_US: i64 = 10_000_000;
-/// Minimum number of frames in a flight; shorter flights are ignored.
+/// Minimum number of main frames in a flight; shorter flights are omitted with a note.
 const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
@@ -55,6 +56,10 @@ pub(crate) const BLACKBOX: Importer = Importer {
 };
 
 /// Reads all flights; flights with too few frames are omitted with a note.
+///
+/// # Errors
+/// [`VariableFault`] if there are too many flights, if one cannot be decoded, if none has enough
+/// frames, or if the budget is exhausted.
 fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     budget.work(bytes.len() as u64, "")?;
     let begins = flight_offsets(bytes);
@@ -117,7 +122,8 @@ struct Flight {
     /// Values from the main frames, one list for each field.
     values: Vec<Vec<f64>>,
     modes: Vec<ModeSample>,
-    /// Number of damaged frames.
+    /// Number of damaged frames that follow a valid main frame; those up to the next intra frame
+    /// are not counted.
     damaged: usize,
 }
 
@@ -128,7 +134,8 @@ struct ModeSample {
 }
 
 impl Flight {
-    /// Reads a flight with its frames; returns `None` if there are fewer than `FEWEST_FRAMES`.
+    /// Reads a flight with its frames; returns `None` if there are fewer than `FEWEST_FRAMES` main
+    /// frames.
     fn read(
         bytes: &[u8],
         name: &str,
@@ -148,7 +155,8 @@ impl Flight {
     /// Creates a flight without frames.
     ///
     /// # Errors
-    /// [`VariableFault`] if the data version or an encoding in the intra frames is not supported.
+    /// [`VariableFault`] if the data version or an encoding in the intra frames is not supported,
+    /// or if their fields are not described completely.
     fn begin(header: Header, name: &str) -> Result<Self, VariableFault> {
         let version = header.value("Data version");
         match header.frame_fields(b'I') {
@@ -176,8 +184,8 @@ impl Flight {
     /// Reads the frames in `bytes`, which begin with the header.
     ///
     /// 1. Decode a frame at the current byte; a main frame is predicted from its predecessors. It
-    ///    is damaged if it cannot be decoded, no frame letter follows it, or its time does not
-    ///    continue that of its predecessor.
+    ///    is damaged if it cannot be decoded, if a byte other than a frame letter follows it, or if
+    ///    a main frame's time does not continue that of its predecessor.
     /// 2. By its kind: the end ends the reading; a main frame is a sample, and the next
     ///    predecessor; a slow frame is a mode sample; other frames are skipped.
     /// 3. After a damaged frame there is no predecessor, and reading continues at the next byte.
@@ -194,7 +202,8 @@ impl Flight {
             budget.work(field_count as u64, name)?;
             let mut packed = PackedBytes::new(bytes, at + 1);
             let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
-            // A frame is damaged if no frame letter follows it; a zero follows the end of the log.
+            // A frame is damaged if a byte other than a frame letter follows it; but a zero follows
+            // the end of the log.
             let is_end = matches!(frame, Some(Frame::End));
             let next = bytes.get(packed.at);
             if !is_end && next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
@@ -243,7 +252,8 @@ impl Flight {
         true
     }
 
-    /// Stores a slow frame's mode flags with the time of the preceding main frame.
+    /// Stores a slow frame's mode flags with the time of the preceding main frame; without such a
+    /// time, ignores them.
     fn add_mode_sample(
         &mut self,
         slow: &[i64],
@@ -264,8 +274,9 @@ impl Flight {
         Ok(())
     }
 
-    /// Returns a column for each field, and for each axis a column with the sum of the controller
-    /// terms.
+    /// Returns a column for each field except the loop counter, and for each axis a column with the
+    /// sum of the controller terms, if there are any. Documented channels and units are assigned,
+    /// unless the gyro scale leaves the unit of the rates unknown.
     fn into_columns(
         self,
         name: String,

@@ -48,7 +48,7 @@ mod predictor {
     pub(super) const FIXED_1500: u8 = 8;
     /// Header value `vbatref`.
     pub(super) const VBATREF: u8 = 9;
-    /// Header value `motorOutput`.
+    /// First number in the header value `motorOutput`.
     pub(super) const MIN_MOTOR: u8 = 11;
 }
 
@@ -72,11 +72,11 @@ pub(super) struct HeaderNumbers {
     pub(super) battery: i64,
 }
 
-/// The two frames that precede a predicted frame.
+/// The main frames that precede a frame; there are none at the beginning and after a damaged frame.
 #[derive(Default)]
 pub(super) struct Predecessors {
     pub(super) last: Option<Vec<i64>>,
-    /// The frame before the last; `None` if the last is an intra frame.
+    /// The frame before the last; `None` if the last is an intra frame or missing.
     pub(super) earlier: Option<Vec<i64>>,
 }
 
@@ -178,7 +178,7 @@ impl FrameFields {
     }
 }
 
-/// Returns whether this program can decode the encoding with a number.
+/// Returns whether this program can decode the encoding with this number.
 fn is_known(number: u8) -> bool {
     matches!(
         number,

@@ -26,9 +26,9 @@ pub(super) enum Frame {
     End,
 }
 
-/// Parses a frame with the letter `kind`, after this letter; `before` holds the main frames that
-/// precede it. Returns `None` for an unknown letter, a damaged frame, or a predicted frame without a
-/// predecessor.
+/// Parses a frame with the letter `kind` from the bytes after this letter; `before` holds the main
+/// frames that precede it. Returns `None` for an unknown letter, a damaged frame, a predicted frame
+/// without a predecessor, or a frame whose fields the header does not describe in a supported form.
 pub(super) fn parse_frame(
     header: &Header,
     kind: u8,

@@ -80,7 +80,7 @@ impl Header {
         }
     }
 
-    /// Returns the cells in a header line such as "Field I name".
+    /// Returns the nonempty cells in a header line such as "Field I name".
     fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
         self.value(&format!("Field {kind} {property}"))
             .split(',')
@@ -100,7 +100,8 @@ impl Header {
         &self.fields_by_letter[&b'I'].names
     }
 
-    /// Returns the fields in frames with the letter `kind`; `None` if a field cannot be decoded.
+    /// Returns the fields in frames with the letter `kind`; `None` if they are not described
+    /// completely, or if one has an unsupported encoding.
     pub(super) fn frame_fields(&self, kind: u8) -> Option<&FrameFields> {
         let fields = self.fields_by_letter.get(&kind)?;
         if fields.is_whole() {

@@ -41,7 +41,8 @@ impl<'b> PackedBytes<'b> {
         Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
     }
 
-    /// Reads the encoding `NEG_14BIT`.
+    /// Reads the encoding `NEG_14BIT`: the lower 14 bits of a variable-length integer are a signed
+    /// number, whose sign is reversed.
     pub(super) fn neg_14bit(&mut self) -> Option<i32> {
         Some(-extended(self.unsigned()? & 0x3fff, 14))
     }
@@ -61,8 +62,8 @@ impl<'b> PackedBytes<'b> {
             _ => {
                 let mut values = [0; 3];
                 for (index, value) in values.iter_mut().enumerate() {
-                    // Two bits for each length, the first integer lowest; bytes follow lowest
-                    // first.
+                    // Two bits give each length, the lowest those of the first integer; each
+                    // integer's bytes follow, lowest first.
                     let bytes = 1 + u32::from((lead >> (2 * index)) & 3);
                     let mut bits = 0_u32;
                     for byte in 0..bytes {

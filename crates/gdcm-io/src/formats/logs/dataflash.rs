@@ -91,7 +91,8 @@ struct Message<'b> {
 }
 
 impl Message<'_> {
-    /// Returns the value in the field at `index`; `None` if the field is not numeric.
+    /// Returns the number in the field at `index`, multiplied by the factor of its format letter;
+    /// `None` if the field is missing or not numeric.
     fn number(self, layout: &MessageLayout, index: usize) -> Option<f64> {
         let field = layout.fields.get(index)?;
         match field.kind {
@@ -107,7 +108,7 @@ impl Message<'_> {
         self.content.get(layout.field(name)?.offset).copied()
     }
 
-    /// Returns the text in the field with this name.
+    /// Returns the printable text with which the field with this name begins.
     fn text(self, layout: &MessageLayout, name: &str) -> Option<String> {
         let field = layout.field(name)?;
         self.content
@@ -136,8 +137,8 @@ impl<'b, 'm> Messages<'b, 'm> {
         }
     }
 
-    /// Returns the next message whose type has a length in `lengths`; counts all other bytes as
-    /// skipped.
+    /// Returns the next message whose type has a length in `lengths`, and counts the bytes before
+    /// it as skipped; `None` if the log ends.
     fn next(&mut self, lengths: &Lengths) -> Result<Option<Message<'b>>, VariableFault> {
         while let Some([first, second, kind]) = array::<HEADER>(self.bytes, self.at) {
             self.budget.work(1, "")?;
@@ -214,7 +215,7 @@ impl Descriptions {
         }
     }
 
-    /// Stores a message type's layout and length.
+    /// Stores a message type's layout and length; ignores an invalid description.
     fn add_format(&mut self, content: &[u8]) {
         let Some([kind, length]) = array::<2>(content, 0) else {
             return;

@@ -128,7 +128,7 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Sets a message type's unit and multiplier letters.
+    /// Sets a message type's unit and multiplier letters; ignores an unknown type.
     pub(super) fn set_units(&mut self, kind: u8, units: &str, multipliers: &str) {
         if let Some(layout) = self.by_type.get_mut(&kind) {
             layout.units = units.chars().collect();
@@ -136,7 +136,7 @@ impl Layouts {
         }
     }
 
-    /// Returns a field's unit as this program writes it; `None` if the field has no unit.
+    /// Returns a field's unit as this program writes it; `None` if the field has no known unit.
     pub(super) fn unit(&self, layout: &MessageLayout, field: usize) -> Option<String> {
         let unit = self.units.get(layout.units.get(field)?)?;
         match unit.as_str() {

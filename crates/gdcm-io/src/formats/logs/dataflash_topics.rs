@@ -17,7 +17,7 @@ use crate::formats::recorded_columns::Columns;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
-/// Messages that describe the log and hold no samples.
+/// Messages with descriptions or parameters, which hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
 /// Unit letter that marks the field with the sensor instance.
 const INSTANCE: char = '#';
@@ -26,7 +26,7 @@ const INSTANCE: char = '#';
 pub(super) struct SampleFields<'l> {
     pub(super) layout: &'l MessageLayout,
     stamp: Stamp,
-    /// Index of the field with the instance.
+    /// Index of the field with the instance; `None` if the message has no instances.
     instance: Option<usize>,
     numbers: Vec<SampleNumber>,
 }
@@ -48,8 +48,8 @@ struct SampleNumber {
 
 impl<'l> SampleFields<'l> {
     /// Finds the time stamp, the instance and the numeric fields in a layout; returns `None` for a
-    /// layout without a time stamp or without numeric fields, and for messages that describe the
-    /// log.
+    /// layout without a time stamp or without numeric fields, and for the messages in
+    /// `DESCRIPTIONS`.
     pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
         if DESCRIPTIONS.contains(&layout.name.as_str()) {
             return None;
@@ -108,8 +108,8 @@ pub(super) struct Topics {
 }
 
 impl Topics {
-    /// Adds a sample from a message, whose fields have the values that `value` returns for their
-    /// indices; ignores a message without a time stamp.
+    /// Adds a sample from a message; `value` returns the number in the field with an index. A
+    /// missing number becomes NaN; a message without a time stamp is ignored.
     pub(super) fn add(
         &mut self,
         fields: &SampleFields<'_>,
@@ -142,7 +142,10 @@ impl Topics {
     }
 
     /// Returns the columns, with their documented channels and units, and the flight modes over
-    /// time.
+    /// time; their notes follow `notes`.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if no topic has enough samples.
     pub(super) fn into_columns(self, notes: Vec<ReadingNote>) -> Result<Columns, VariableFault> {
         let modes = self.flight_modes();
         let columns = self

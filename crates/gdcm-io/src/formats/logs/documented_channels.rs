@@ -112,8 +112,8 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
 };
 
 /// Assigns the documented channels and units to columns: the unit to every documented column that
-/// has none, a channel only to the first column that varies. Returns a note that lists the assigned
-/// channels; `None` if there are none.
+/// has none, each channel only to the first of its columns that varies. Returns a note that lists
+/// the assigned channels; `None` if there are none.
 pub(super) fn assign_documented_meanings(
     columns: &mut [RecordColumn],
     meanings: &Meanings,

@@ -6,8 +6,8 @@ use gdcm_sysid::records::ModeSpan;
 /// Maximum number of spans per log; later spans are ignored.
 const MOST_SPANS: usize = 1000;
 
-/// Returns the time spans during which `values` is constant; `name` returns a value's name, or
-/// `None` if it needs no span.
+/// Returns the time spans during which `values` is constant, at most `MOST_SPANS`. Each lasts until
+/// the sample with the next value. `name` returns a value's name, or `None` if it needs no span.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
@@ -38,7 +38,7 @@ pub(super) fn mode_spans(
     spans
 }
 
-/// Returns the note on flight modes; `None` if there are none.
+/// Returns the note that lists the flight modes; `None` if there are none.
 pub(super) fn modes_note(spans: &[ModeSpan]) -> Option<ReadingNote> {
     if spans.is_empty() {
         return None;

@@ -38,7 +38,7 @@ const APPENDED: u8 = 1;
 const INCOMPATIBILITY: Range<usize> = 8..16;
 /// Position of the offsets of appended data in the content of a flags message \[bytes\].
 const APPENDED_OFFSETS_AT: usize = 16;
-/// Number of such offsets, which have 8 bytes each; unused offsets are 0.
+/// Number of offsets of appended data, which have 8 bytes each; unused offsets are 0.
 const APPENDED_OFFSETS: usize = 3;
 
 /// Importer for PX4 logs.
@@ -84,8 +84,8 @@ struct Messages<'b> {
 /// 3. The flags message gives the offsets of appended data; all others go to [`Messages::add`].
 ///
 /// # Errors
-/// [`VariableFault`] for an unknown incompatibility flag, an exceeded limit, and a log without any
-/// topic that can be read.
+/// [`VariableFault`] for a file shorter than its header, an unknown incompatibility flag, an
+/// exceeded limit, and a log without any topic that can be read.
 fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     if bytes.len() < HEADER {
         return Err(VariableFault::cut_off("", bytes.len()));
@@ -169,7 +169,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Stores a topic's layout; ignores a second layout with the same name.
+    /// Stores a topic's layout; ignores invalid text and a second layout with the same name.
     fn add_layout(
         &mut self,
         content: &'b [u8],
@@ -183,7 +183,8 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Adds a data message to the samples of its topic.
+    /// Adds a data message to its topic's samples; counts it as unread if it has no topic or is too
+    /// short.
     fn add_sample(
         &mut self,
         content: &[u8],
@@ -206,8 +207,8 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Assigns a topic and its instance to a message id; ignores a topic whose layout is damaged or
-    /// lacks a time stamp.
+    /// Assigns a topic and its instance to a message id; ignores a second assignment, and a topic
+    /// whose layout is missing, damaged or without a time stamp.
     fn subscribe(
         &mut self,
         content: &'b [u8],
@@ -253,6 +254,9 @@ impl<'b> Messages<'b> {
 
     /// Returns the columns, with their documented channels and units, the flight modes, and notes.
     /// `is_cut`: the log was truncated.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if no topic has enough samples.
     fn into_columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
         let topics: Vec<TopicSamples> = self
             .subscriptions

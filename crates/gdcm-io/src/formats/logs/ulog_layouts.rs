@@ -24,12 +24,12 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Returns whether this is the time stamp, an unsigned 64-bit integer \[µs\].
+    /// Returns whether this is the time stamp, the unsigned 64-bit integer `timestamp` \[µs\].
     pub(super) fn is_stamp(&self) -> bool {
         self.name == "timestamp" && Some(self.stored) == number_type("uint64_t")
     }
 
-    /// Returns the offset just after the number.
+    /// Returns the offset just after the number \[bytes\].
     pub(super) fn end(&self) -> usize {
         self.offset + self.stored.size()
     }
@@ -43,10 +43,12 @@ impl Place {
 /// Layouts by message name, as written in the file: `uint64_t timestamp;float[3] xyz`.
 pub(super) type LayoutTexts<'b> = BTreeMap<&'b str, &'b str>;
 
-/// Returns the numbers in a message with this name.
+/// Returns the places that numbers have in a message with this name; characters and padding are
+/// left out.
 ///
 /// # Errors
-/// [`VariableFault`] if a layout is missing, recursive, or longer than the largest message.
+/// [`VariableFault`] if a layout is missing, damaged, nested more than `DEEPEST` levels deep (for
+/// example recursive), or longer than the largest message, or if the budget is exhausted.
 pub(super) fn places_in_message(
     name: &str,
     layouts: &LayoutTexts<'_>,

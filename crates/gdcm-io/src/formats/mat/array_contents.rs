@@ -63,7 +63,8 @@ impl ArrayReader<'_> {
             .map_err(|fault| path.locate(fault))
     }
 
-    /// Reads the next array and moves `contents` to the element after it.
+    /// Reads the next array and moves `contents` to the element after it. An array without data is
+    /// a 0 x 0 array.
     fn read_next_value(
         &self,
         contents: &mut Cursor<'_>,
@@ -307,7 +308,8 @@ impl ArrayReader<'_> {
     }
 }
 
-/// Reads the field names, which precede the records and are padded to a common length.
+/// Reads the field names, which precede the records and are padded to a common length; rejects
+/// duplicate names.
 pub(super) fn read_field_names(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,

@@ -21,8 +21,8 @@ impl<'b> ReadArray<'b> {
     /// Returns the next element's position.
     ///
     /// GNU Octave announces too many bytes for some strings and objects. Hence, if bytes were not
-    /// read and no array begins at the announced end, the next element begins with the unread
-    /// bytes.
+    /// read, and at the announced end neither an array begins nor the data end, the next element
+    /// begins with the unread bytes.
     pub(super) fn next_position(self) -> Result<Cursor<'b>, VariableFault> {
         if self.unread.is_empty() || (self.element.is_whole && begins_array(&self.end)) {
             return Ok(self.end);

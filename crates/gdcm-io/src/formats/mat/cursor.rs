@@ -1,6 +1,6 @@
 //! Cursor for sequential reading in a file's byte order.
 //!
-//! A cursor is a copy: `let start = cursor;` keeps a position, to which reading can return.
+//! A cursor is `Copy`: `let start = cursor;` keeps a position, to which reading can return.
 
 use crate::reading_budget::VariableFault;
 use crate::variable_fault::damage::Damage;
@@ -35,12 +35,13 @@ pub(super) struct Cursor<'b> {
     /// Remaining bytes in the section.
     bytes: &'b [u8],
     pub(super) order: ByteOrder,
-    /// Position in the file \[bytes\].
+    /// Position in the file \[bytes\]; for decompressed or embedded bytes, where the element that
+    /// contains them begins.
     pub(super) offset: u64,
     section: Section,
 }
 
-/// Where a section comes from, which determines the error if the section ends too early.
+/// A section's origin, which determines the error if the section ends too early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Section {
     /// The whole file. If it ends too early, the file is truncated.

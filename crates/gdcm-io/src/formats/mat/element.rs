@@ -147,7 +147,7 @@ impl<'b> Element<'b> {
     /// Returns how many numbers the element holds.
     ///
     /// # Errors
-    /// [`VariableFault`] for an array, and if the data end within a number.
+    /// [`VariableFault`] for an array, for compressed data, and if the data end within a number.
     pub(super) fn count(&self) -> Result<usize, VariableFault> {
         let width = self.number_type()?.size();
         let length = self.data.len();

@@ -28,7 +28,7 @@ use crate::variable_fault::damage::Damage;
 struct MatrixHeader {
     /// Number type (digit P).
     number_type: StoredNumber,
-    /// What the numbers mean (digit T).
+    /// Meaning of the numbers (digit T).
     meaning: Meaning,
     rows: usize,
     columns: usize,

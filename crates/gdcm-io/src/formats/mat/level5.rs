@@ -88,8 +88,8 @@ pub(super) fn read(
     Ok(variables)
 }
 
-/// Reads the objects. If they cannot be read, returns the reason, because the other variables
-/// remain readable; the only error is an exhausted budget.
+/// Reads the objects. If there are none or they cannot be read, returns the reason, because the
+/// other variables remain readable; the only errors are an exhausted budget and a cancellation.
 fn objects_or_reason(
     bytes: &[u8],
     order: ByteOrder,
@@ -102,7 +102,8 @@ fn objects_or_reason(
     }
 }
 
-/// Reads the objects' offset in the file; `None` if the field is blank, as in old file versions.
+/// Reads the objects' offset in the file; `None` if the field is blank or zero, because the file
+/// has no objects.
 fn objects_at(bytes: &[u8], order: ByteOrder) -> Option<usize> {
     let place: [u8; 8] = bytes.get(OBJECTS_AT..VERSION_AT)?.try_into().ok()?;
     if place == [b' '; 8] || place == [0; 8] {

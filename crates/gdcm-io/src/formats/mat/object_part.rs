@@ -39,7 +39,7 @@ const BYTE_ORDER_MARK: Range<usize> = 2..4;
 /// Class whose single object holds all other objects in its cells.
 const WRAPPER: &str = "FileWrapper__";
 
-/// Reads the objects at byte `at` in a file.
+/// Reads the objects at byte `at` in a file; a file without an object part is an error.
 pub(super) fn read_objects(
     bytes: &[u8],
     at: Option<usize>,

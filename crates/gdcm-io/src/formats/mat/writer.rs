@@ -42,9 +42,10 @@ enum Class {
 /// Writes a file with these variables.
 ///
 /// Number types are kept: floating-point numbers are written as `double`, integers as `int32` or,
-/// if a value does not fit, as `int64`, and logical values as `logical`. Strings become a character
-/// array if all have the same length, otherwise a cell array. Objects become structs, and opaque
-/// values empty arrays.
+/// if a value does not fit, as `int64`, and logical values as `logical`; an array with a number
+/// that is not valid for its type is written as `double`. A column of strings with equal lengths
+/// becomes a character array, other strings a cell array. Objects become structs, and opaque values
+/// empty arrays.
 ///
 /// # Errors
 ///
@@ -246,7 +247,8 @@ fn encode_numbers(kind: DataKind, numbers: &[f64]) -> Vec<u8> {
     }
 }
 
-/// Writes strings as a character array if all have the same length, otherwise as a cell array.
+/// Returns the contents for strings: a character array if they form a column, also in several
+/// pages, and have equal lengths; otherwise a cell array.
 fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     let rows: Vec<Vec<u16>> = texts
         .texts
@@ -297,7 +299,7 @@ fn append_characters(bytes: &mut Vec<u8>, characters: &[u16]) {
     }
 }
 
-/// Writes strings of different lengths as a cell array.
+/// Returns a cell array's contents, with a string in each cell.
 fn text_cell_contents(texts: &TextArray, name: &str) -> Vec<u8> {
     let cell = CellArray {
         shape: texts.shape.clone(),

@@ -17,7 +17,8 @@ pub(super) const OBJECT: u64 = 3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MatlabAttributes {
-    /// Class name (`MATLAB_class`); `None` if the file was not written by MATLAB.
+    /// Class name (`MATLAB_class`); `None` for values from other programs, and for the references
+    /// in MATLAB's struct arrays.
     pub(super) class: Option<String>,
     /// Whether the array is empty; the dataset then holds its shape (`MATLAB_empty`,
     /// `OCTAVE_EMPTY_MATRIX`).

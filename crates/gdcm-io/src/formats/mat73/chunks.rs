@@ -20,6 +20,10 @@ const OVERHEAD: u64 = 4096;
 /// allocates memory for the claimed sizes and adds offsets without overflow checks.
 ///
 /// `sides` are the dataset's dimensions; `size` is the element size \[bytes\].
+///
+/// # Errors
+/// [`VariableFault`] for impossible chunks, for several unlimited dimensions, which the library
+/// does not read, and for an exhausted budget.
 pub(super) fn check_chunks(
     dataset: &Dataset,
     sides: &[usize],

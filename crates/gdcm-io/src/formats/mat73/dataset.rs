@@ -48,7 +48,8 @@ impl Elements {
     /// Reads a dataset.
     ///
     /// # Errors
-    /// [`VariableFault`] if the size exceeds the budget, or the dataset is damaged.
+    /// [`VariableFault`] if the size exceeds the budget, or the dataset is damaged or not
+    /// supported.
     pub(super) fn read(
         dataset: &Dataset,
         order: Order,
@@ -146,7 +147,8 @@ impl Elements {
         }))
     }
 
-    /// Returns the elements without rounding; `None` if they are not 64-bit integers.
+    /// Returns the elements without rounding, in column-major order; `None` if they are not 64-bit
+    /// integers. A negative integer is returned in two's complement.
     pub(super) fn words(
         &self,
         path: &str,

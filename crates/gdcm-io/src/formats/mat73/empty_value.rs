@@ -10,7 +10,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
-/// Returns an empty value; `elements` holds its shape.
+/// Returns an empty value, or an opaque value for an unknown class; `elements` holds its shape.
 pub(super) fn empty_value(
     attributes: &MatlabAttributes,
     elements: &Elements,

@@ -1,4 +1,4 @@
-//! Group members, accessed by name.
+//! Members of HDF5 groups.
 
 use hdf5_pure::Object;
 

@@ -87,7 +87,8 @@ fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Op
     }
 }
 
-/// Returns the type for real numbers; `None` if the elements are not real numbers.
+/// Returns the type for real numbers, which include enumerations; `None` if the elements are not
+/// real numbers or have an unusual layout.
 fn stored_number(datatype: &Datatype) -> Option<StoredNumber> {
     match datatype {
         Datatype::FixedPoint {

@@ -24,7 +24,7 @@ pub(super) struct ObjectCells {
 }
 
 /// Reads the object part. If it is missing or cannot be read, the objects are marked as unread and
-/// the other variables stay readable; the only error is an exhausted budget.
+/// the other variables stay readable; the only errors are an exhausted budget and a cancellation.
 pub(super) fn read_objects(
     file: &File,
     budget: &ReadingBudget<'_>,

@@ -5,7 +5,7 @@ use crate::formats::variables::{Array, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::unread::Unread;
 
-/// How references to objects are treated while a file is read.
+/// Treatment of references to objects while a file is read.
 pub(super) enum Objects {
     /// References remain integers: the object part itself is being read.
     References,

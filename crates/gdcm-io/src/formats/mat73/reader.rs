@@ -131,7 +131,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Converts the numbers in a dataset to a value, depending on its MATLAB class.
+    /// Converts the numbers in a dataset to a value. A reference to an object of a MATLAB class
+    /// becomes the object; the class decides between characters, logical values and numbers.
     fn number_value(
         &self,
         mut array: Array,
@@ -227,7 +228,7 @@ impl Reader<'_> {
         Ok(Value::Struct(records))
     }
 
-    /// Returns the datasets and groups in a group, sorted by name.
+    /// Returns the datasets and groups in a group, sorted by name; a duplicate name is an error.
     fn members(&self, group: &Group, path: &str) -> Result<Vec<Member>, VariableFault> {
         let datasets = group
             .iter_datasets()
@@ -329,8 +330,8 @@ fn function_handle() -> Value {
     Value::opaque("function_handle", Unread::Function)
 }
 
-/// Returns whether a group is a struct array: its members are datasets of references that are not
-/// marked as cells.
+/// Returns whether a group is a struct array: it has a MATLAB class, and members that are all
+/// datasets of references without a class, unlike cell arrays.
 fn is_struct_array(
     attributes: &MatlabAttributes,
     members: &[Member],

@@ -31,7 +31,7 @@ pub(super) enum Element {
     Bytes {
         count: usize,
     },
-    /// Record of consecutive fields.
+    /// Record of consecutive fields; raw bytes (`V`) are a record without fields.
     Record {
         fields: Vec<Field>,
         /// Record size \[bytes\].
@@ -44,7 +44,8 @@ pub(super) struct Field {
     /// Field name; empty for padding bytes.
     pub(super) name: String,
     pub(super) element: Element,
-    /// Shape of the field if it is an array, which is stored in row-major order.
+    /// Shape of the field if it is an array, which is stored in row-major order; empty for a single
+    /// element.
     pub(super) shape: Vec<usize>,
     /// Field offset in its record \[bytes\].
     pub(super) offset: usize,
@@ -138,7 +139,7 @@ impl Element {
     }
 }
 
-/// Rejects unsupported types (Python objects, dates and times), with export instructions.
+/// Rejects Python objects, dates and times, which are not supported.
 fn refuse_class(class: &str, code: &str) -> Result<(), VariableFault> {
     match class {
         "O" => Err(VariableFault::unsupported(

@@ -24,6 +24,7 @@ pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
 const VERSION_AT: usize = 6;
 /// Memory for the JSON text and the parsed tree, per byte of the header text \[bytes\].
 const MEMORY_PER_BYTE: u64 = 40;
+
 /// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
@@ -39,7 +40,7 @@ pub(super) struct Header {
 /// Header text, which is a Python dictionary.
 struct HeaderText {
     text: String,
-    /// Offset just after the text.
+    /// Offset just after the text, where the elements begin \[bytes\].
     end: usize,
 }
 

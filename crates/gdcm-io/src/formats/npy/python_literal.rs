@@ -4,8 +4,8 @@ use serde_json::Value as Json;
 
 use crate::variable_fault::damage::Damage;
 
-/// Converts a header, which is a Python literal, to JSON: quotation marks, tuples to lists,
-/// trailing commas, and the words True and False.
+/// Converts a header, which is a Python literal, to JSON: replaces quotation marks, tuples and the
+/// words True and False, and removes trailing commas.
 ///
 /// # Errors
 ///

@@ -23,12 +23,13 @@ const LARGEST_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 /// `allow_pickle=False`.
 ///
 /// Arrays keep their shape and are stored in column-major order (`fortran_order`): floats as `<f8`,
-/// complex numbers as `<c16`, integers as `<i8`, logical values as `|b1`, and strings as `<U`.
+/// complex numbers as `<c16`, integers as `<i8` (as `<f8` if one exceeds 2^53), logical values as
+/// `|b1`, and strings as `<U`.
 ///
 /// # Errors
 ///
-/// [`VariableFault`] for a duplicate name, a name that is too long, and a value that is neither an
-/// array nor strings.
+/// [`VariableFault`] for a duplicate name, a name that is too long, a value that is neither an
+/// array nor strings, and an archive that is too large.
 pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     let mut bytes = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut bytes);

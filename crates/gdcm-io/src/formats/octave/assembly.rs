@@ -226,7 +226,8 @@ impl Assembler<'_> {
     }
 }
 
-/// Splits a byte array in column-major order into a string for each row.
+/// Splits a byte array in column-major order into a string for each row; without bytes, returns a
+/// single empty string.
 pub(super) fn byte_rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");

@@ -3,7 +3,7 @@
 use crate::formats::stored_number::NumberClass;
 use crate::formats::variables::{Array, ElementKind};
 
-/// Number type in the binary encoding.
+/// Number type in the binary encoding; the size is in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct StorageType {
     pub(super) class: NumberClass,

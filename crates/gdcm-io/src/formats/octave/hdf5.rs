@@ -27,13 +27,14 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
-/// `in_cells` for the fields of a single record: each holds its value directly.
+/// Argument `in_cells` for the fields of a single record: each holds its value directly.
 const DIRECTLY: bool = false;
-/// `in_cells` for a struct array or an object: each field is a cell array with a value per record.
+/// Argument `in_cells` for a struct array or an object: each field is a cell array with a value per
+/// record.
 const IN_CELLS: bool = true;
 
 /// Converts the groups in a file written by Octave to values; returns the values from any other
-/// file unchanged.
+/// file unchanged. A file is from Octave if all its variables are groups with a type and a value.
 pub(crate) fn convert_hdf5_groups(
     variables: Vec<Variable>,
     budget: &ReadingBudget<'_>,
@@ -59,7 +60,8 @@ struct OctaveGroup<'v> {
 }
 
 impl<'v> OctaveGroup<'v> {
-    /// Returns the type and the value; `None` if the group has other members.
+    /// Returns the type and the value; `None` unless these are the group's only members, and the
+    /// type is a text.
     fn from_value(value: &'v Value) -> Option<Self> {
         let Value::Struct(records) = value else {
             return None;
@@ -80,7 +82,8 @@ impl<'v> OctaveGroup<'v> {
     }
 }
 
-/// Converts a group to the value that it represents; `variable` is its name in errors.
+/// Converts a group to the value that it represents, which is opaque if its type is not supported;
+/// `variable` is its name in errors.
 fn convert_group(
     group: &Value,
     variable: &str,
@@ -303,12 +306,13 @@ impl<'v> GroupParts<'v> {
         self.parts.field(name)?.first()
     }
 
-    /// Returns the first number in the member `name`; `None` if there is none.
+    /// Returns the first number in the member `name`; `None` if the member is missing or has no
+    /// numbers.
     fn number(&self, name: &str) -> Option<f64> {
         self.numbers(name).first().copied()
     }
 
-    /// Returns the numbers in the member `name`; empty if there is none.
+    /// Returns the numbers in the member `name`; empty if the member is missing or not numeric.
     fn numbers(&self, name: &str) -> &'v [f64] {
         match self.member(name) {
             Some(Value::Array(array)) => &array.re,

@@ -3,7 +3,7 @@
 use crate::formats::variables::Array;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Equally spaced numbers from a first number up to a limit.
+/// Equally spaced numbers from a first number up, or for a negative step down, to a limit.
 #[derive(Clone, Copy)]
 pub(super) struct Range {
     pub(super) first: f64,

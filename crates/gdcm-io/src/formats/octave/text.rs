@@ -39,7 +39,8 @@ pub(crate) const OCTAVE_TEXT: Importer = Importer {
     },
 };
 
-/// Returns whether a variable's name and type follow after comments and empty lines only.
+/// Returns whether a file begins with a variable's name and type, after comments and empty lines
+/// only.
 fn begins_with_variable(bytes: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
     for line in head.lines() {
@@ -196,7 +197,7 @@ impl<'t> TextReader<'t> {
     }
 
     /// Returns the next `length` bytes, which may contain line breaks. If no line ends after them,
-    /// which happens after an encoding change, returns the next line instead.
+    /// because the text was saved in another encoding, returns the rest of the line instead.
     fn read_text_with_length(
         &mut self,
         length: usize,

@@ -61,7 +61,7 @@ fn is_missing(cell: &str) -> bool {
 }
 
 /// Parses notations that Rust does not parse: decimal comma, typographic minus sign, Fortran
-/// exponent, and infinity in the older Windows C library.
+/// exponent (`1D3`, or `1.0-103` without a letter), and infinity in the older Windows C library.
 fn foreign_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     if cell.starts_with("1.#INF") {
         return Some(f64::INFINITY);

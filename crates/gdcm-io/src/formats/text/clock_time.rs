@@ -39,7 +39,7 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
     Some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
 }
 
-/// Parses an integer with one or two digits; `None` if it exceeds `most`.
+/// Parses an integer with one or two digits, from 0 to `most`; `None` for any other text.
 fn two_digits(text: &str, most: u32) -> Option<f64> {
     let is_digits =
         !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());

@@ -3,7 +3,7 @@
 //! For each column, in this order:
 //!
 //! 1. Separate a unit at the end of the name, such as "mag_dB", unless the unit is already known.
-//! 2. The names "w" and "f" denote the frequency.
+//! 2. The names "w" and "f" denote the frequency, unless the unit belongs to another quantity.
 //! 3. Otherwise a word in the name gives the quantity, such as "phase" in "phase P/LAT"; what remains
 //!    of the name is the label of the response.
 //! 4. Otherwise the unit, or a sign such as ∠, gives the quantity.
@@ -25,7 +25,7 @@ pub(super) struct ColumnMeaning {
     /// Unit; `None` if it is neither given nor implied.
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Why this quantity was chosen.
+    /// Reason for the quantity.
     pub(super) reason: QuantityReason,
 }
 

@@ -12,8 +12,9 @@ const SAMPLE: usize = 200;
 /// Upper bound for the split text's memory, as a multiple of the original text.
 const GROWTH: u64 = 3;
 
-/// Replaces each complex column by two columns, whose headings begin with "re" and "im". Returns
-/// `None` if there is no such column. Line numbers do not change.
+/// Replaces each complex column by two columns, whose headings begin with "re" and "im"; copies
+/// lines with more or fewer cells. Returns `None` if there is no complex column. Line numbers do
+/// not change.
 pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
     let Some(columns) = ComplexColumns::recognise(text) else {
         return Ok(None);
@@ -29,7 +30,7 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
         }
         split.push('\n');
     }
-    // The last line, after the final line end, is empty: remove its line feed.
+    // Remove the line feed that was added after the last line.
     split.pop();
     Ok(Some(split))
 }

@@ -61,8 +61,9 @@ impl FrequencyColumns {
     /// Rows with decreasing frequencies are put in reverse order.
     ///
     /// # Errors
-    /// [`VariableFault`] with the line if a frequency is missing, negative or not above the
-    /// preceding frequency, or if a row has only one part of a complex number.
+    /// [`VariableFault`] with the line if a frequency is missing, infinite, negative or not above
+    /// the preceding frequency, if only one part of a complex number is present, or if a part is
+    /// infinite or a magnitude too large.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         if self.is_decreasing(table) {
             self.increasing_values(&reversed(table))
@@ -86,10 +87,11 @@ impl FrequencyColumns {
             .collect()
     }
 
-    /// Returns the frequencies \[rad/s\].
+    /// Returns each row's frequency \[rad/s\].
     ///
     /// # Errors
-    /// [`VariableFault`] with the line unless they are strictly increasing and not negative.
+    /// [`VariableFault`] with the line unless the frequencies are finite, not negative and strictly
+    /// increasing.
     fn omega(&self, table: &TextTable) -> Result<Vec<f64>, VariableFault> {
         let FrequencyColumn { column, factor } = self.frequency;
         let frequencies = &table.columns[column];

@@ -15,7 +15,8 @@ pub(super) struct Heading {
     pub(super) names: Option<Vec<String>>,
     /// Each column's unit, where a line gives it.
     pub(super) units: Vec<Option<String>>,
-    /// Notes for the user on the lines from which names and units were taken.
+    /// Notes for the user on the lines from which names and units were taken, or on a line with
+    /// more or fewer cells.
     pub(super) notes: Vec<ReadingNote>,
 }
 
@@ -29,9 +30,10 @@ impl Heading {
     /// Finds names and units in the lines before the numbers.
     ///
     /// 1. Candidates are the lines with a cell for each column, nearest first, comments last. If
-    ///    there are none, a nearest line with another number of cells is noted.
-    /// 2. If the nearest holds units, and the next candidate is above it: the next gives the names.
-    /// 3. Otherwise the nearest gives the names, with units in brackets.
+    ///    there are none, the nearest line that is no comment is noted if it has several cells.
+    /// 2. If the nearest candidate holds units and the next is a line above it, the next gives the
+    ///    names.
+    /// 3. Otherwise the nearest gives the names, and units in brackets.
     pub(super) fn find(above: &[NumberedLine], layout: Layout) -> Self {
         let mut heading = Heading {
             names: None,

@@ -13,7 +13,8 @@ const WORDS: [&str; 68] = [
 ];
 
 /// Returns whether a text consists of unit words, numbers and operators, with at least one unit
-/// word: "deg/s", "rad/s^2", "%", "1/s".
+/// word: "deg/s", "rad/s^2", "%", "1/s". Marks for a dimensionless column ("-", "--", "1", "none")
+/// count as units.
 pub(super) fn is_unit(text: &str) -> bool {
     let text = text.trim().to_lowercase();
     if matches!(text.as_str(), "-" | "1" | "--" | "none") {
@@ -35,8 +36,9 @@ pub(super) fn is_unit(text: &str) -> bool {
 
 /// Splits a heading into name and unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
 ///
-/// Text in square brackets is a unit unless it is an integer. Text in other brackets or after a
-/// comma is a unit only if it consists of unit words: "re(LAT->P)" names a response.
+/// Text in square brackets is a unit unless it is an integer or a direction such as "+down". Text
+/// in other brackets or after a comma is a unit only if it consists of unit words: "re(LAT->P)"
+/// names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {

@@ -21,12 +21,10 @@ pub(super) struct Layout {
     pub(super) trailing: bool,
 }
 
-/// How many cells a row has, and how it ends.
+/// A row's cell count, and whether the last cell is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RowShape {
-    /// Number of cells.
     pub(super) width: usize,
-    /// Whether the last cell is empty.
     pub(super) ends_empty: bool,
 }
 
@@ -82,7 +80,8 @@ impl Layout {
     }
 
     /// Returns whether a row has this layout's columns; one more empty cell may follow a trailing
-    /// separator.
+    /// separator. In a layout with trailing separators, a row that ends in an empty cell must have
+    /// this additional cell, otherwise a number is missing.
     pub(super) fn fits(self, row: RowShape) -> bool {
         let expected = if self.trailing && row.ends_empty {
             self.columns + 1

@@ -38,7 +38,7 @@ pub(super) struct Call<'n> {
 }
 
 impl Function {
-    /// Returns the function with a name; `None` for a function that is not supported.
+    /// Returns the function with this name; `None` for a function that is not supported.
     pub(super) fn find(name: &str) -> Option<Self> {
         Some(match name {
             "ss" => Self::Record(&["A", "B", "C", "D"]),
@@ -125,8 +125,8 @@ impl MatrixSize {
     }
 }
 
-/// Converts a value to a number of rows or columns. Negative numbers become 0, as in MATLAB;
-/// returns `None` for any other value.
+/// Converts a value to a number of rows or columns. Negative integers become 0, as in MATLAB;
+/// returns `None` for anything but an integer below `COUNT_LIMIT`.
 fn count_from(value: &Value) -> Option<usize> {
     let Value::Array(array) = value else {
         return None;
@@ -138,10 +138,12 @@ fn count_from(value: &Value) -> Option<usize> {
 }
 
 /// Builds a record: the first arguments are the fields `names`, then follow an optional sample time
-/// `Ts` \[s\] and name-value pairs.
+/// `Ts` \[s\] (only if there are `names`) and name-value pairs. Of fields with equal names, the
+/// last is kept.
 ///
 /// # Errors
-/// The reason if arguments are missing or have the wrong type.
+/// The reason if arguments are missing or have the wrong type, or if a field for `struct` is a cell
+/// array.
 fn record(
     function: &str,
     names: &[&'static str],

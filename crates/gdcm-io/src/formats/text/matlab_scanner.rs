@@ -203,8 +203,8 @@ impl<'t> Scanner<'t> {
         Ok(path)
     }
 
-    /// Reads a string up to the closing quotation mark on the same line; a doubled quotation mark
-    /// means a single one.
+    /// Reads a string up to the closing quotation mark, which must be on the same line; a doubled
+    /// quotation mark means a single one.
     pub(super) fn read_quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
@@ -262,8 +262,9 @@ impl<'t> Scanner<'t> {
     /// Moves to the end of the statement.
     ///
     /// # Errors
-    /// [`VariableFault`] for an unclosed square or curly bracket, because all following text would
-    /// belong to the statement.
+    /// [`VariableFault`] for an unclosed square or curly bracket or block comment, because all
+    /// following text would belong to the statement; also for brackets nested too deeply, and if
+    /// the budget is exhausted.
     pub(super) fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open = OpenBrackets::default();
         loop {

@@ -9,14 +9,15 @@ use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value}
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::matlab_fault::MatlabFault;
 
-/// Operators within brackets if blanks surround them. After a blank only, a sign begins the next
-/// element: `[1 -2]`.
+/// Operators within brackets if blanks surround them. A sign with a blank before but not after it
+/// begins the next element: `[1 -2]`.
 const OPERATORS: &str = "+-*/^:.\\";
 /// Operators within brackets if no blank precedes them; the quotation mark transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
-/// `in_matrix` for a number that is not between square brackets.
+/// Argument `in_matrix` for a number that is not between square brackets.
 const ALONE: bool = false;
-/// `in_matrix` for a number between square brackets, where a blank may separate two elements.
+/// Argument `in_matrix` for a number between square brackets, where a blank may separate two
+/// elements.
 const IN_MATRIX: bool = true;
 
 /// Reads values, beginning at the scanner's position.
@@ -137,7 +138,8 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a number with any signs before it; `None` if there is no number.
+    /// Reads a number, `Inf` or `NaN` with any signs before it. Returns `None` if there is no
+    /// number, possibly after moving past signs or a name.
     fn read_signed(&mut self) -> Result<Option<Number>, ValueError> {
         let mut sign = 1.0;
         loop {

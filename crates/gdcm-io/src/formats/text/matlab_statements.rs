@@ -1,8 +1,9 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
 //! Supported are numbers, strings, matrices and cell arrays containing these, variables and fields
-//! on either side of `=`, and models created by `ss`, `tf` and `zpk`. Expressions are not evaluated
-//! and other statements not executed; they are reported with a remedy.
+//! on either side of `=`, and the functions `ss`, `tf`, `zpk`, `struct`, `zeros`, `ones`, `eye`,
+//! `string` and `char`. Expressions are not evaluated and other statements not executed: they make
+//! the assigned variable opaque, with a remedy, or are noted.
 
 use crate::formats::reading_note::{ReadingNote, SkippedStatement};
 use crate::formats::text::encoding::refuse_binary;
@@ -53,8 +54,9 @@ pub struct Statements {
 /// Reads variables from MATLAB or Octave statements.
 ///
 /// # Errors
-/// [`VariableFault`] for binary data and unclosed brackets, and if the budget is exhausted.
-/// Unsupported statements are noted instead.
+/// [`VariableFault`] for binary data, unclosed brackets and block comments, and values nested too
+/// deeply, and if the budget is exhausted. An unsupported value makes its variable opaque, and an
+/// unsupported statement is noted instead.
 pub fn read_statements(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
     let mut reading = Reading {
@@ -80,7 +82,7 @@ struct Reading<'t, 'm> {
     budget: &'m ReadingBudget<'m>,
     workspace: Workspace<'t>,
     notes: Vec<ReadingNote>,
-    /// Number of conditions and loops that are not closed.
+    /// Number of blocks (`BLOCKS`) that are not closed.
     open_blocks: usize,
 }
 
@@ -118,7 +120,8 @@ impl<'t> Reading<'t, '_> {
     /// Reads a statement that does not assign function results. The first that applies:
     ///
     /// 1. name and equals sign: an assignment;
-    /// 2. no name, or a word that begins a block: skipped with a note;
+    /// 2. no name, or a word that begins a block: skipped with a note; until the block ends,
+    ///    assignments make their variables opaque;
     /// 3. a word that ends a block: skipped;
     /// 4. a name whose value is changed in part: the variable becomes opaque;
     /// 5. any other name: skipped with a note.
@@ -169,7 +172,8 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Skips "[a, b] = …" and makes the variables opaque, because functions are not executed.
+    /// Skips "[a, b] = …" and makes the variables opaque, because functions are not executed. Skips
+    /// any other statement that begins with a square bracket, with a note.
     fn read_function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
@@ -199,7 +203,8 @@ impl<'t> Reading<'t, '_> {
             .map_err(|fault| fault.in_variable(|| path.join(".")))
     }
 
-    /// Reads the value after an assignment's equals sign.
+    /// Reads the value after an assignment's equals sign; refuses it inside a block, which is not
+    /// executed.
     fn read_assigned_value(&mut self, begin: Position) -> Result<Value, ValueError> {
         if self.open_blocks > 0 {
             return refused(MatlabFault::InBlock, begin);
@@ -231,7 +236,7 @@ impl<'t> Reading<'t, '_> {
     }
 }
 
-/// Returns the names in "[a, b] = …"; `None` if the line is not such an assignment.
+/// Returns "[a, b" from a line "[a, b] = …"; `None` if the line is not such an assignment.
 fn assigned_names(line: &str) -> Option<&str> {
     let (names, behind) = line.split_once(']')?;
     let behind = behind.trim_start();

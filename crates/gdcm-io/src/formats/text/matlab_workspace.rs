@@ -18,7 +18,7 @@ pub(super) struct Workspace<'t> {
 }
 
 impl<'t> Workspace<'t> {
-    /// Sets the variable or field at `path`.
+    /// Sets the variable or field at `path`; adds what is missing on the path.
     pub(super) fn set(
         &mut self,
         path: &[&'t str],
@@ -56,7 +56,8 @@ impl<'t> Workspace<'t> {
     /// the text.
     ///
     /// # Errors
-    /// [`ValueError`] if the variable or field does not exist or is opaque.
+    /// [`ValueError`] if the variable or field does not exist or is opaque, or if the budget is
+    /// exhausted.
     pub(super) fn copy(
         &self,
         path: &[&str],
@@ -106,7 +107,7 @@ fn empty_struct() -> Value {
 }
 
 /// Sets the field at `path` in a value, or the value itself for an empty path; adds missing fields.
-/// A value that cannot have fields becomes opaque.
+/// A value that cannot have fields becomes opaque; an opaque value remains unchanged.
 fn set_field(target: &mut Value, path: &[&str], value: Value) {
     let Some((name, rest)) = path.split_first() else {
         *target = value;

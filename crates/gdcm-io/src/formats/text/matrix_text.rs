@@ -25,10 +25,11 @@ pub struct NamedMatrices {
     pub notes: Vec<ReadingNote>,
 }
 
-/// Reads a single matrix with a row on each line; skips a line with names above the rows.
+/// Reads a single matrix with a row on each line; skips comments, ruled lines and text above the
+/// rows, such as column names.
 ///
 /// # Errors
-/// [`VariableFault`] if a row is incomplete, or there are no numbers.
+/// [`VariableFault`] if a row is incomplete or has an error, or if there are no numbers.
 pub fn read_matrix(
     text: &str,
     name: &str,
@@ -59,6 +60,11 @@ pub fn read_matrix(
 ///
 /// A common factor ("1.0e+03 *") is applied, columns printed in several parts ("Columns 1 through
 /// 6") are joined, and row and column names are skipped.
+///
+/// # Errors
+/// [`VariableFault`] for binary data, a duplicate name, numbers without a name, a row with an
+/// error, parts with different row counts, a text without any named matrix, and an exhausted
+/// budget.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices with names")?;
     let mut reading = Reading {
@@ -140,9 +146,9 @@ impl Reading<'_> {
         self.take_other_line(number, line, has_row_names)
     }
 
-    /// Reads a line that is neither a name nor a row: words where column names may follow are
-    /// column names; else a line with at least half numbers is a row with errors; else it is
-    /// skipped, with a note.
+    /// Reads a line that is neither a name nor a row. Words without numbers are column names where
+    /// these may follow, or if the rows have names. Otherwise, a line with at least half numbers is
+    /// a row with errors; any other line is skipped, with a note.
     fn take_other_line(
         &mut self,
         number: usize,
@@ -250,7 +256,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Converts the matrices to variables.
+    /// Converts the matrices to variables; a name without numbers is only noted.
     fn finish(mut self) -> Result<NamedMatrices, VariableFault> {
         let mut variables: Vec<Variable> = Vec::with_capacity(self.matrices.len());
         let mut names = HashSet::with_capacity(self.matrices.len());

@@ -12,11 +12,12 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Maximum number of distinct words numbered in a column; a column with more does not hold labels.
+/// Maximum number of distinct words numbered in a column. A column with more does not hold labels:
+/// its further cells are left empty.
 const MOST_WORDS: usize = 500;
 /// Minimum number of columns with numbers: text with fewer is not a table of numbers.
 const FEWEST_NUMBER_COLUMNS: usize = 2;
-/// Minimum number of cells in a line: these columns, and one with words or clock times.
+/// Minimum number of cells in a line: `FEWEST_NUMBER_COLUMNS`, and one with words or clock times.
 const FEWEST_CELLS: usize = FEWEST_NUMBER_COLUMNS + 1;
 /// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
@@ -29,7 +30,7 @@ pub struct NumberedText {
     pub notes: Vec<ReadingNote>,
 }
 
-/// What a column holds.
+/// Column content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Numbers,
@@ -78,7 +79,7 @@ fn trimmed_cells(line: &str, separator: Separator) -> Vec<String> {
 struct Numbering {
     separator: Separator,
     columns: Vec<Column>,
-    /// Cells from the first line that is not a row.
+    /// Cells from the first line that is not a row but has a cell for each column.
     heading: Option<Vec<String>>,
 }
 
@@ -139,7 +140,7 @@ impl Numbering {
     }
 
     /// Returns a row with its words and times replaced. A line whose numeric columns do not all
-    /// hold numbers is a heading, and is returned unchanged.
+    /// hold numbers is returned unchanged; the first such line is kept as the heading.
     fn line(&mut self, mut cells: Vec<String>) -> String {
         let is_row = cells
             .iter()
@@ -201,8 +202,8 @@ impl Column {
             .to_string()
     }
 
-    /// Returns the time since the first time in the column \[s\]; a time that goes back by more
-    /// than half a day is on the next day. Returns an empty string for any other cell.
+    /// Returns the time since the first time in the column \[s\]; a time without a date that goes
+    /// back by more than half a day is on the next day. Returns an empty string for any other cell.
     fn seconds(&mut self, cell: &str) -> String {
         // Without a date, the time is since midnight and below `DAY_S`.
         let Some(mut now_s) = clock_s(cell) else {
@@ -225,7 +226,7 @@ impl Column {
         format!("{:.0}e-9", (now_s - first_s) * 1e9)
     }
 
-    /// Lists the first words with their numbers: "1 is SAS, 2 is ATT".
+    /// Returns the words ordered by their numbers.
     fn numbered_words(&self) -> Vec<String> {
         let mut words: Vec<_> = self.words.iter().collect();
         words.sort_unstable_by_key(|(_, number)| **number);
@@ -241,7 +242,8 @@ struct Candidate {
     lines: usize,
 }
 
-/// Returns the separator with which most lines have equal width; `None` if no separator qualifies.
+/// Returns the separator, other than blanks, with which most lines have equal width, in a tie the
+/// larger width; `None` if no separator qualifies.
 fn best_candidate(sample: &[&str]) -> Option<Candidate> {
     Separator::ALL
         .into_iter()
@@ -273,7 +275,7 @@ fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
 }
 
 /// Returns what more than half the filled cells in a column hold; words if neither numbers nor
-/// clock times prevail.
+/// clock times prevail. An empty column counts as numbers.
 fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
     let mut filled = 0;
     let mut numbers = 0;

@@ -1,7 +1,7 @@
 //! Quantities and units in frequency response tables, with the words in column names that denote
 //! them.
 
-/// What a column in a frequency response table holds.
+/// Column content in a frequency response table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Error,

@@ -49,7 +49,8 @@ pub(crate) struct ResponsePoints {
     pub(crate) omega: Vec<f64>,
     pub(crate) re: Vec<f64>,
     pub(crate) im: Vec<f64>,
-    /// Coherence γ² as a fraction; NaN at points where it is missing.
+    /// Coherence γ² as a fraction, NaN at points where it is missing; `None` without a coherence
+    /// column.
     pub(crate) coherence: Option<Vec<f64>>,
 }
 

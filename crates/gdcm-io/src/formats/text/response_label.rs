@@ -19,8 +19,8 @@ const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
 const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
 
 impl ResponseLabel {
-    /// Parses a response name such as "P/LAT", "LAT->P", "LAT to P" or "P_LAT"; any other text is
-    /// an output name.
+    /// Parses a response name such as "P/LAT", "LAT->P", "LAT to P" or "P_LAT"; "frf" and similar
+    /// words name no channel, and any other text is an output name.
     pub(super) fn parse(text: &str) -> Self {
         let text = clean(text);
         if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {

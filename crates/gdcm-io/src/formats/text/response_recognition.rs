@@ -44,9 +44,9 @@ pub(super) struct Recognition<'t> {
     meanings: Vec<ColumnMeaning>,
     /// Notes for the user: each choice with its reason.
     pub(super) notes: Vec<ReadingNote>,
-    /// Columns with a missing unit that the user must state.
+    /// Columns whose unit the user must state.
     pub(super) unsaid: Vec<UnitNotGiven>,
-    /// Unused column names.
+    /// Unused columns by name; for example "column 5" for one without a name.
     pub(super) unused: Vec<String>,
 }
 
@@ -62,7 +62,8 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Finds the frequency column and its unit; a missing unit is added to `unsaid`.
+    /// Finds the frequency column and its unit; a missing or ambiguous unit is added to `unsaid`,
+    /// and the factor is then 1.
     ///
     /// # Errors
     /// [`Unrecognised`] if there is no frequency column.
@@ -354,10 +355,10 @@ struct PolarColumns {
     phase: usize,
 }
 
-/// How a magnitude and a phase column were interpreted.
+/// Interpretation of a magnitude and a phase column.
 struct PolarReading {
     parts: ResponseParts,
-    /// Columns among these two with a missing unit that the user must state.
+    /// Columns among these two whose unit the user must state.
     unsaid: Vec<UnitNotGiven>,
 }
 

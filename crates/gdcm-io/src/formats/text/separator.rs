@@ -27,7 +27,7 @@ impl Separator {
     /// Returns the separator's name, for messages.
     pub fn words(self) -> &'static str {
         match self {
-            Separator::Tab => "tabulators",
+            Separator::Tab => "tabs",
             Separator::Semicolon => "semicolons",
             Separator::Pipe => "vertical bars",
             Separator::Comma => "commas",
@@ -107,7 +107,8 @@ impl<'t> Iterator for Cells<'t> {
                 return None;
             }
         }
-        // `behind` is the text searched for the end of the cell: without the quotation.
+        // The cell ends at the next separator in `behind`, the text after a quotation, if there is
+        // one.
         let Quoted { cell, behind } = Quoted::parse(rest).unwrap_or(Quoted {
             cell: Cow::Borrowed(""),
             behind: rest,

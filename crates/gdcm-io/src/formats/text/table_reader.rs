@@ -19,11 +19,16 @@ use crate::variable_fault::line_fault::LineFault;
 
 /// Expected contents, as named in error messages.
 const EXPECTED: &str = "a table of numbers in columns";
-/// Number of lines before the first row among which a repeated heading is looked up.
+/// Number of skipped lines at the beginning with which a line is compared to find a repeated
+/// heading.
 const COMPARED_HEADINGS: usize = 20;
 
 /// Reads a table of numbers in columns, and recognises its separator, decimal mark, names and
 /// units.
+///
+/// # Errors
+/// [`VariableFault`] for binary data, a text without a row of numbers, a line among the rows that
+/// is not a complete row, and an exhausted budget.
 pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, budget)? else {

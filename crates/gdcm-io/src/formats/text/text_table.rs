@@ -10,9 +10,9 @@ use crate::variable_fault::found_content::FoundContent;
 /// Table of numbers in columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextTable {
-    /// Column names; `None` if the text has none.
+    /// Column names; `None` if neither the text nor the rules give any.
     pub names: Option<Vec<String>>,
-    /// Each column's unit, where the text gives it.
+    /// Each column's unit, where the text or the rules give it.
     pub units: Vec<Option<String>>,
     /// Numbers by column. A missing number is NaN; code that needs the number reports its position.
     pub columns: Vec<Vec<f64>>,
@@ -27,13 +27,13 @@ pub struct TextTable {
 }
 
 impl TextTable {
-    /// Returns a column's name, if the text gives one.
+    /// Returns a column's name, if it has one.
     pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names.as_ref()?.get(column).map(String::as_str)
     }
 
     /// Returns the column headings, with units such as "omega \[rad/s\]"; empty strings for columns
-    /// without a name.
+    /// with neither name nor unit.
     pub fn headings(&self) -> Vec<String> {
         (0..self.units.len())
             .map(|column| self.heading(column))
@@ -49,7 +49,7 @@ impl TextTable {
     }
 
     /// Replaces all column names and units by those in `headings`, written as in
-    /// [`TextTable::headings`].
+    /// [`TextTable::headings`], and notes that they come from the rules.
     ///
     /// # Errors
     /// [`VariableFault`] if the number of headings differs from the number of columns.

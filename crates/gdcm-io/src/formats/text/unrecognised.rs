@@ -16,8 +16,8 @@ pub struct UnitNotGiven {
     pub units: [&'static str; 2],
 }
 
-/// Reason why a table is not recognised as a frequency response, and the missing units that would
-/// suffice.
+/// Reason why a table is not recognised as a frequency response. If only units are missing,
+/// `unsaid` lists them; otherwise it is empty.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unrecognised {
     pub(crate) fault: VariableFault,

@@ -84,7 +84,7 @@ pub(super) enum Content {
     Name(u32),
     /// The value is in the cell with this index among the value cells, counted from 0.
     Cell(usize),
-    /// The value is this integer.
+    /// The value is this integer, or this logical value (0 or 1).
     Number(u32),
 }
 
@@ -157,7 +157,8 @@ impl Directory {
         }
     }
 
-    /// Returns the properties of the object with a number; `None` if there is no such object.
+    /// Returns the properties of the object with this number; `None` if the object or its property
+    /// list is missing.
     pub(super) fn object(&self, number: u32) -> Option<ObjectProperties<'_>> {
         let entry = self.objects.get(number as usize)?;
         let properties = if entry.created == 0 {

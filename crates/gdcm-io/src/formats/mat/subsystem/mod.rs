@@ -59,6 +59,9 @@ pub struct Subsystem {
 
 impl Subsystem {
     /// Reads the cells from a `FileWrapper__`; the first cell is the directory.
+    ///
+    /// # Errors
+    /// [`VariableFault`] if the directory is missing or damaged, or if the budget is exhausted.
     pub fn new(cells: Vec<Value>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let bytes = directory_bytes(cells.first())?;
         // An empty name needs one byte in the file but a whole `String` in memory.
@@ -93,8 +96,8 @@ impl Subsystem {
 
     /// Returns the object, or the object array, to which a reference's words point.
     ///
-    /// Parts that cannot be decoded become [`Value::Opaque`]; the only error is an exhausted
-    /// budget.
+    /// Parts that cannot be decoded become [`Value::Opaque`]; the only errors are an exhausted
+    /// budget and a cancellation.
     pub fn object(
         &self,
         reference: &[u32],

@@ -123,7 +123,8 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Unpacks the strings in a `string` object; `None` if the packing is unknown.
+    /// Unpacks the strings in a `string` object; `None` if they are missing, or if their packing is
+    /// unknown.
     fn packed_texts(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
         let subsystem = self.subsystem;
         let Some(object) = subsystem.directory.object(object) else {
@@ -268,7 +269,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Copies a value and replaces references by their objects.
+    /// Copies a value; replaces references by their objects, and enumeration records by objects.
     fn copy(&mut self, value: &Value, path: &ValuePath<'_>) -> Result<Value, VariableFault> {
         self.budget.take(1, value.own_memory(), "")?;
         if let Some(reference) = self.reference(value) {

@@ -46,7 +46,7 @@ impl End {
     }
 }
 
-/// Draws both band ends over a pane and makes them draggable.
+/// Draws the visible band ends over a pane and makes them draggable; returns the event of a drag.
 pub(super) fn band_handles_ui(ui: &Ui, pane: PaneScene<'_>, view: &BodeView) -> Option<BodeEvent> {
     let PaneScene {
         pane,
@@ -104,7 +104,7 @@ struct Handle {
 }
 
 impl Handle {
-    /// Paints the end, and its frequency above the plot while it is being dragged.
+    /// Paints the end, and its frequency above the plot while the pointer is on it or drags it.
     fn paint(&self, ui: &Ui, is_held: bool, unit: FrequencyUnit, palette: &Palette) {
         let stroke = if is_held {
             Stroke::new(2.0, palette.accent)

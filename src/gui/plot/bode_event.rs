@@ -22,7 +22,7 @@ pub enum BodeEvent {
     BandReleased,
     /// A change to the curve display or to the marked frequencies was requested.
     Display(CurveCommand),
-    /// The model is to be rejected for the entered reason.
+    /// A curve's model is to be rejected for the entered reason.
     RejectedBecause(CurveId, String),
     /// An entry in a curve's menu was chosen.
     ActionChosen(CurveId, CurveAction),
@@ -35,16 +35,15 @@ pub enum BodeEvent {
 /// Action on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveAction {
-    /// Reject its model, or restore it.
+    /// Rejects the curve's model, or restores it.
     RejectOrRestore,
-    /// Make its model the bundle's representative.
+    /// Makes the curve's model the bundle's representative.
     Pin,
-    /// Show it alone beside the representatives, or show all again.
+    /// Shows the curve's model alone beside the representatives, or all models again.
     Isolate,
-    /// Hide it.
     Hide,
-    /// Copy its frequencies and values to the clipboard.
+    /// Copies the curve's frequencies and values to the clipboard.
     CopyValues,
-    /// Shift its phase by whole turns.
+    /// Shifts the curve's phase by whole turns, upwards if positive.
     Turn(i32),
 }

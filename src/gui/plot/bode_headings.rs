@@ -122,9 +122,9 @@ impl BodeHeadings<'_> {
         row_text(ui, rest, AT_RIGHT, &cost, BODY_SIZE, palette.dim_text);
     }
 
-    /// Returns the labels in the right margin: names for the curves in the [`NAMED`] roles, each at
-    /// the visible end of the first such curve; names that label several curves; names for the
-    /// reference lines; and beside the magnitudes the price of the leads.
+    /// Returns the labels in the right margin: if the scene names curves, those in the [`NAMED`]
+    /// roles, each at the visible end of the first such curve; names that label several curves;
+    /// names for the reference lines; and beside the magnitudes the price of the leads.
     fn pane_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
         let Self {
             scene,
@@ -201,8 +201,8 @@ impl BodeHeadings<'_> {
     }
 }
 
-/// Returns the magnitude added by the leads as text for the heading; `None` if the margin has room
-/// for it.
+/// Returns the magnitude added by the leads as text for the heading above the magnitudes; `None`
+/// without leads, or if the margin has room for it.
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     if pane != Pane::Magnitude || scene.names_curves {
         return None;
@@ -221,7 +221,8 @@ fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &P
     );
 }
 
-/// Returns the last visible point on the first curve in a role.
+/// Returns the last visible point on the first curve in a role; `None` without such a curve, or
+/// without a value there.
 fn curve_end(scene: &BodeScene<'_>, role: Role, pane: Pane, last_omega: f64) -> Option<PlotPoint> {
     let curve = scene.curves.iter().find(|curve| curve.role == role)?;
     let omega = curve.omega.last()?.min(last_omega);

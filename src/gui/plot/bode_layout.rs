@@ -12,7 +12,7 @@ pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
 const MAGNITUDE_PART: f32 = 0.52;
 /// Line height above a pane \[pt\].
 const HEADING: f32 = 20.0;
-/// Space above and below the read-out \[pt\].
+/// Space above and below the read-out, and above the coherence strip \[pt\].
 const GAP: f32 = 6.0;
 /// Margin at the right for the frequency unit \[pt\].
 const UNIT_MARGIN: f32 = 36.0;

@@ -252,7 +252,7 @@ impl<'a> PaneScene<'a> {
         }
     }
 
-    /// Draws the marked frequencies and the frequency under the pointer.
+    /// Draws lines at the marked frequencies, and a dotted line at the cursor.
     fn add_cursors(self, plot: &mut PlotUi<'_>) {
         let scene = self.scene;
         let marked = Stroke::new(1.0, self.palette.text.gamma_multiply(MARKED));

@@ -19,7 +19,7 @@ use super::readout_strip::Readout;
 pub struct BodeScene<'a> {
     /// Responses, or ratio and phase difference.
     pub quantity: BodeQuantity<'a>,
-    /// "LON → Q".
+    /// Name of the response, such as "LON → Q".
     pub pair_title: &'a str,
     /// Curves, in any order.
     pub curves: &'a [BodeCurve],
@@ -32,7 +32,8 @@ pub struct BodeScene<'a> {
     pub coherence: &'a [CoherenceCurve],
     /// Minimum coherence at which a frequency counts.
     pub least_coherence: f64,
-    /// Frequency ranges marked along the lower edge of each pane \[rad/s\].
+    /// Frequency ranges marked along the lower edge of each pane \[rad/s\]: a pilot would notice
+    /// the remaining error there.
     pub strips: &'a [(f64, f64)],
     /// Frequency range after fitting \[rad/s\]; the curves' range if `None`.
     pub omega_range: Option<(f64, f64)>,
@@ -47,7 +48,7 @@ pub struct BodeScene<'a> {
     /// Note at the right above each pane: J and the verdict on the correction.
     pub notes: [Option<&'a PaneNote>; 2],
     /// Remaining phase error: the area between the corrected and the identified curve, within the
-    /// band.
+    /// band; nothing in the magnitude pane.
     pub missing: Option<&'a BodeBand>,
     /// Range between the smallest and the largest error at the conditions' optima.
     pub optima: Option<&'a BodeBand>,
@@ -62,7 +63,7 @@ pub struct BodeScene<'a> {
     pub shows_bands: Option<bool>,
     /// Role drawn above all others.
     pub raised: Option<Role>,
-    /// Whether the heavy curves are named in the margin.
+    /// Whether the curves in the most important roles are named in the right margin.
     pub names_curves: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
@@ -73,14 +74,15 @@ pub struct BodeScene<'a> {
     pub unit: FrequencyUnit,
     /// Whether the curves are older than the settings; they are dimmed until new curves arrive.
     pub stale: bool,
-    /// Message shown if there is nothing to draw.
+    /// Message shown if there is nothing to draw, and above the magnitudes while the curves are
+    /// stale.
     pub message: Option<&'a str>,
 }
 
 /// Name shared by several curves, in the right margin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndName {
-    /// "140 kt × 2".
+    /// Name, such as "140 kt × 2".
     pub text: String,
     /// Role in whose colour the name is written.
     pub role: Role,
@@ -91,9 +93,9 @@ pub struct EndName {
 /// Note at the right above a pane.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PaneNote {
-    /// "J 13.4 → 0.3".
+    /// J before and after the correction, such as "J 13.4 → 0.3", or another short text.
     pub cost: String,
-    /// "matched", "lags by 66 ms, 46° at 12 rad/s".
+    /// Result of the correction in the pane, such as "matched" or "lags by 66 ms, 46° at 12 rad/s".
     pub verdict: String,
     /// Whether the verdict is a warning.
     pub warns: bool,
@@ -105,14 +107,15 @@ pub struct PaneNote {
 pub struct InvalidRegion {
     /// Upper end, where the curves end too \[rad/s\].
     pub up_to: f64,
-    /// "not valid above 12 rad/s".
+    /// Text in the strip along the upper edge, such as "not valid above 12 rad/s".
     pub words: String,
     /// Corrected magnitudes with and without leads at the upper end \[dB\].
     pub ends_db: Option<[f64; 2]>,
 }
 
 impl<'a> BodeScene<'a> {
-    /// Returns "+19.4 dB": the magnitude added by the leads where the curves end.
+    /// Returns the magnitude added by the leads where the curves end, such as "+19.4 dB"; `None`
+    /// without leads.
     pub(super) fn price_words(&self) -> Option<String> {
         let [with, without] = self.invalid?.ends_db?;
         Some(format!("{} dB", signed(with - without, 1)))

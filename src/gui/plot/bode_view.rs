@@ -30,8 +30,8 @@ const FIT_MARGIN: f64 = 0.04;
 
 /// Bode plot state kept between frames.
 ///
-/// Value axes that have not been zoomed follow recomputed curves and other conditions with
-/// hysteresis, so that they seldom move. For another response they are fitted once.
+/// Value axes whose ranges the engineer has not chosen follow recomputed curves and other
+/// conditions with hysteresis, so that they seldom move. For another response they are fitted once.
 ///
 /// Two kinds of state control the visible ranges: a `ViewedRange` records whether the engineer
 /// chose it, and `must_fit_frequencies`, `must_fit_values` request a fit in the next frame that has
@@ -127,7 +127,8 @@ impl Default for BodeView {
 }
 
 impl BodeView {
-    /// Requests that all axes, including zoomed axes, be fitted to the data in the next frame.
+    /// Requests that all axes be fitted to the data in the next frame, even if the engineer chose
+    /// their ranges.
     pub fn request_fit(&mut self) {
         self.log_omega.release();
         for values in &mut self.values {
@@ -137,8 +138,8 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Requests that the values be fitted to other curves in the next frame, on axes that have not
-    /// been zoomed; the frequencies stay.
+    /// Requests that the values be fitted to other curves in the next frame, unless the engineer
+    /// chose their ranges; the frequencies stay.
     pub fn request_refit(&mut self) {
         self.must_fit_values = true;
     }
@@ -162,8 +163,9 @@ impl BodeView {
         }
     }
 
-    /// Adapts the value axes that have not been zoomed to new curves, if they no longer fit. The
-    /// pointer, selections and chips leave the curves as they are, and therefore the axes.
+    /// Adapts the value axes to new curves that no longer fit, unless the engineer chose their
+    /// ranges. The pointer, selections and chips leave the curves as they are, and therefore the
+    /// axes.
     ///
     /// While results are pending, nothing changes. Otherwise, for each pane:
     ///
@@ -242,7 +244,8 @@ impl BodeView {
         self.values[pane as usize].range()
     }
 
-    /// Returns a pane's transform as last drawn: x is `log10 omega`, y is in dB or degrees.
+    /// Returns a pane's transform as last drawn: x is `log10 omega`, y is in \[dB\], \[deg\] or,
+    /// for phase errors, also \[ms\]. `None` before the first drawing.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }

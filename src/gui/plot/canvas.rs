@@ -12,7 +12,7 @@ pub(super) const SCALE: f32 = 1.8;
 /// Font size \[pt on paper\].
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
 
-/// Maximum number of points in a filled path that is convex.
+/// Number of points up to which a filled path is known to be convex.
 const CONVEX_POINTS: usize = 4;
 
 /// Screen area on which shapes are drawn.

@@ -32,8 +32,8 @@ impl ChartAxis {
 /// A line in a chart.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
-    /// Points in ascending order along the horizontal axis; details finer than a pixel and points
-    /// outside the view are not drawn.
+    /// Points in ascending order along the horizontal axis; on a linear axis, details finer than a
+    /// pixel and points outside the view are not drawn.
     pub points: Arc<[[f64; 2]]>,
     pub color: Color32,
     /// Width \[pt\].
@@ -92,7 +92,7 @@ pub struct ChartSpan {
 /// Everything that a chart shows.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
-    /// Title, which is also its accessible name.
+    /// Title, with which the chart's accessible name begins.
     pub title: &'a str,
     /// Texts at the right end of the title line, with their colours.
     pub notes: Vec<(String, Color32)>,

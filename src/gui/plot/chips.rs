@@ -32,7 +32,8 @@ pub(super) struct RoleChip {
     pub(super) look: CurveStyle,
     /// Whether the role's curves are drawn.
     pub(super) shown: bool,
-    /// Whether one of the role's curves is emphasized, here or in another view.
+    /// Whether one of the role's curves is emphasized: selected, or under the pointer here or in
+    /// another view.
     pub(super) lit: bool,
 }
 

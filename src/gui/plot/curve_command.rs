@@ -18,7 +18,7 @@ pub enum CurveCommand {
     DrawPhaseErrors(PhaseErrorUnit),
     /// Hides or shows a role's curves.
     ToggleRole(Role),
-    /// Shows this role's curves alone; repeated, shows the curves in all roles.
+    /// Shows this role's curves alone; repeated, shows the roles visible by default.
     ShowRoleAlone(Role),
     /// Draws this role's curves above all others; repeated, restores the usual order.
     RaiseRole(Role),
@@ -32,7 +32,7 @@ pub enum CurveCommand {
         condition: ConditionId,
         pair: Pair,
         curve: CurveId,
-        /// Whole turns upwards.
+        /// Whole turns upwards, added to the present shift.
         turns: i32,
     },
     /// Shows the cursor at a frequency \[rad/s\] in every plot; sent again in each frame.

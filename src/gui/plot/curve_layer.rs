@@ -24,7 +24,8 @@ pub(super) struct CurveLooks<'a> {
 }
 
 impl CurveLooks<'_> {
-    /// Returns whether the curve is emphasized: the pointer is on it here or in another view.
+    /// Returns whether the curve is emphasized: the pointer is on it, here or in another view, or
+    /// its model or condition is selected.
     pub(super) fn is_emphasized(&self, curve: &BodeCurve) -> bool {
         curve.highlighted || self.pointed == Some(&curve.id)
     }
@@ -81,7 +82,8 @@ pub(super) fn add_curve_lines(
     }
 }
 
-/// Returns whether a curve only shows its bundle's scatter and may be part of an image.
+/// Returns whether a curve is in one of the lowest layers (rejected, perturbed, or coloured by
+/// airspeed) and may be part of an image.
 pub(super) fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
     curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
 }

@@ -16,7 +16,7 @@ const MANY_IN_MINIATURE: usize = 8;
 /// Pane as last drawn: transform, lines, and the image that shows its static lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnPane {
-    /// Transform as last drawn, where x is `log10 omega`; `None` if there was nothing to draw.
+    /// Transform as last drawn, where x is `log10 omega`; `None` before the first drawing.
     pub(super) transform: Option<PlotTransform>,
     pub(super) curves: DrawnCurves,
     pub(super) image: CachedRaster,
@@ -24,7 +24,7 @@ pub(super) struct DrawnPane {
 
 impl DrawnPane {
     /// Returns an image that shows the curves at the bottom, if these are static and at least
-    /// [`MANY`] in number.
+    /// [`MANY`] in number; `None` also if the image would be too large.
     pub(super) fn image_of_many(
         &mut self,
         ctx: &Context,
@@ -65,7 +65,7 @@ impl DrawnPane {
     }
 }
 
-/// Curves that only show their bundle's scatter, from bottom to top.
+/// Curves in the lowest layers ([`lies_at_the_bottom`]), from bottom to top.
 struct LowestCurves {
     /// Index in the scene, and style.
     curves: Vec<(usize, CurveStyle)>,

@@ -11,7 +11,7 @@ const MARGIN: f32 = 5.0;
 /// Distance from the frame \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// A line's label in the margin.
+/// Label in the margin for a curve, for several curves or for a reference line.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EndLabel {
     /// Vertical screen position \[pt\].

@@ -15,7 +15,7 @@ use super::canvas::{Canvas, LETTERS_PT, SCALE, area};
 use super::viewed_range::ranges_of;
 use crate::gui::widgets::palette::Palette;
 
-/// Radius of the ring around a focused or highlighted dot \[pt\].
+/// Radius of the ring around a dot in focus or under the pointer \[pt\].
 pub(super) const RING: f32 = RING_PT as f32 * SCALE;
 const RING_WIDTH: f32 = 1.4;
 /// Factor by which a highlighted dot is enlarged.

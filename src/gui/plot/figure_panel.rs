@@ -69,7 +69,7 @@ pub(super) struct PanelView {
 
 impl PanelView {
     /// Adopts the horizontal range of another panel in the same plot; `panel` is the content of
-    /// this one. If the other panel is not zoomed, neither is this one, not even vertically: a
+    /// this one. If the other panel shows its whole ranges, so does this one, vertically too: a
     /// double click fits all panels of a plot.
     pub(super) fn adopt_horizontal_range(&mut self, panel: &Panel, other: &Self) {
         self.ranges = match (other.ranges, self.ranges) {
@@ -104,7 +104,8 @@ pub(super) struct PlacedResponse {
 impl PlacedPanel<'_> {
     /// Draws the panel, and zooms and pans it:
     ///
-    /// 1. place: the frame with its axes in `rect`, and the visible ranges, whole unless zoomed;
+    /// 1. place: the frame with its axes in `rect`, and the visible ranges: those kept, or else the
+    ///    whole ranges;
     /// 2. axes: horizontal, then vertical in the remaining height;
     /// 3. paint the frame with its grid, and above the first panel the title;
     /// 4. point: find the dot or column under the pointer, as the frame is now;

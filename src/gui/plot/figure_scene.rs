@@ -54,8 +54,8 @@ pub struct FigureScene<'a> {
     pub least_plot_size: Vec2,
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
-    /// Whether the axis texts are reduced: the vertical label only at the left of each row, and
-    /// only the unit on the horizontal axis, at its end.
+    /// Whether the axis texts are reduced: tick labels of the values only in the first column, and
+    /// only the unit of the horizontal axis, beside the last plot.
     pub is_compact: bool,
     /// Whether, in a stack of panels, only the lowest has numbers along the common horizontal axis.
     pub is_stacked: bool,

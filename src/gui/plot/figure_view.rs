@@ -30,7 +30,7 @@ const UNIT_MARGIN: f32 = 14.0;
 #[derive(Clone, Debug, Default)]
 pub struct FigureView {
     hovered: Option<MarkId>,
-    /// Axis coordinates of the dot under the pointer.
+    /// Axis coordinates of the mark under the pointer; for a column, its index and 0.
     pointed_at: Option<[f64; 2]>,
     /// Subject of the figure; if this changes, all plots are fitted.
     subject: String,
@@ -120,12 +120,14 @@ impl FigureView {
         }
     }
 
-    /// Returns where the dot under the pointer lies, in axis coordinates.
+    /// Returns where the mark under the pointer lies, in axis coordinates; for a column, its index
+    /// and 0.
     pub fn pointed_at(&self) -> Option<[f64; 2]> {
         self.pointed_at
     }
 
-    /// Returns the visible ranges of a plot's first panel; `None` if they fit the marks.
+    /// Returns the ranges kept for a plot's first panel; `None` if it shows the whole ranges, as
+    /// before it is drawn and after a fit.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
         self.plots.get(plot)?.first.ranges
     }

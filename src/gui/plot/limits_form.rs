@@ -24,7 +24,7 @@ pub(super) struct LimitsForm {
 /// Request from the form in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum FormAnswer {
-    /// No button was clicked.
+    /// Nothing was requested in this frame.
     #[default]
     Waiting,
     /// The typed limits are to be shown.

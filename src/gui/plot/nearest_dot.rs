@@ -18,7 +18,8 @@ pub(super) struct PointedMark {
     pub(super) at: [f64; 2],
 }
 
-/// Returns the nearest dot with an id; among equally near dots, the topmost, which is drawn last.
+/// Returns the nearest dot with an id within [`DOT_RADIUS`]; among equally near dots, the topmost,
+/// which is drawn last.
 pub(super) fn nearest_dot(
     panel: &Panel,
     transform: &PlotTransform,

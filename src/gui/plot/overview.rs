@@ -81,7 +81,7 @@ fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
     Range::spanning(ends)
 }
 
-/// Returns "LON → Q: J 75".
+/// Returns the accessible name of a cell: "LON → Q: J 75", or "LON → Q" without a note.
 fn cell_name(scene: &OverviewScene<'_>, cell: &OverviewCell<'_>) -> String {
     let input = &scene.inputs[cell.pair.input];
     let output = &scene.outputs[cell.pair.output];

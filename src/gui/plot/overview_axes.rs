@@ -95,7 +95,7 @@ impl AxisRange {
         pane.bottom() - self.share(place) * pane.height()
     }
 
-    /// Returns the horizontal screen position of a value in a pane.
+    /// Returns the horizontal screen position of a value in a pane, limited to the pane.
     pub(super) fn across_in(self, pane: Rect, place: f64) -> f32 {
         pane.left() + self.share(place).clamp(0.0, 1.0) * pane.width()
     }

@@ -154,6 +154,7 @@ impl PlacedCell<'_> {
     /// Handles the events in the cell:
     ///
     /// 1. pointing: the curve under the pointer, if any, is hovered and named in the status text;
+    ///    the frequency there is reported;
     /// 2. click: with Alt on a curve, its model alone is shown; otherwise the cell's response comes
     ///    into focus;
     /// 3. secondary click: opens the menu on the curve, or closes it on empty ground.

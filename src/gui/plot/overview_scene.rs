@@ -33,7 +33,7 @@ pub struct OverviewScene<'a> {
     pub unit: FrequencyUnit,
     /// Frequency under the pointer in any plot \[rad/s\].
     pub cursor: Option<f64>,
-    /// How far the displayed results have come, which the axes follow.
+    /// Stage of an update to the displayed results, which decides whether the axes may change.
     pub update: AxisUpdate,
     /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,

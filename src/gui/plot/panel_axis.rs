@@ -42,7 +42,8 @@ pub(super) enum TickSpacing {
     Usual,
     /// Like `Usual`, with room for the widest number; `digit_pt` is a digit's width \[pt\].
     WidestNumber { digit_pt: f64 },
-    /// Names at 0, 1, 2 …, in place of numbers, without grid lines.
+    /// Names at 0, 1, 2 …, instead of numbers, without grid lines; `widest_pt` is the widest name's
+    /// width \[pt\].
     Names { names: Vec<String>, widest_pt: f64 },
 }
 

@@ -37,8 +37,8 @@ pub(super) enum Gestures {
     Clicks,
     /// Dragging pans; pinching and dragging along an axis zoom.
     PanAndZoom,
-    /// Like [`Self::PanAndZoom`], but the ranges follow the data until a gesture changes them;
-    /// after a double click they follow the data again.
+    /// Dragging pans along the chosen axes, and dragging along an axis zooms. The ranges follow the
+    /// data until a gesture changes them; after a double click they follow the data again.
     Following(Follow),
 }
 

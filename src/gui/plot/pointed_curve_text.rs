@@ -51,8 +51,8 @@ fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> Stri
     text
 }
 
-/// Returns " (−99° less 1 turn)" if a phase \[deg\] differs from its principal value by whole
-/// turns.
+/// Returns, for example, " (−99° less 1 turn)" if a phase \[deg\] differs from its principal value
+/// by whole turns, otherwise `None`.
 fn branch_text(phase_deg: f64) -> Option<String> {
     let principal = wrap(phase_deg.to_radians()).to_degrees();
     let turns = ((phase_deg - principal) / 360.0).round();

@@ -12,7 +12,7 @@ pub enum BodeQuantity<'a> {
     Response {
         magnitude: MagnitudeUnit,
         phase: PhaseUnit,
-        /// "(deg/s)/in".
+        /// Output unit over input unit, such as "(deg/s)/in".
         ratio_unit: &'a str,
         subject: ResponseSubject,
     },
@@ -173,7 +173,8 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the label for a pane's values, with the unit in which they are drawn.
+    /// Returns the label for a pane's values as the curves hold them: responses always in \[dB\]
+    /// and \[deg\].
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { .. } => Self::RESPONSE.axis_label(pane),
@@ -214,7 +215,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the minimum height that a pane shows after fitting.
+    /// Returns the minimum height that a pane shows after fitting \[dB\], \[deg\] or \[ms\].
     pub(super) fn least_height(self, pane: Pane) -> f64 {
         match (self, pane) {
             (Self::Response { .. }, Pane::Magnitude) => 4.0,

@@ -49,7 +49,7 @@ impl ReadoutCell {
         Some(palette.role_style(self.role?, false))
     }
 
-    /// Returns the font for the values.
+    /// Returns the font for the values: medium weight for a difference.
     fn font(&self, size: f32) -> FontId {
         if self.role.is_none() {
             medium(size)
@@ -108,7 +108,7 @@ impl ReadoutCell {
 /// Every role's values at a frequency.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Readout {
-    /// "ω at the pointer".
+    /// Column heading above the frequency, such as "ω at the pointer".
     pub heading: String,
     /// Formatted frequency: "6.00 rad/s".
     pub frequency: String,
@@ -157,7 +157,7 @@ struct StripFit {
 
 impl StripFit {
     /// Returns the fit in which no two values touch: with small values if necessary, and without
-    /// the first cells if that is not enough.
+    /// the first cells if that is not enough. The last cell always remains.
     fn new(ui: &Ui, width: f32, readout: &Readout) -> Self {
         let cells = &readout.cells;
         for left_out in 0..cells.len() {

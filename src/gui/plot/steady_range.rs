@@ -1,5 +1,6 @@
 //! Hysteresis for axes: a range changes only if the data no longer fit, and then to round ends.
-//! `figure_view` uses it for the axes of figures, `bode_view` for the values in a Bode plot.
+//! `figure_view` uses it for the axes of figures, `bode_view` for the values in a Bode plot,
+//! `overview_ranges` for those in the overview.
 
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::{Scale, step_above};
@@ -12,7 +13,7 @@ const LEAST_USE: f64 = 0.6;
 /// a power of ten.
 const LEAST_STEPS: f64 = 20.0;
 
-/// Minimum number of labels on a Bode axis.
+/// Minimum number of labels on a value axis in a Bode plot or in the overview.
 const LEAST_LABELS: f64 = 5.0;
 /// Maximum factor by which an axis is extended to hold [`LEAST_LABELS`] labels.
 const MOST_EXTENSION: f64 = 1.25;

@@ -146,7 +146,7 @@ impl Ticks {
         marks
     }
 
-    /// Returns the labels of an axis of `length_pt`.
+    /// Returns the labels of an axis with this range, `length_pt` points long.
     pub(super) fn labels(self, range: Range, length_pt: f64) -> Vec<TickLabel> {
         let units_per_point = range.width() / length_pt;
         let mut labels = Vec::new();

@@ -105,7 +105,8 @@ impl ViewedRange {
         self.is_chosen
     }
 
-    /// Sets the range chosen by the engineer, within the limits.
+    /// Sets the range chosen by the engineer, with the nearest permitted width; a range that
+    /// exceeds the permitted values is ignored.
     pub(super) fn choose(&mut self, range: Range) {
         if let Some(range) = self.allowed(range)
             && range != self.range
@@ -115,7 +116,8 @@ impl ViewedRange {
         }
     }
 
-    /// Sets the range that fits the data, unless the engineer chose a range.
+    /// Sets the range that fits the data, unless the engineer chose a range; with the nearest
+    /// permitted width, and ignored if it exceeds the permitted values.
     pub(super) fn fit(&mut self, range: Range) {
         if let Some(range) = self.allowed(range)
             && !self.is_chosen

@@ -19,7 +19,8 @@ pub(super) struct ZoomGesture {
 }
 
 impl ZoomGesture {
-    /// Returns the zoom requested on the widget under the pointer; `None` without input.
+    /// Returns the zoom requested while the pointer is on this widget; `None` if the pointer is
+    /// elsewhere, or without wheel and pinching.
     pub(super) fn find(ctx: &Context, response: &Response) -> Option<Self> {
         let pointer = response.hover_pos()?;
         let scrolled = ctx.input(|input| input.smooth_scroll_delta());

@@ -66,7 +66,7 @@ pub fn hint_right_of(response: Response, subject: Rect, hint: &str) -> Response 
 /// Width of a text beside a row \[pt\]: the panel at the right of a table has room for it.
 const BESIDE_ROW: f32 = 270.0;
 
-/// Like [`hint_right_of`], with content of its own.
+/// Like [`hint_right_of`], with content drawn by `add`.
 pub fn tooltip_right_of(response: &Response, subject: Rect, add: impl FnOnce(&mut Ui)) {
     let mut tooltip = Tooltip::for_enabled(response);
     tooltip.popup = tooltip.popup.anchor(subject).align(RectAlign::RIGHT_START);

@@ -13,8 +13,9 @@ pub fn end_elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     elided_at(ui, text, room, size, 1.0)
 }
 
-/// Like [`elided`], for a name in a list: if another name would be shortened to the same text, the
-/// gap moves to the beginning or to the end.
+/// Like [`elided`], for a name in a list: if one of its `neighbours` would be shortened to the same
+/// text, the gap moves to the beginning or to the end. If no gap tells the names apart, it stays in
+/// the middle.
 pub fn elided_among(
     ui: &Ui,
     text: &str,

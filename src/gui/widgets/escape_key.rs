@@ -1,4 +1,4 @@
-//! Escape closes the front-most thing, unless a focused control has used the key.
+//! Escape closes what is in front, such as a drawer, unless a focused control has used the key.
 //!
 //! egui removes the focus at the beginning of the frame in which Escape is pressed, so whether the
 //! key was meant for a control follows from the focus in the last frame.
@@ -22,7 +22,8 @@ pub fn was_focused(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
 }
 
-/// Consumes Escape in order to close something, unless a focused control has used the key.
+/// Consumes Escape and returns whether it was pressed; leaves the key, and returns false, if a
+/// focused control has used it.
 pub fn take_escape(ctx: &Context) -> bool {
     !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }

@@ -10,7 +10,8 @@ const RING_WIDTH: f32 = 2.0;
 /// Gap between the ring and its control \[pt\].
 const RING_GAP: f32 = 1.0;
 
-/// Draws the same focus ring around controls, list rows, cells and plots, above all other content.
+/// Draws the ring around the focused control, be it a button, a list row, a cell or a plot. Called
+/// last in a frame, it draws above the other content.
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
     let focused = ctx.memory(|memory| memory.focused());
     let Some(focused) = focused.and_then(|id| ctx.read_response(id)) else {

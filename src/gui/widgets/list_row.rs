@@ -18,7 +18,8 @@ pub struct RowLook {
 }
 
 impl RowLook {
-    /// Allocates the row, paints its background, and names it for screen readers and tests.
+    /// Allocates the row, paints its background, and names it for screen readers and tests; a
+    /// selected row becomes the one at which F6 enters its region.
     pub fn row_ui(&self, ui: &mut Ui, palette: &Palette, name: &str) -> (Rect, Response) {
         let (rect, response) =
             ui.allocate_exact_size(vec2(ui.available_width(), self.height), Sense::click());

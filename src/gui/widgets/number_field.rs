@@ -43,7 +43,7 @@ pub struct NumberField<'a> {
 /// Outcome of editing a field in this frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entered {
-    /// New number, if it is valid.
+    /// New number; `None` if the number is unchanged or the entry is refused.
     pub value: Option<f64>,
     /// Reason why the entry is refused.
     pub refusal: Option<Message>,

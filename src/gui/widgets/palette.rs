@@ -81,15 +81,15 @@ pub struct Palette {
     pub accent: Color32,
     /// Cautions and deteriorations.
     pub warning: Color32,
-    /// Met requirements.
+    /// Met requirements, improvements, and actions that succeeded.
     pub good: Color32,
     /// Background for an unmet verdict and an invalid region.
     pub warning_ground: Color32,
     /// Background for a met verdict.
     pub good_ground: Color32,
-    /// Text for zero values and excluded names.
+    /// Text with low emphasis, such as zero values and excluded names.
     pub quiet_text: Color32,
-    /// Marks with low emphasis: bars, and check marks in boxes.
+    /// Marks with low emphasis, such as bars, locks, and check marks in boxes.
     pub quiet_mark: Color32,
     /// Colours for J at [`HEAT_COSTS`]: a single hue with increasing contrast to the background.
     pub heat: [Color32; 5],

@@ -54,7 +54,7 @@ pub fn table_height(ui: &Ui, rows: usize) -> f32 {
 }
 
 /// Draws a table that scrolls if it is too large; its headings stay in sight. A click on a heading
-/// sorts; the menu copies or saves.
+/// sorts; the menu copies or saves. Returns the clicked cell.
 pub fn table_ui<C: From<TableRequest>>(
     ui: &mut Ui,
     table: &Table,
@@ -112,7 +112,7 @@ pub fn table_grid_ui<C: From<TableRequest>>(
 }
 
 /// Draws a table at full height, for a page that scrolls; a table that is too wide scrolls
-/// sideways. The window keeps the row order until it is closed.
+/// sideways. The window keeps the row order until it is closed. Returns the clicked cell.
 pub fn table_block_ui<C: From<TableRequest>>(
     ui: &mut Ui,
     table: &Table,
@@ -372,8 +372,8 @@ impl DrawnTable<'_> {
         response
     }
 
-    /// Applies the keys pressed while the entry cell has the focus: arrows move it, Ctrl+C copies
-    /// the table. Returns the cell that has the focus afterwards.
+    /// Applies the keys pressed while the entry cell has the focus: arrows, Home and End move it,
+    /// Ctrl+C copies the table. Returns the cell that has the focus afterwards.
     fn moved_entry<C: From<TableRequest>>(
         &self,
         ui: &Ui,

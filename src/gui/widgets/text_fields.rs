@@ -38,7 +38,7 @@ pub fn is_entered(ui: &Ui, field: &Response) -> bool {
 }
 
 /// Draws a text field with an accessible name and `value`; returns the typed text after Enter or
-/// when the focus leaves.
+/// when the focus leaves, `None` if it equals `value` or Escape was pressed.
 pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
     let id = Id::unique(("entry", name));
     let edited = ui.data(|data| data.get_temp::<String>(id));

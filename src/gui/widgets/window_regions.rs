@@ -22,7 +22,7 @@ pub enum Region {
     Export,
     /// Conditions list.
     Conditions,
-    /// Bundles in the displayed condition.
+    /// Bundles in the displayed condition; in the records view, the records.
     Models,
 }
 
@@ -129,7 +129,8 @@ pub fn mark_selected_row(ctx: &Context, row: Id) {
     });
 }
 
-/// Returns a region's visible rectangle; `None` if it has not been drawn.
+/// Returns a region's visible rectangle as last drawn; `None` if it has not been drawn or no part
+/// was visible.
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     let place = ctx.data_mut(|data| {
         data.get_temp_mut_or_default::<Regions>(key())

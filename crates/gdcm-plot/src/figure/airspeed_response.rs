@@ -13,8 +13,8 @@ use super::bode_curve::{BodeCurve, CurveId};
 use super::role::{AirspeedLine, Role};
 use super::uncertainty_band::BodeBand;
 
-/// One response in several conditions. Conditions without the model or its correction are not
-/// drawn.
+/// One response in several conditions. A role has no curve in a condition without the role's model
+/// or its correction.
 #[derive(Clone, Copy, Debug)]
 pub struct AirspeedResponse<'a> {
     pub dataset: &'a Dataset,
@@ -34,17 +34,18 @@ pub struct AirspeedResponse<'a> {
 /// A response's curves over the conditions.
 #[derive(Clone, Debug, Default)]
 pub struct AirspeedCurves {
-    /// Models in all roles, condition by condition.
+    /// Models in the requested roles, condition by condition.
     pub responses: Vec<BodeCurve>,
     /// Scheduled minus identified model in each condition.
     pub errors: Vec<BodeCurve>,
-    /// Range of the same error over the conditions' own optima; `None` without optima.
+    /// Smallest and largest difference at each frequency between the model with its condition's own
+    /// optimum and the identified model; `None` without optima.
     pub optima: Option<BodeBand>,
 }
 
 impl AirspeedResponse<'_> {
     /// Returns the curves, coloured by airspeed. `cache` keeps the uncorrected shapes until the
-    /// responses change.
+    /// responses or the pair change.
     pub fn curves(&self, cache: &mut AirspeedCache) -> AirspeedCurves {
         cache.refresh(self);
         let mut curves = AirspeedCurves::default();
@@ -201,8 +202,8 @@ struct ConditionShapes {
     identified: Option<ResponseShape>,
     /// Physics representative.
     physics: Option<ResponseShape>,
-    /// Physics representative with the couplings, to which corrections are applied; the same shape
-    /// without couplings.
+    /// Physics representative with the couplings, to which corrections are applied; equal to
+    /// `physics` if there are no couplings.
     coupled: Option<ResponseShape>,
     nominal: Option<ResponseShape>,
 }
@@ -217,9 +218,10 @@ pub struct AirspeedCache {
 }
 
 impl AirspeedCache {
-    /// Computes a response's shapes. Phases from identified models are aligned with the first
-    /// condition that has a shape, those from physics models with their condition's identified
-    /// model or, without one, with that first condition.
+    /// Computes a response's shapes, unless they are known. Phases from identified models are
+    /// aligned with the first condition that has an identified or a nominal model, those from
+    /// physics models with their condition's identified model or, without one, with that first
+    /// condition.
     fn refresh(&mut self, response: &AirspeedResponse<'_>) {
         if let Some(known) = &self.curves
             && Arc::ptr_eq(known, response.responses)

@@ -39,9 +39,10 @@ const ASPECT: f64 = 1.2;
 /// Plots the responses `pairs` for models in these roles in the `conditions`, magnitude above
 /// phase.
 ///
-/// 1. Curves of each response, from the options only unit and ranges; `None` if there are none.
-/// 2. A single response with the schedule's error: the response, and the error beside it.
-/// 3. Otherwise: the responses side by side.
+/// 1. Compute each response's curves; only the frequency unit and the ranges in `options` apply.
+///    Without a curve, return `None`.
+/// 2. For a single response with a known error of the schedule: show the error beside it.
+/// 3. Otherwise: show the responses side by side.
 pub fn airspeeds_figure(
     analysis: &Analysis,
     pairs: &[Pair],

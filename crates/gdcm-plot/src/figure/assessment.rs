@@ -144,7 +144,8 @@ pub fn average_word(average: CostAverage) -> &'static str {
     }
 }
 
-/// Describes the settings and the schedule, and lists the excluded conditions with reasons.
+/// Describes the settings, the schedule (unless the conditions' own optima are assessed) and the
+/// average in J, and lists the excluded conditions with reasons.
 fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);

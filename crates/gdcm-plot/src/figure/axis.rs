@@ -97,8 +97,9 @@ impl Axis {
     }
 
     /// Returns the fixed range if there is one, otherwise a range fitted to `values` and
-    /// `including`: without a margin on a logarithmic axis, with a margin on a linear axis. Values
-    /// that the axis cannot show are skipped.
+    /// `including`: with a margin on a linear axis, without one on a logarithmic axis, where a
+    /// single value is shown in a range from half to twice its size. Values that the axis cannot
+    /// show are skipped.
     pub(super) fn fitted(&self, values: impl Iterator<Item = f64>) -> Range {
         if let Some(range) = self.range {
             return range;

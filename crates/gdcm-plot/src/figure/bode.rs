@@ -43,7 +43,7 @@ pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeO
     })
 }
 
-/// Plots a response in a condition, with a coherence panel below.
+/// Plots a response in a condition, with a coherence panel below if coherence was measured.
 fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let band = source.study.settings.band;
     let curves = source.response_curves(pair, options, &mut ResponseCache::default());
@@ -135,7 +135,8 @@ impl ResponsePlot<'_> {
     }
 
     /// Returns a range that fits the visible curves within the band (with leads, up to the end of
-    /// the invalid frequencies) and is at least `least` high.
+    /// the invalid frequencies) and is at least `least` high; `None` if no curve has a finite
+    /// value.
     fn fitted(&self, pane: Pane, least: f64) -> Option<Range> {
         let visible: Vec<BodeCurve> = self
             .curves

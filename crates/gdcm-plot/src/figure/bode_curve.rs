@@ -42,9 +42,10 @@ pub enum Pane {
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,
-    /// Name displayed under the pointer.
+    /// Name in the status text, in menus and in tables.
     pub label: String,
-    /// Second line displayed under the pointer. May be empty.
+    /// Further facts about the curve, after its values in the status text and below its name in
+    /// menus. May be empty.
     pub detail: String,
     pub role: Role,
     pub rejected: bool,

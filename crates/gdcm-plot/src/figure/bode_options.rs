@@ -31,8 +31,8 @@ pub struct BodeOptions {
     pub crossings: Vec<(&'static str, f64)>,
     /// Displayed frequency range \[rad/s\]; fitted to the curves if `None`.
     pub omega: Option<Range>,
-    /// Displayed ranges of the upper panel \[dB\] and the lower panel \[deg\]; fitted to the curves
-    /// within the band if `None`.
+    /// Displayed ranges of the upper panel \[dB\] and the lower panel (\[deg\], for errors also
+    /// \[ms\]); fitted to the curves within the band if `None`.
     pub values: [Option<Range>; 2],
 }
 

@@ -13,7 +13,7 @@ pub struct ChangeTable<'a> {
     pub assessment: &'a AssessmentTable,
     pub pairs: &'a [Pair],
     pub columns: &'a [ChangeColumn],
-    /// Part of ΔJ to be tabulated, or the whole.
+    /// Function that returns the part of ΔJ to be tabulated, or the whole.
     pub part: fn(CostChange) -> f64,
 }
 
@@ -25,7 +25,7 @@ pub struct ChangeColumn {
 }
 
 impl ChangeTable<'_> {
-    /// Tabulates the signed values, with a dash for an unavailable ΔJ.
+    /// Tabulates the signed values with one decimal, and a dash for an unavailable ΔJ.
     pub fn table(&self, title: impl Into<String>) -> Table {
         let mut headings = vec!["response".to_owned()];
         headings.extend(self.columns.iter().map(|column| column.heading.clone()));

@@ -73,7 +73,8 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Builds the coherence panel below a Bode plot; `None` if no response was measured with coherence.
+/// Builds the coherence panel below a Bode plot; `None` if no visible identified model has a
+/// measured coherence of the response.
 pub(super) fn coherence_panel(
     source: &ConditionSource<'_>,
     pair: Pair,

@@ -1,6 +1,7 @@
 //! Colours by meaning and strength, and their values on paper.
 
-/// Meaning of a colour. Paper and each window theme assign a different colour to it.
+/// Meaning of a colour. The window's dark theme and its light theme assign different colours to it;
+/// paper has nearly all colours of the light theme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
     /// Paper, and plot backgrounds in the window.
@@ -24,7 +25,7 @@ pub enum Hue {
     Accent,
     /// Cautions and deteriorations.
     Warning,
-    /// Proven optima, and improvements.
+    /// Improvements, and the envelopes of unnoticeable errors.
     Good,
     /// Airspeed, from 0 at the lowest to 255 at the highest; the colours in `AIRSPEED_STOPS` differ
     /// in lightness, and no role has them.

@@ -53,7 +53,7 @@ pub(super) struct SourceModel {
 pub(super) struct CorrectedModel<'a> {
     /// Identity, style and legend text; the points are computed later.
     pub(super) curve: BodeCurve,
-    /// Result with the model's couplings.
+    /// Result that contains the model's couplings: the condition's own, or an overlaid variant's.
     pub(super) result: &'a ConditionAnalysis,
     /// Index of the physics model in its bundle.
     pub(super) model: usize,
@@ -85,7 +85,7 @@ impl<'a> ConditionSource<'a> {
         format!("{}/{}", bracketed(output), bracketed(input))
     }
 
-    /// Returns `Condition 10: 60 kt, low altitude, high weight`.
+    /// Returns `Condition 10: 60 kt, low altitude, high weight`, or `Condition 10` without a name.
     pub(super) fn condition_words(&self) -> String {
         condition_words(self.curves.condition.flight_state())
     }
@@ -171,7 +171,8 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Returns a model's detail line: `ratio 3.68, suggested as an outlier · from run 3`.
+    /// Returns a model's detail line: `discontinuity ratio 3.68, suggested as an outlier · from run
+    /// 3`. Each part is omitted if unknown.
     fn detail(&self, id: &ModelId, index: usize) -> String {
         let mut parts = Vec::new();
         if id.bundle == BundleKind::Physics
@@ -315,7 +316,7 @@ fn bracketed(unit: &str) -> String {
     }
 }
 
-/// Returns `Condition 10: 60 kt, low altitude, high weight`.
+/// Returns `Condition 10: 60 kt, low altitude, high weight`, or `Condition 10` without a name.
 pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     if name.is_empty() {
         format!("Condition {id}")
@@ -324,7 +325,7 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     }
 }
 
-/// Describes the dataset and the settings, for the captions in all figures.
+/// Describes the dataset and the settings, for captions.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let low = compact(settings.band.min());
     let high = compact(settings.band.max());

@@ -28,8 +28,8 @@ const SHOWN_POLES: f64 = 1.5;
 
 /// Plots the minimum singular value of `I - K H` over frequency for every condition, and the
 /// physics representative's poles without and with couplings for the condition `shown`, whose curve
-/// is drawn on top. If `shown` is `None`, uses the condition with the smallest margin. Returns
-/// `None` if there are no conditions.
+/// is drawn on top. If `shown` is `None` or was not assessed, uses the condition with the smallest
+/// margin. Returns `None` if there are no conditions.
 pub fn couplings_figure(
     assessment: &CouplingsAssessment,
     shown: Option<ConditionId>,
@@ -99,7 +99,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
     Plot::new("Coupling loop at the inputs").panel(panel.with(curve))
 }
 
-/// Plots the poles near the band, without and with couplings.
+/// Plots the poles without and with couplings, up to [`SHOWN_POLES`] times the band's upper end.
 fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     let most_rad_s = SHOWN_POLES * assessment.band.max();
     let mut near: Vec<PoleShift> = Vec::new();

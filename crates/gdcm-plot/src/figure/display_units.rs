@@ -73,7 +73,7 @@ pub enum MagnitudeUnit {
 /// Representation of phases \[deg\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseUnit {
-    /// Continuous over frequency (M2).
+    /// Continuous over frequency, without jumps by 360°.
     #[default]
     Unwrapped,
     /// Between −180° and 180°.

@@ -58,7 +58,8 @@ impl DotStyle {
         }
     }
 
-    /// Returns how the outline of a filled or an open dot is painted.
+    /// Returns radius, fill and line for a circle or a polygon: a filled dot has no line, an open
+    /// dot a white fill.
     fn pen(self) -> DotPen {
         if self.filled {
             DotPen {

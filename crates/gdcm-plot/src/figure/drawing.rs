@@ -20,7 +20,7 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
 }
 
-/// A path, a text, or a clipped group of shapes.
+/// A path, a circle, a text, or a clipped group of shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     Path {

@@ -109,7 +109,8 @@ impl ErrorSource {
     }
 
     /// Computes a response's deviation over `omega`, the frequencies in the band. `None` if the
-    /// response or the reference is zero or not finite at any of them.
+    /// response or the reference is zero or not finite at any of them, or if no frequency counts
+    /// (M4a).
     pub(super) fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
         ErrorShape::new(
@@ -126,7 +127,7 @@ impl ErrorSource {
     }
 
     /// Returns weights for the frequencies `omega`, derived from the reference's coherence; `None`
-    /// without coherence.
+    /// if it has no coherence or coherence is ignored.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let flight = &identified.get(self.key.reference)?.dynamics;
@@ -158,7 +159,8 @@ pub struct ErrorCache {
     pub(super) omega: Arc<[f64]>,
     /// Zero at each frequency: the reference's deviation from itself.
     pub(super) zero: Arc<[f64]>,
-    /// In model order; `None` for a model without a deviation.
+    /// Deviations of the physics models before correction, in bundle order; `None` for a model
+    /// without a deviation.
     pub(super) errors: Vec<Option<ModelError>>,
 }
 
@@ -182,7 +184,7 @@ impl ErrorCache {
         self.source = Some(source);
     }
 
-    /// Returns a physics model's deviation before correction.
+    /// Returns a physics model's deviation before correction; `None` if it has none.
     pub(super) fn model_shape(&self, model: usize) -> Option<ErrorShape> {
         let error = self.errors[model].as_ref()?;
         Some(error.shape.clone())

@@ -16,8 +16,9 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 
 impl ConditionSource<'_> {
     /// Returns lines at G and D, at the channel bounds, and at quantiles of the representative's
-    /// deviation (M6, M7); where requested, also the MUAD envelopes. The lines do not depend on
-    /// whether the representative's curve in `drawn` is hidden.
+    /// deviation (M6, M7); where requested, also the MUAD envelopes. There are none before the
+    /// condition is compared; they do not depend on whether the representative's curve in `drawn`
+    /// is hidden.
     pub fn error_references(
         &self,
         pair: Pair,

@@ -86,7 +86,7 @@ impl Figure {
         self
     }
 
-    /// Sets the ratio of plot height to width.
+    /// Sets the total height of a plot's frames, relative to the frame width.
     pub fn aspect(self, aspect: f64) -> Self {
         Self { aspect, ..self }
     }

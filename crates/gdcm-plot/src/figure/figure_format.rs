@@ -47,7 +47,7 @@ pub enum FigureFormat {
     Png,
     /// A page as large as the figure, with embedded fonts.
     Pdf,
-    /// The values behind all marks.
+    /// The values behind the marks, a row for each point.
     Csv,
 }
 
@@ -64,7 +64,7 @@ impl FigureFormat {
         }
     }
 
-    /// Returns the format's name with its purpose, for a tooltip.
+    /// Returns the format's name with its purpose or contents, for a tooltip.
     pub fn words(self) -> &'static str {
         match self {
             Self::Svg => "SVG, for documents and drawing programs",

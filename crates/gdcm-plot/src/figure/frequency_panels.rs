@@ -29,7 +29,7 @@ pub(super) struct FrequencyPanels<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) references: &'a [ReferenceLine],
     pub(super) bands: &'a [BodeBand],
-    /// Highlighted frequency ranges \[rad/s\].
+    /// Frequency ranges in which a pilot would notice the remaining mismatch \[rad/s\].
     pub(super) strips: &'a [(f64, f64)],
     pub(super) options: &'a BodeOptions,
 }

@@ -161,6 +161,7 @@ impl GainPanel<'_> {
 
     /// Returns a bracket for each airspeed, between the two net gains whose difference is largest
     /// relative to its expected value (M13.4); brackets at significant differences come first.
+    /// Empty without error bars, for other quantities than net gains, and on an axis of conditions.
     fn brackets(&self) -> Vec<Brackets> {
         let (Some(uncertainty), GainQuantity::NetGain(pair), Across::Airspeed) =
             (self.uncertainty, self.quantity, self.across)
@@ -218,7 +219,7 @@ impl GainPanel<'_> {
     }
 
     /// Returns the confidence band and the scatter band about samples `[airspeed, value]` from the
-    /// schedule; empty without an uncertainty, and for a delay, which has no bands.
+    /// schedule; empty if no bands match the schedule and the quantity. Delays never have bands.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
             return Vec::new();
@@ -272,8 +273,8 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns a group of dots for each condition class; conditions outside the schedule have
-    /// separate groups.
+    /// Returns a group of dots for each condition class; held-out conditions and others outside the
+    /// schedule have separate groups.
     fn dots(&self) -> Vec<Dots> {
         let classes = Classes::from_dataset(&self.analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();

@@ -56,8 +56,8 @@ pub fn net_gain_figure(
         .aspect(aspect(uncertainty))
 }
 
-/// Plots each channel's gain or delay at every condition's optimum, and the schedule (Figures 3 and
-/// 4); with error bars and bands if `uncertainty` contains them.
+/// Plots each channel's gain or delay at every condition's optimum and, against airspeed, the
+/// schedule (Figures 3 and 4); with error bars and bands if `uncertainty` contains them.
 pub fn channels_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,

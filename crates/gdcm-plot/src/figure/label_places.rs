@@ -150,7 +150,7 @@ pub struct Surroundings {
 }
 
 /// Places labels for `dots`, and returns the places in the same order; `None` for a label without
-/// room.
+/// room or of zero width. With more than 300 labels, all places are `None`.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
     let mut placing = Placing {
         dots,

@@ -34,7 +34,8 @@ const LEAST_WIDTH: f64 = 88.0;
 const LEAST_DENSE_WIDTH: f64 = 40.0;
 /// Minimum width and minimum total height of a plot's frames \[pt\].
 const LEAST_FRAME: f64 = 22.0;
-/// Maximum total plot height, which leaves room for a caption on an A4 page \[pt\].
+/// Maximum distance from the top of the paper to the lower end of the panels \[pt\]; it leaves room
+/// for a caption on an A4 page.
 const MOST_HEIGHT: f64 = 640.0;
 /// Minimum distance between tick labels on a vertical axis \[pt\].
 const VERTICAL_GAP: f64 = 11.0;
@@ -57,7 +58,7 @@ const EMPTY: Range = Range { min: 0.0, max: 1.0 };
 #[derive(Debug)]
 pub(super) struct Layout<'f> {
     pub(super) panels: Vec<Placed<'f>>,
-    /// Lower end of the panels \[pt\].
+    /// Lower end of the panels with their axis labels \[pt\].
     pub(super) bottom: f64,
 }
 
@@ -115,7 +116,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the total height of a plot's frames \[pt\].
+    /// Returns the height of a plot's frames with the gaps between them \[pt\].
     fn plot_height(&self, frame_width: f64) -> f64 {
         let rows = self.rows as f64;
         let around: f64 = (0..self.rows)

@@ -17,7 +17,7 @@ use super::role::Role;
 
 /// Points in each curve.
 const POINTS: usize = 240;
-/// Channels outside the response.
+/// Channels other than the response's input and output.
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.8);
 /// Output channel of the response.
 const OUTPUT: Stroke = Stroke::dashed(Color::new(Hue::Accent), 1.6, Dash::Long);

@@ -90,7 +90,7 @@ pub struct Dot {
     pub id: Option<MarkId>,
 }
 
-/// Radius of the ring around a dot in focus \[pt\].
+/// Radius of the ring around the dots of [`Dots::ringed`] \[pt\].
 pub const RING_PT: f64 = 4.5;
 
 /// Symbol with which a dot is drawn.
@@ -402,8 +402,8 @@ impl Along {
 }
 
 impl Mark {
-    /// Returns the values that the axis must include to show this mark; they may be non-finite,
-    /// which the axis ignores.
+    /// Returns the values that the axis must include to show this mark; empty for marks that do not
+    /// extend the axes. The axis ignores non-finite values.
     pub(super) fn values(&self, along: Along) -> Vec<f64> {
         match self {
             Mark::Curve(curve) => curve

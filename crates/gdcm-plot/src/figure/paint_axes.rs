@@ -9,7 +9,7 @@ use super::placed::{Placed, Side};
 
 const TICK_LINE: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
-/// Length of an unlabelled tick, relative to a labelled tick.
+/// Length of an unlabelled tick on a horizontal axis, relative to a labelled tick.
 const MINOR: f64 = 0.6;
 
 /// Paints the grid: a line at each tick, except on an axis with names.

@@ -5,8 +5,8 @@ use super::marks::{Along, Bars, Brackets, Curve, Envelope, Guide, Intervals, Mar
 use super::placed::Placed;
 use super::thinning::{Pixel, thinned};
 
-/// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the thinnest
-/// line's width.
+/// Maximum distance between a thinned line and its original points \[pt\]: about a tenth of the
+/// thinnest curve's width.
 const TOLERANCE: f64 = 0.04;
 /// Print resolution to which curves are thinned.
 const FINEST: Pixel = Pixel {

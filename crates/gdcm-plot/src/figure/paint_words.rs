@@ -7,7 +7,7 @@ use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
 /// Paints a rule's label at its upper or right end, on a white background that hides curves behind
-/// it.
+/// it; returns nothing without a label or if the rule lies outside the frame.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     if rule.label.is_empty() {
         return Vec::new();
@@ -38,7 +38,8 @@ pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     ]
 }
 
-/// Paints a guide's label, or a note; `None` for other marks, and for a text without room.
+/// Paints a guide's label, or a note; `None` for other marks, for a guide that has no label or is
+/// not visible, and for a note that does not fit.
 pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let text = match mark {
         Mark::Guide(guide) => guide_label(placed, guide)?,
@@ -48,7 +49,8 @@ pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     Some(Shape::Text(text.colored(Color::DIM)))
 }
 
-/// Returns a guide's label, below its last visible point.
+/// Returns a guide's label, to the lower right of its last visible point; `None` without a label or
+/// a visible point.
 fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
     if guide.label.is_empty() {
         return None;

@@ -15,23 +15,23 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Band, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule};
 
-/// Value found for all conditions together.
+/// Line at the value found for all conditions together.
 const JOINT: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.4);
-/// Interval about that value.
+/// Interval about the value found for all conditions together.
 const JOINT_INTERVAL: Color = Color::new(Hue::Perturbed).tint(22);
 /// One plausible standard deviation on both sides of the nominal value.
 const PLAUSIBLE: Color = Color::DIM.tint(12);
-/// Nominal value of the parameter.
+/// Line at the parameter's nominal value.
 const NOMINAL: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 /// Error bar about a value from a single condition.
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.7);
-/// Misfit in the conditions left out.
+/// Line through the misfits in the conditions left out.
 const LEFT_OUT: Stroke = Stroke::solid(Color::INK, 1.4);
 /// Background at steps that hardly lower the misfit in conditions left out.
 const NO_IMPROVEMENT: Color = Color::DIM.tint(10);
 /// Margin beyond the slowest and the fastest condition \[kt\].
 const AIRSPEED_MARGIN_KT: f64 = 4.0;
-/// Ratio in percent.
+/// Factor that converts a ratio to percent.
 const PERCENT: f64 = 100.0;
 
 /// Builds the figure for the parameter at index `shown` among those that are on; `None` if there is
@@ -120,8 +120,8 @@ impl ShownParameter<'_> {
         Plot::new(format!("{name}, by condition")).panel(panel.with_all(self.dots()))
     }
 
-    /// Returns the values from single conditions: condition, airspeed, change and its half-width,
-    /// in the parameter's unit.
+    /// Returns the parameter's change as fitted to each single condition, with the half-width of
+    /// its interval; both in the parameter's unit. Conditions without such a fit are skipped.
     fn values(&self) -> Vec<PlacedValue<'_>> {
         let mut values = Vec::new();
         let degrees = self.conditions.len().saturating_sub(1).max(1) as f64;
@@ -192,7 +192,8 @@ impl ShownParameter<'_> {
     }
 }
 
-/// The parameter's value in a single condition, in the parameter's unit.
+/// The parameter's change in a single condition, and the half-width of its interval, in the
+/// parameter's unit.
 struct PlacedValue<'a> {
     condition: &'a Condition,
     change: f64,
@@ -206,7 +207,7 @@ impl PlacedValue<'_> {
 }
 
 /// Plots the misfit in conditions left out as parameters are added, in percent of the misfit
-/// without parameters; the steps that do not lower it noticeably are shaded.
+/// without parameters; the last steps are shaded if they do not lower it noticeably.
 fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
     let mut names = Vec::new();
     let mut points = Vec::new();

@@ -31,8 +31,8 @@ const LEAST_DEG: f64 = 20.0;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;
 
-/// Plots a condition's `most` most improved responses, and its poles; `None` if the condition's
-/// physics models are not moved.
+/// Plots up to `most` responses in a condition, the most improved first, and its poles; `None` if
+/// the condition was not analysed or the parameters do not change its physics models.
 pub fn physics_change_figure(
     assessment: &PhysicsAssessment,
     dataset: &Dataset,
@@ -119,7 +119,8 @@ struct Traces<'a> {
 }
 
 impl Traces<'_> {
-    /// Returns a range that contains all finite values and is at least `least` high.
+    /// Returns a range that contains all finite values with a margin and is at least `least` high;
+    /// `None` without a finite value.
     fn range(&self, least: f64) -> Option<Range> {
         let values = [self.identified, self.before, self.after].concat();
         let finite = values.into_iter().filter(|value| value.is_finite());
@@ -127,7 +128,8 @@ impl Traces<'_> {
     }
 }
 
-/// Plots the physics representative's poles up to the magnitude `near` \[rad/s\], before and after.
+/// Plots the physics representative's poles without and with the parameters, up to the magnitude
+/// `near` \[rad/s\].
 fn pole_plot(effect: &ConditionPhysics, near: f64) -> Plot {
     let mut shown: Vec<PoleShift> = Vec::new();
     for shift in effect.poles.iter().flatten() {

@@ -69,7 +69,8 @@ impl Placed<'_> {
         Some(self.frame.at(x, y))
     }
 
-    /// Returns the ends of a line at a value, across the whole frame.
+    /// Returns the ends of a line at a value, across the whole frame: the lower or left end first.
+    /// `None` if the axis cannot show the value.
     pub(super) fn across(&self, along: Along, value: f64) -> Option<[[f64; 2]; 2]> {
         match along {
             Along::X => {
@@ -83,13 +84,14 @@ impl Placed<'_> {
         }
     }
 
-    /// Returns the positions of both ends in a vertical range `[x, lower end, upper end]`.
+    /// Returns the positions of both ends in a vertical range `[x, lower end, upper end]`; `None`
+    /// if an axis cannot show one of them.
     pub(super) fn vertical(&self, [x, low, high]: [f64; 3]) -> Option<[[f64; 2]; 2]> {
         Some([self.at([x, low])?, self.at([x, high])?])
     }
 
     /// Returns a bracket's lines: to the left of its values, or to their right if there is no room
-    /// on the left.
+    /// on the left. `None` if an axis cannot show a value.
     pub(super) fn bracket(&self, bracket: &Bracket) -> Option<PlacedBracket> {
         let [from, to] = bracket.ends;
         let from = self.at([bracket.x, from])?;

@@ -28,7 +28,8 @@ impl PoleShiftNames {
     };
 }
 
-/// Draws the poles before and after, and an arrow from each pole to its new position.
+/// Draws the poles before and after, and an arrow from each pole to its new position; a pole that
+/// did not exist before has no arrow.
 pub(super) fn pole_shift_marks(shifts: &[PoleShift], names: &PoleShiftNames) -> Vec<Mark> {
     let mut ends = Vec::new();
     let unchanged = Role::Representative.stroke(false).color;

@@ -28,7 +28,7 @@ use super::poles::{PoleContents, couplings_figure, poles_figure, zeros_of_model}
 use super::requirements::{record_history_figure, requirements_figure, test_answers_figure};
 use super::schedule_cost::schedule_cost_figure;
 
-/// Number of responses that [`FigureKind::PhysicsChange`] shows.
+/// Maximum number of responses that [`FigureKind::PhysicsChange`] shows.
 const CHANGED_RESPONSES: usize = 5;
 
 /// Kinds of figure.
@@ -37,7 +37,7 @@ pub enum FigureKind {
     /// Responses in a condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// Deviations between these responses and the reference, as used by the fit.
+    /// Deviations between a condition's responses and the reference, as used by the fit.
     Error,
     /// All responses in a condition, in a table.
     Overview,
@@ -57,14 +57,14 @@ pub enum FigureKind {
     Couplings,
     /// A physics parameter in every condition, and the misfit that remains as parameters are added.
     Physics,
-    /// Most improved responses and poles in a condition, before and after the physics parameters.
+    /// Most improved responses and poles in a condition, without and with the physics parameters.
     PhysicsChange,
     /// Phase delay over bandwidth for attitude responses, or model responses over time.
     Requirements,
     /// One response in every condition, coloured by airspeed, with the schedule's error.
     Airspeeds,
-    /// A response's net gain over airspeed, and its J before and after the correction and under the
-    /// schedule.
+    /// A response's net gain over airspeed, and its J before the correction, at each condition's
+    /// optimum and under the schedule.
     ScheduleCost,
 }
 
@@ -113,7 +113,8 @@ impl FigureKind {
         matches!(self, Self::Evidence | Self::Requirements)
     }
 
-    /// Returns whether the figure shows error bars if these are available.
+    /// Returns whether the figure shows error bars if these are available, but does not require
+    /// them.
     pub fn takes_bars(self) -> bool {
         matches!(self, Self::NetGain | Self::Channels | Self::ScheduleCost)
     }
@@ -162,10 +163,11 @@ pub struct FigureRequest {
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
     pub physics: Option<Arc<PhysicsAssessment>>,
-    /// Parameter name in [`FigureKind::Physics`]; the first parameter in the ranking if `None`.
+    /// Parameter name in [`FigureKind::Physics`]; if `None` or not on, the first parameter in the
+    /// ranking.
     pub parameter: Option<String>,
     pub requirements: Option<Arc<Requirements>>,
-    /// Model responses that [`FigureKind::Requirements`] shows in place of bandwidths.
+    /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
     pub over_time: Option<OverTime>,
 }
 

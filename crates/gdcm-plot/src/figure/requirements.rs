@@ -103,7 +103,7 @@ pub struct BandwidthDetail<'a> {
     pub requirements: &'a Requirements,
     pub levels: &'a LevelBoundaries,
     pub pair: Pair,
-    /// The condition with full colours, intervals and tolerances.
+    /// Selected condition: its dots are larger and in full colour, and its tolerances are shaded.
     pub condition: ConditionId,
     /// Role of the corrected model, which says whether its own or the scheduled correction applies.
     pub role: RequirementRole,

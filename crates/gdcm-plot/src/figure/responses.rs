@@ -101,7 +101,7 @@ fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[
     }
 }
 
-/// Appends the phase shift by `turns` to a curve's detail.
+/// Puts the phase shift by `turns`, if any, before a curve's detail.
 fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
@@ -159,9 +159,9 @@ impl ResponseCache {
         }
     }
 
-    /// Computes a response's shapes. Phases are aligned with the reference up to the limit of the
-    /// displayed band. The identified models' curves end there, because they carry no information
-    /// beyond.
+    /// Computes a response's shapes, unless they are known. Phases are aligned with the reference
+    /// up to the limit of the displayed band. The identified models' curves end there, because they
+    /// carry no information beyond.
     fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
         if let Some(known) = &self.source
             && known.is_same(&source)

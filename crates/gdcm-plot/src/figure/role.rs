@@ -11,25 +11,26 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 pub enum Role {
     /// Physics model at the unperturbed trim.
     Nominal,
-    /// Physics model at a perturbed trim.
+    /// Physics model at a perturbed trim that does not represent its bundle.
     Perturbed,
-    /// Physics model that represents its bundle.
+    /// Physics model other than the nominal one that represents its bundle.
     Representative,
-    /// Model identified from flight.
+    /// Identified model that does not represent its bundle.
     Identified,
     /// Identified model that represents its bundle.
     IdentifiedRepresentative,
     /// Representative physics model with the condition's own correction.
     Corrected,
-    /// Physics model with the scheduled correction.
+    /// Representative physics model with the scheduled correction.
     Scheduled,
     /// Representative physics model with the condition's own correction, without its lead filters.
     WithoutLeads,
     /// Representative physics model with couplings alone: no gain, delay or lead in a channel.
     Coupled,
-    /// Physics model with the correction in a study variant, overlaid for comparison.
+    /// Representative physics model in a study variant with that variant's correction, overlaid for
+    /// comparison.
     Variant,
-    /// Excluded model.
+    /// Rejected model, other than the nominal model.
     Rejected,
     /// Model in one of several conditions; 0 at the lowest airspeed, 255 at the highest.
     OfAirspeed(u8, AirspeedLine),

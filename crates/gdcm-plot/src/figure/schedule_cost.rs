@@ -18,9 +18,9 @@ use super::role::Role;
 
 /// Line from J before the correction to J under the schedule.
 const CHANGE: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// J before the correction.
+/// Colour for J before the correction.
 const BEFORE: Color = Color::DIM;
-/// J at a condition's own optimum.
+/// Colour for J at a condition's own optimum.
 const OPTIMUM: Color = Color::new(Hue::Corrected);
 /// Distance between conditions at the same airspeed, as a share of the airspeed range.
 const APART: f64 = 0.034;

@@ -49,7 +49,7 @@ impl Figure {
     }
 }
 
-/// Removes control characters from a table, which a terminal or a spreadsheet might interpret.
+/// Escapes control characters in a table, which a terminal or a spreadsheet might interpret.
 fn without_control_codes(mut table: Table) -> Table {
     let cells = table
         .columns

@@ -29,7 +29,7 @@ impl Pixel {
 }
 
 /// Returns the points in `run` that must be drawn: the extremes in each pixel column, reduced to
-/// the points that keep the connecting lines within tolerance of every omitted point. Both ends
+/// the points that keep the connecting lines within tolerance of every omitted extreme. Both ends
 /// remain; a `run` that does not ascend in x is returned unchanged.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     if !run.is_sorted_by(|point, next| point[0] < next[0]) {

@@ -115,9 +115,10 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
     curves
 }
 
-/// Plots one recorded input, then each quantity with a tolerance: the flight data with their
-/// corridor and each model's response; below, the difference between model and flight. Curves are
-/// thick where they are outside the corridor. The simulation restarts at each window.
+/// Plots one recorded input, then each quantity with a tolerance that a model simulates: the flight
+/// data with their corridor and each model's response; below, the difference between model and
+/// flight. Curves are thick where they are outside the corridor. The simulation restarts at each
+/// window.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let mut plots = vec![record_input_plot(history, dataset, input)];
     for quantity in &history.quantities {
@@ -182,7 +183,7 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
     Plot::new(panel.y.label.clone()).panel(panel)
 }
 
-/// Plots a quantity as recorded, and below the difference from flight.
+/// Plots a quantity's flight data and the models' responses, and below the differences from flight.
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
@@ -283,9 +284,9 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
     values
 }
 
-/// Draws the corridor, each model with its parts outside the corridor, and the flight data.
-/// Corridor and flight data are taken from the check of the corrected model or, without it, of the
-/// first model.
+/// Draws the corridor, each model with its parts outside the corridor and, unless differences are
+/// shown, the flight data. Corridor and flight data are taken from the check of the corrected model
+/// or, without it, of the first model.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
         .models

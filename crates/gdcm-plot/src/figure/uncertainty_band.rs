@@ -6,7 +6,8 @@ use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
 
 use super::bode_curve::{BodeCurve, CurveId};
 
-/// Uncertainty band about a curve.
+/// Area between two lines over frequency: an uncertainty band about a curve, a range of errors, or
+/// a remaining error, where either line may be the upper one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeBand {
     /// Frequencies \[rad/s\], ascending.

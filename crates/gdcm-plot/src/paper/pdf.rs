@@ -24,11 +24,12 @@ use crate::figure::letters::{FONTS, Letter, letters, width};
 const QUARTER: f64 = 0.552_284_749_830_793_4;
 
 /// Returns the bytes of a PDF file with these objects: catalog, page tree, page, content stream,
-/// document information; then five objects for each font (`FontObjects`), reduced to the letters
-/// that the page uses.
+/// document information; then five objects (`FontObjects`) for each font that the page uses,
+/// reduced to the letters that it uses.
 ///
 /// # Errors
-/// Fails if a font cannot be reduced to the used letters, or if a stream cannot be compressed.
+/// Fails if a font cannot be read or reduced to the used letters, or if a stream cannot be
+/// compressed.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
     let drawn = Page::paint(drawing);
@@ -181,7 +182,7 @@ impl Page {
         }
     }
 
-    /// Fills and strokes the current path.
+    /// Ends the current path: fills it if `fill` is given, strokes it if `stroke` is given.
     fn draw(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         match (fill, stroke) {
             (Some(_), Some(_)) => self.content.fill_nonzero_and_stroke(),
@@ -191,7 +192,8 @@ impl Page {
         };
     }
 
-    /// Writes a text in its colour, anchored and rotated, one run of letters for each font.
+    /// Writes a text in its colour, anchored and rotated, in runs of consecutive letters with the
+    /// same font.
     fn text(&mut self, text: &Text) {
         let [red, green, blue] = parts(text.color);
         let before_anchor = text.anchor.before() * width(&text.words) * text.size_pt;
@@ -287,9 +289,9 @@ impl UsedLetters {
 struct FontObjects {
     /// The composite font.
     font: Ref,
-    /// Its only descendant, with the letter widths.
+    /// The composite font's only descendant, which holds the letter widths.
     descendant: Ref,
-    /// The descendant's metrics.
+    /// Metrics of the descendant.
     descriptor: Ref,
     /// Map from letter numbers to characters.
     characters: Ref,

@@ -224,7 +224,8 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Escapes text for XML; characters that XML 1.0 cannot represent are dropped.
+/// Escapes text for XML. Drops control characters (tabs and line breaks too) and U+FFFE and U+FFFF,
+/// which XML 1.0 does not allow.
 pub fn escaped(words: &str) -> String {
     let mut text = String::with_capacity(words.len());
     for character in words.chars() {

@@ -66,7 +66,7 @@ pub enum CurveColors {
     /// Nominal red, perturbed blue, identified amber, corrected green.
     #[default]
     Standard,
-    /// Distinguishable without red, green or blue cones.
+    /// Distinguishable also for readers without red, green or blue cones.
     ForAllEyes,
 }
 

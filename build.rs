@@ -50,7 +50,8 @@ fn commit() -> Option<String> {
     }
 }
 
-/// Returns the commit that is checked out, marked if a file differs from it.
+/// Returns the commit that is checked out, marked as modified if a tracked file differs from it;
+/// `None` unless git is available and this folder is the root of a checkout.
 fn commit_of_checkout() -> Option<String> {
     // Source unpacked inside another repository is not that repository's commit.
     let root = git(&["rev-parse", "--show-toplevel"])?;

@@ -115,8 +115,9 @@ impl ExportFault {
         }
     }
 
-    /// Returns whether the analysis lacks the requested content; all other faults are in the
-    /// request.
+    /// Returns whether the analysis gives no result to export (no schedule, no result for a
+    /// condition, a curve that is not finite), for the exit status; all other faults count as wrong
+    /// input.
     pub fn is_of_analysis(&self) -> bool {
         matches!(
             self,

@@ -22,7 +22,7 @@ pub enum FileCaution {
     /// Further unknown keys, which are only counted.
     #[error("{} unknown and ignored", others(*count))]
     MoreUnknownKeys { count: usize },
-    /// A key that is only valid in the other kind of model.
+    /// A key that is valid only in the other kind of model, or only outside a dataset.
     #[error("{place}the key \"{key}\" has no meaning here and is ignored")]
     MisplacedKey { place: String, key: String },
     /// An unusual model property.

@@ -33,7 +33,7 @@ pub enum FileError {
         sanitized_path(path)
     )]
     OutputNotAFile { path: PathBuf, kind: &'static str },
-    /// The system does not permit reading the file.
+    /// The system does not permit reading the file, or fails to read it.
     #[error("{}: cannot be read: {reason}", sanitized_path(path))]
     Unreadable { path: PathBuf, reason: String },
     /// The size of the file, or of its uncompressed content, exceeds the limit.
@@ -106,11 +106,12 @@ pub enum FileError {
         path: PathBuf,
         place: Box<Location>,
         fault: Box<ContentFault>,
-        /// Line at which the condition or the model begins, counted from 1; `None` if the fault
-        /// itself contains a line number.
+        /// Line at which the condition or the model begins, counted from 1; `None` if it is
+        /// unknown, or if the fault itself contains a line number.
         line: Option<usize>,
     },
-    /// Variables in a file for MATLAB, Octave or NumPy cannot be read or written.
+    /// A file's contents cannot be read as variables, tables or logs, or variables cannot be
+    /// written; also an exceeded limit or a cancellation in any reader.
     #[error("{}: {}", sanitized_path(path), variables_words(path, fault))]
     Variables { path: PathBuf, fault: VariableFault },
     /// Folders are nested more deeply than the search for files descends.
@@ -379,7 +380,8 @@ fn existing_words(paths: &[PathBuf]) -> String {
     format!("{} {verb} already", listed.join(", "))
 }
 
-/// Returns the operating system's message, without the error number.
+/// Describes an error from the operating system: common causes, such as a full disk, in this
+/// program's words; else the system's message without the error number.
 pub fn system_words(error: &std::io::Error) -> String {
     let words = match error.kind() {
         ErrorKind::StorageFull => "the disk is full",

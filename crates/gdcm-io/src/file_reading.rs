@@ -152,7 +152,8 @@ pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
     Some("a special file")
 }
 
-/// Returns the text in `bytes`, decompressed if necessary; its memory is taken from the budget.
+/// Returns the text in `bytes`, decompressed if necessary; memory for decompressed text is taken
+/// from the budget.
 pub(super) fn text_of<'b>(
     bytes: &'b [u8],
     path: &Path,

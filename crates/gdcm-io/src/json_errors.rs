@@ -100,7 +100,7 @@ fn syntax_error(
     }
 }
 
-/// Whether a text is JSON, or could become JSON with more text.
+/// Returns whether a text is JSON, or could become JSON with more text.
 fn is_json_so_far(text: &[u8]) -> bool {
     match serde_json::from_slice::<IgnoredAny>(text) {
         Ok(_) => true,
@@ -281,7 +281,8 @@ fn is_word_byte(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || b"+-.".contains(&byte)
 }
 
-/// Whether a word is an infinite number, or a number in other programs but not in JSON.
+/// Returns whether a word is an infinite number, or NaN, which other programs write although JSON
+/// has no such numbers.
 fn is_number_like(token: &str) -> bool {
     // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them;
     // 1e999 is read as infinite.

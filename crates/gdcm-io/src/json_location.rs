@@ -87,12 +87,12 @@ fn entry_words(steps: &[Step]) -> String {
     words.join(", ")
 }
 
-/// Whether a key holds a state-space matrix.
+/// Returns whether a key holds a state-space matrix.
 fn is_matrix(key: &str) -> bool {
     matches!(key, "A" | "B" | "C" | "D")
 }
 
-/// Whether a key holds values for each output and input.
+/// Returns whether a key holds values for each output and input.
 fn is_response_table(key: &str) -> bool {
     matches!(
         key,
@@ -100,7 +100,8 @@ fn is_response_table(key: &str) -> bool {
     )
 }
 
-/// Returns the line at which the condition or the model named by `place` begins, counted from 1.
+/// Returns the line at which the condition or the model named by `place` begins, counted from 1;
+/// `None` if `place` names no condition, or if it cannot be found.
 pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     let condition = place.condition.as_ref()?;
     let mut value = entry(

@@ -13,7 +13,7 @@ use crate::reading_budget::ReadingBudget;
 /// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
 const MOST_LABELS: usize = 50_000;
-/// Maximum nesting depth of lists and objects; labels are nested far less deeply.
+/// Nesting depth of lists and objects at which reading ends; labels are nested far less deeply.
 const DEEPEST: usize = 100;
 
 /// Labels in a file, with which messages name places in it. If the text has an error, the labels

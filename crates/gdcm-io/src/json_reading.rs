@@ -41,8 +41,8 @@ impl Format {
     /// 4. An error is located by that path, in terms of conditions and models (`json_location.rs`).
     ///
     /// # Errors
-    /// Another format or version, which is reported before any other error; text that is not JSON;
-    /// values with other types.
+    /// Another format or version, which is reported before any other error except a list at the top
+    /// level; text that is not JSON; values with other types; an exceeded budget.
     pub(super) fn decode<'t, T: Deserialize<'t>>(
         self,
         text: &'t [u8],

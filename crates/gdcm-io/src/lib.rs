@@ -1,5 +1,5 @@
-//! Reads models and records from files and writes results to files; no other crate accesses the
-//! file system.
+//! Reads models and records from files and writes results to files; the crates that it uses access
+//! no files.
 //!
 //! `formats` reads single file formats into variables and columns; `import` recognises models and
 //! flight records in them. `files` holds the program's own formats (dataset, study, corrections),

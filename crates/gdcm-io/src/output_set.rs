@@ -23,7 +23,7 @@ use super::file_reading::kind_of;
 /// How files that exist at the output paths are treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// Existing files are kept, and nothing is written.
+    /// If any of the files exists, it is kept, and nothing is written.
     Keep,
     /// The new files replace existing files.
     Replace,
@@ -78,7 +78,9 @@ impl OutputSet {
         self
     }
 
-    /// Rejects paths that cannot or must not be written to; to be called before any work is done.
+    /// Rejects paths that cannot or must not be written to: special files, inputs, directories,
+    /// read-only files and, with [`Existing::Keep`], existing files. To be called before any work
+    /// is done.
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
         let mut existing = Vec::new();
         for path in places.iter().map(AsRef::as_ref) {
@@ -115,8 +117,9 @@ impl OutputSet {
         }
     }
 
-    /// Writes a temporary file beside `path` and flushes it to the disk; [`OutputSet::persist`]
-    /// renames it.
+    /// Checks `path` as [`OutputSet::check`] does, writes a temporary file beside it (beside the
+    /// target if `path` is a link), and flushes it to the disk; [`OutputSet::persist`] renames it.
+    /// Also removes leftovers from killed runs in that directory.
     pub fn add(
         &mut self,
         path: &Path,
@@ -197,8 +200,8 @@ impl OutputSet {
     }
 }
 
-/// Whether an output path leads to an input file, through any links. An input that is a pipe or a
-/// device does not count, and is not opened.
+/// Returns whether an output path leads to an input file, through any links. An input that is a
+/// pipe or a device does not count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;

@@ -110,13 +110,14 @@ impl<'p> ReadingBudget<'p> {
         Ok(())
     }
 
-    /// Counts work steps that are about to be taken for `variable`, which is named in the error. With
-    /// 0 steps, only checks for cancellation.
+    /// Counts work steps that are about to be taken for `variable`, which is named in the error,
+    /// and checks for cancellation. A call that only checks for cancellation passes 0 steps, which
+    /// count as one.
     pub fn work(&self, steps: u64, variable: &str) -> Result<(), VariableFault> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
         }
-        // `max(1)`: callers that only check for cancellation pass 0, and must not loop for ever.
+        // `max(1)`: a loop that only checks for cancellation must end, too.
         let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             return Err(VariableFault::TooMuchWork {

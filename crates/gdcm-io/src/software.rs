@@ -1,4 +1,4 @@
-//! The program's name, version and commit, as stated in every file that it writes.
+//! The program's name, version and commit, as stated in the files that it writes.
 //!
 //! The version has one source, the workspace's `Cargo.toml`. Only the program knows the commit, and
 //! sets it when it starts: the libraries need not be recompiled for every commit, and test output

@@ -48,7 +48,8 @@ impl UnknownKeys {
         }
     }
 
-    /// Returns a caution for each unknown key, with its place in the text.
+    /// Returns a caution for each unknown key, with its place in the text, and one with the number
+    /// of further keys.
     pub(super) fn cautions(&self, text: &[u8]) -> Vec<FileCaution> {
         if self.found.is_empty() {
             return Vec::new();

@@ -17,8 +17,8 @@ use crate::work::carry_out;
 /// An analysed study.
 #[pyclass(frozen, module = "gdcm._gdcm")]
 pub(crate) struct Analysis {
-    /// Locked only while the interpreter's lock is released, or both locks could wait for each
-    /// other.
+    /// Locked only while the interpreter's lock is released: otherwise a thread with one lock could
+    /// wait for the other while a second thread does the reverse.
     analysed: Mutex<AnalysedStudy>,
     /// Messages that the program reported, as JSON.
     #[pyo3(get)]
@@ -32,7 +32,8 @@ pub(crate) struct Analysis {
 }
 
 impl Analysis {
-    /// Returns the value that `read` takes from the analysis.
+    /// Returns the value that `read` takes from the analysis, while the interpreter's lock is
+    /// released.
     fn read<T: Send>(
         &self,
         py: Python<'_>,

@@ -79,7 +79,7 @@ impl Data {
         })
     }
 
-    /// Where the dataset comes from.
+    /// Path to the dataset file, or the example's name in parentheses.
     #[getter]
     fn source(&self) -> String {
         self.opened.source()

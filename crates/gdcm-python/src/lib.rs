@@ -43,14 +43,15 @@ fn run(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| gdcm::run(arguments))
 }
 
-/// Returns the zip archive with the example's flight records, or the real aircraft's.
+/// Returns the zip archive with the flight records of the simulated example or, if `is_real`, of
+/// the real aircraft.
 #[pyfunction]
 fn example_records(is_real: bool) -> &'static [u8] {
     gdcm::cli::calls::example_records(is_real)
 }
 
-/// Returns a command's option names: "analyze", "figure", "identify" or "assemble"; none for
-/// another command.
+/// Returns the option names of the command "analyze", "figure", "identify" or "assemble"; empty for
+/// any other command.
 #[pyfunction]
 fn options(command: &str) -> Vec<String> {
     gdcm::cli::calls::option_names_of(command)

@@ -60,7 +60,8 @@ impl Progress for Monitor {
 }
 
 /// Carries out work without the interpreter's lock. `callback(fraction, step)` is called in the
-/// calling thread while the work lasts, and with the fraction 1 once it has a result.
+/// calling thread when the progress has changed, and with the fraction 1 once the work has a
+/// result.
 ///
 /// # Errors
 /// The work's error, the callback's exception, or `KeyboardInterrupt`.

@@ -16,7 +16,7 @@ use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::Variable;
 
-/// Options for files with condition results.
+/// Options of `gdcm export` for files with results per condition.
 const OPTIONS: &[&str] = &["--condition"];
 
 /// Export as `corrections.json`.

@@ -15,7 +15,8 @@ use super::json_to_matlab::Layout;
 use super::matlab_values::cell_of_texts;
 use crate::formats::variables::Value;
 
-/// Channel values become arrays, ordered as in the dataset's `inputs` and `outputs`.
+/// Members with a special conversion, by name; see [`Layout`]. Channel values become arrays,
+/// ordered as in the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
     by_name: &["discontinuity"],
@@ -50,8 +51,9 @@ impl EarlierName {
 }
 
 /// Returns the members of `corrections.json` as a struct. Response lists become logical matrices
-/// with a row per output and a column per input. `net_gains` becomes several matrices; its original
-/// form is kept as `net_gain_table`. Names from earlier versions are kept.
+/// with a row per output and a column per input. `net_gains` becomes several matrices;
+/// `net_gain_table` holds all its members. Channel names and units are added, and solution members
+/// are repeated under their names from earlier versions.
 pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Value {
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {

@@ -16,7 +16,8 @@ use super::exported_model::ExportedModel;
 const NOTABLE_ERROR_DEG: f64 = 0.005;
 
 impl Export<'_> {
-    /// Returns the notes on a file with condition results.
+    /// Returns the notes on a file with condition results: conditions not chosen or without a
+    /// result; missing error bars, couplings or schedule; and the price of scheduled leads.
     pub(super) fn result_notes(&self) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = self.choice_notes();
@@ -41,7 +42,8 @@ impl Export<'_> {
         notes
     }
 
-    /// Returns the notes on a file with the schedule.
+    /// Returns the notes on a file with the schedule: its delays, the conditions that it does not
+    /// use, and the price of its leads.
     pub(super) fn schedule_notes(&self) -> Vec<ExportNote> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -80,9 +82,10 @@ impl Export<'_> {
         }]
     }
 
-    /// Returns the notes on the scheduled delays and leads: if the schedule has none, whether
-    /// `conditions` have delays of their own; else whether the schedule's are constant; then the
-    /// signed delays that cannot be scheduled.
+    /// Returns the notes on the scheduled delays and leads: if the schedule has none although the
+    /// study corrects the phase, the channels that the own corrections of `conditions` delay; if
+    /// the schedule has some, whether all are constant; then the signed delays that cannot be
+    /// scheduled.
     fn delay_notes(&self, schedule: &Schedule, conditions: &[ConditionId]) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = Vec::new();
@@ -100,7 +103,8 @@ impl Export<'_> {
         notes
     }
 
-    /// Returns whether all scheduled delays are the same at several airspeeds.
+    /// Returns whether no channel's scheduled delay (with leads: signed delay) depends on airspeed.
+    /// False without scheduled delays, and if the schedule has a single airspeed.
     fn has_constant_delays(&self, schedule: &Schedule) -> bool {
         let airspeeds = &schedule.airspeeds;
         if airspeeds.min_kt == airspeeds.max_kt {
@@ -117,7 +121,8 @@ impl Export<'_> {
     }
 }
 
-/// Returns a note on each condition with signed delays that cannot be scheduled.
+/// Returns a note on each condition with signed delays that cannot be scheduled; its channels are
+/// sorted by their difference from the other conditions, largest first.
 fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
     let mut by_condition: BTreeMap<ConditionId, Vec<SignedDelayApart>> = BTreeMap::new();
     for caution in &schedule.cautions {
@@ -152,8 +157,8 @@ fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
 }
 
 /// Returns the notes on a file with corrected models: left-out conditions; delays and lead price,
-/// from the schedule if it corrects the models, else the price from the models; and the accuracy of
-/// the worst model.
+/// from the schedule if it corrects the models, else only the price, from the models; and the
+/// accuracy of the worst model if its error is notable.
 pub(super) fn model_notes(export: &Export<'_>, models: &[ExportedModel]) -> Vec<ExportNote> {
     let mut notes = export.choice_notes();
     let conditions: Vec<ConditionId> = models.iter().map(|model| model.condition).collect();
@@ -180,7 +185,8 @@ pub(super) fn model_notes(export: &Export<'_>, models: &[ExportedModel]) -> Vec<
     notes
 }
 
-/// Returns the note on the phase error of a model.
+/// Returns the note on a model's phase error; for Padé approximants, the next higher order is the
+/// remedy, up to the highest.
 fn accuracy_note(model: &ExportedModel) -> ExportNote {
     let error_deg = model.approximation_error_deg;
     let band_top_rad_s = model.band_top_rad_s;

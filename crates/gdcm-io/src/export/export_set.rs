@@ -3,8 +3,9 @@
 //!
 //! ```text
 //! names   prefix + stem + number + extension; the number keeps existing files
-//! dry run each format computes its bytes, its summary and its notes; equal notes are merged
-//! write   all files, then their checksums if requested
+//! dry run each format computes its bytes, its summary and its notes; notes on the same subject are
+//!         merged; then the checksums of these files, if requested
+//! write   all files; the caller writes the report
 //! ```
 
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ use crate::output_set::{OutputSet, make_directory};
 
 /// Report file name, without the prefix.
 const REPORT_STEM: &str = "report";
-/// Name for the checksums in format lists.
+/// Name for the checksum file in format lists; also its extension.
 pub const CHECKSUMS: &str = "sha256";
 /// Checksum file name, without the prefix.
 const CHECKSUM_STEM: &str = "checksums";
@@ -34,7 +35,8 @@ pub enum ExistingNames {
     /// The set gets names as if no file existed.
     #[default]
     Ignore,
-    /// If a file exists, all names in the set get the same number: "_2", "_3".
+    /// If a file with one of the names exists, all names in the set get the same number: "_2",
+    /// "_3".
     Number,
 }
 
@@ -70,11 +72,12 @@ pub struct PlannedContents {
     pub summary: FileSummary,
     /// First lines of a text file, or a binary file's description.
     pub head: Vec<String>,
-    /// Remarks in words, as the file states them.
+    /// Remarks on the contents, as `gdcm export` prints them.
     pub remarks: Vec<String>,
 }
 
-/// A note, with the indices of the files that it concerns.
+/// A note, with the indices of the files that it concerns; the report's index follows the last
+/// file's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedNote {
     pub note: ExportNote,
@@ -86,10 +89,10 @@ pub struct PlannedNote {
 pub struct ExportPlan {
     pub files: Vec<PlannedFile>,
     pub notes: Vec<PlannedNote>,
-    /// Names without a number that exist in the folder.
+    /// Names that the set would have without a number, and that exist in the folder.
     pub existing: Vec<String>,
-    /// Number that keeps the new names apart from these files, as in the names: "_2"; empty without
-    /// a number.
+    /// Number in the names, by which existing files are kept, with its underscore: "_2"; empty
+    /// without a number.
     pub number: String,
     /// Report file name; the dry run does not compute the report.
     pub report: Option<String>,
@@ -110,7 +113,7 @@ impl ExportSet {
     }
 
     /// Returns the set's file names with this number in each: one per format in their order, then
-    /// checksums and report.
+    /// checksums and report if the set has them.
     fn names(&self, number: &str) -> Vec<String> {
         let mut names = Vec::new();
         for format in &self.formats {
@@ -141,7 +144,7 @@ impl ExportSet {
         names
     }
 
-    /// Returns the first number with which no file exists.
+    /// Returns the first number, from "_2", with which no file exists.
     fn free_number(&self) -> String {
         let mut count = 2;
         loop {
@@ -170,7 +173,8 @@ impl ExportSet {
         names.map(|name| self.folder.join(name)).collect()
     }
 
-    /// Computes all files without writing any.
+    /// Computes all files, with the checksums, without writing any. A file that cannot be computed
+    /// stays in the plan, with the fault instead of its contents.
     ///
     /// # Errors
     /// [`Cancelled`] between two files.
@@ -274,7 +278,8 @@ fn computed(export: &Export<'_>) -> Result<(PlannedContents, Vec<ExportNote>), E
 }
 
 impl ExportPlan {
-    /// Adds a note on the file that is added next, or on the report after all files; a note on the same subject is extended.
+    /// Adds a note on the file that is added next, or on the report after all files. If the plan
+    /// already has a note on the same subject, the file is added to that note.
     fn add_note(&mut self, note: ExportNote) {
         let file = self.files.len();
         for known in &mut self.notes {
@@ -291,7 +296,7 @@ impl ExportPlan {
         });
     }
 
-    /// Puts what can be changed first.
+    /// Sorts the notes: those with a remedy first, otherwise in their order.
     fn sort_notes(&mut self) {
         self.notes
             .sort_by_key(|planned| planned.note.remedy().is_none());
@@ -391,13 +396,14 @@ impl ExportPlan {
     }
 }
 
-/// Returns "uh60_correction_2.m".
+/// Composes a file name, such as "uh60_correction_2.m".
 fn file_name(prefix: &str, stem: &str, number: &str, extension: &str) -> String {
     format!("{prefix}{stem}{number}.{extension}")
 }
 
-/// Derives a file name prefix from a study or dataset name: letters, digits and underscores only,
-/// beginning with a letter, so that it can begin a function name.
+/// Derives a file name prefix from a study or dataset name: small ASCII letters, digits and
+/// underscores, with an underscore at its end and a letter at its beginning, so that it can begin a
+/// function name. Empty if the name begins with a digit, or has neither letters nor digits.
 pub fn proposed_prefix(name: &str) -> String {
     let mut prefix = String::new();
     for letter in name.chars() {

@@ -13,10 +13,12 @@ pub(super) struct ExportedModel {
     /// True airspeed \[kt\].
     pub(super) airspeed_kt: f64,
     pub(super) name: String,
-    /// "scheduled" or "own".
+    /// Applied correction in words
+    /// ([`correction_words`](super::model_description::correction_words)), such as "scheduled" or
+    /// "own".
     pub(super) correction: &'static str,
     pub(super) model: StateSpace,
-    /// A name for each state.
+    /// State names, in the order used by `model`.
     pub(super) states: Vec<String>,
     /// Number of states that represent delays.
     pub(super) delay_states: usize,

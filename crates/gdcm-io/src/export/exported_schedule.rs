@@ -86,8 +86,8 @@ impl ExportedSchedule<'_> {
     }
 
     /// Returns a channel's delay \[s\]: with leads, the signed delay, limited to positive values
-    /// ([`Curve::upper`]) because the negative ones are leads (`zero_s`); else the scheduled delay;
-    /// else zero.
+    /// ([`Curve::upper`]) because the negative ones are leads (`zero_s`); without leads, the
+    /// scheduled delay, or zero if no delays are scheduled.
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
         if let Some(leads) = &self.schedule.leads {
             // A table with one airspeed is a constant.
@@ -133,7 +133,8 @@ impl ExportedSchedule<'_> {
         }))
     }
 
-    /// Returns the numerator time constant \[s\] of a channel's lead filter at an airspeed.
+    /// Returns the numerator time constant \[s\] of a channel's lead filter at an airspeed, or the
+    /// denominator's if the signed delay there needs no lead; `None` if the schedule has no leads.
     fn zero_at_s(&self, channel: Channel, airspeed_kt: f64) -> Option<f64> {
         let leads = self.schedule.leads.as_ref()?;
         let tau_s = leads.taus_s[channel]

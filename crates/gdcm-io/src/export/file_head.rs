@@ -21,7 +21,8 @@ pub(super) fn text_head(bytes: &[u8]) -> Vec<String> {
     lines
 }
 
-/// Describes a binary file's variables: a line for each, and a line for each struct field.
+/// Describes a binary file's variables: a line for each, and a line for each struct field with the
+/// value in the first struct.
 pub(super) fn variables_head(variables: &[Variable]) -> Vec<String> {
     let mut lines = Vec::new();
     for variable in variables {

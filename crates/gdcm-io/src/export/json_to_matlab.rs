@@ -27,7 +27,8 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Converts a JSON value: objects become structs, lists of objects struct arrays, rectangular
-    /// lists of numbers matrices, lists of strings cell columns, and null becomes NaN.
+    /// lists of numbers matrices, lists of strings cell columns, and null becomes NaN. `name` is
+    /// the value's member name, which selects the conversions in [`Layout`].
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
             Json::Null | Json::Number(_) => Value::number(number(json)),
@@ -50,9 +51,9 @@ impl Layout {
         }
     }
 
-    /// Converts a list. The first that applies: empty, an empty cell column; objects, gathered or a
-    /// struct array (`columns`); numbers, a row; lists with equal lengths, gathered with two
-    /// indices; anything else, gathered with one.
+    /// Converts a list. The first that applies: empty, an empty cell column; objects, gathered if
+    /// `columns` contains `name`, otherwise a struct array; numbers, a row; lists with equal
+    /// lengths, gathered with two indices; anything else, gathered with one.
     fn list(&self, name: &str, entries: &[Json]) -> Value {
         if entries.is_empty() {
             return Value::Cell(CellArray {
@@ -199,7 +200,7 @@ fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
 }
 
 /// Returns the leaves' common length if all are equally long lists of numbers; null counts as a
-/// missing list.
+/// missing list. `None` otherwise, and if the lists are empty.
 fn row_length(leaves: &[&Json]) -> Option<usize> {
     let length = leaves
         .iter()

@@ -62,7 +62,7 @@ const OPTIONS: &[&str] = &["--breakpoints"];
 /// Table deviation, in percent or ms, below which no note is needed.
 const NOTABLE_DEVIATION: f64 = 0.05;
 
-/// Quantity in a column: a gain, or a time \[s\].
+/// Quantity in a column: a gain, an entry in the mixing matrix, or a time \[s\].
 #[derive(Debug, PartialEq)]
 struct Quantity {
     name: &'static str,
@@ -93,8 +93,8 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the deviation of `value` from `truth`: relative \[%\] for a gain, absolute \[ms\]
-    /// for a time.
+    /// Returns the deviation of `value` from `truth`: absolute \[ms\] for a time, relative \[%\]
+    /// for any other quantity.
     fn deviation(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
@@ -123,7 +123,7 @@ struct Column {
     name: String,
     /// One value per table row.
     values: Vec<f64>,
-    /// Maximum deviation from the schedule: \[%\] for a gain, \[ms\] for a time.
+    /// Maximum deviation from the schedule: \[ms\] for a time, \[%\] for any other quantity.
     deviation: TableDeviation,
 }
 
@@ -279,7 +279,8 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns the notes on the schedule, followed by the greatest gain error and time error.
+    /// Returns the notes on the schedule, followed by the greatest gain error and time error if
+    /// they are notable ([`NOTABLE_DEVIATION`]); errors in the mixing are not noted.
     fn export_notes(&self, export: &Export<'_>) -> Vec<ExportNote> {
         let mut notes = export.schedule_notes();
         if let Some(column) = self.worst_column(|quantity| quantity == &GAIN) {

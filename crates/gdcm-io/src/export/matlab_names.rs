@@ -9,8 +9,9 @@ const KEYWORDS: &str = "break case catch classdef continue do else elseif end en
     endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
     until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
 
-/// Returns a name that MATLAB accepts for a field: other characters than letters and digits become
-/// _, the name starts with a letter, and it is cut to [`LONGEST_NAME`].
+/// Returns a name that MATLAB accepts for a field: characters other than ASCII letters and digits
+/// become _, an x precedes a first character that is no letter, and the name is cut to
+/// [`LONGEST_NAME`].
 pub(super) fn valid_name(name: &str) -> String {
     let mut valid = String::new();
     if !name.starts_with(|first: char| first.is_ascii_alphabetic()) {

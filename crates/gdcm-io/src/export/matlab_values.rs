@@ -61,7 +61,8 @@ pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
 }
 
-/// Returns a struct with each correction part's source in a file, and with the omitted parts.
+/// Returns a struct with each correction part's source in a file, the physics parameter changes,
+/// and the omitted parts.
 pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
     let mut fields = Fields::default();
     for (name, source) in contents.parts() {

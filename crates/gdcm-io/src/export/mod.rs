@@ -1,6 +1,7 @@
 //! A study's corrections for other tools: programs and tables that compute the corrections
-//! elsewhere, corrected models, and all results as MATLAB variables. Each is an [`ExportFormat`];
-//! the command line, the window and the documentation list the formats in [`EXPORTERS`].
+//! elsewhere, corrected models, and all results as JSON, CSV or a MATLAB struct. Each is an
+//! [`ExportFormat`]; the command line, the window and the documentation list the formats in
+//! [`EXPORTERS`].
 
 mod all_results;
 mod corrected_models;
@@ -43,7 +44,7 @@ use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
 use crate::output_set::OutputSet;
 
-/// What a format is for, in display order.
+/// Purpose that several formats share; the variants are in display order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FormatGroup {
     /// Results per condition.
@@ -88,7 +89,8 @@ pub struct ExportFormat {
     pub title: &'static str,
     /// Short description, for lists of formats.
     pub words: &'static str,
-    /// Accepted command-line options.
+    /// Options of `gdcm export` that affect this format. An option that affects no requested format
+    /// is rejected.
     pub options: &'static [&'static str],
     /// Rejects a file name that does not suit the format; called before the analysis.
     check_path: fn(&Path) -> Result<(), ExportFault>,
@@ -184,8 +186,8 @@ pub struct ExportSource {
 }
 
 impl ExportSource {
-    /// Returns the origin of corrections from a file: the study, or an unsaved study's dataset;
-    /// `None` for the embedded example.
+    /// Creates the origin from its file name, without folders. `file` is the study, or the dataset
+    /// if the study is not saved; `None` for the embedded example.
     pub fn new(file: Option<&Path>, sha256: &str) -> Self {
         let name = match file.and_then(Path::file_name) {
             Some(name) => name.to_string_lossy().into_owned(),
@@ -236,7 +238,8 @@ impl<'e> Export<'e> {
     /// Returns the study's schedule with its couplings.
     ///
     /// # Errors
-    /// Fails if the study has no schedule, or lacks the couplings that it requests.
+    /// Fails if the study has no schedule, or if couplings or physics parameters that it requests
+    /// are unavailable.
     fn scheduled(&self) -> Result<ExportedSchedule<'e>, ExportFault> {
         let analysis = self.analysis;
         let schedule = match &analysis.schedule {

@@ -45,7 +45,8 @@ pub(super) fn comment(text: &str) -> String {
     plain
 }
 
-/// Writes a string as a C string literal; bytes other than plain characters become octal escapes.
+/// Writes a string as a C string literal; quotation marks, backslashes, question marks and bytes
+/// that are not printable ASCII become octal escapes.
 pub(super) fn c_text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for byte in text.bytes() {

@@ -29,14 +29,16 @@ struct Language {
     exp: &'static str,
     min: &'static str,
     max: &'static str,
-    /// Name of the function that evaluates a polynomial, given its coefficients and `v`.
+    /// Name of the function that evaluates a polynomial, given its coefficients and the scaled
+    /// airspeed `v`.
     polynomial: &'static str,
-    /// Name of the function that interpolates a table, given airspeeds, values and `a`.
+    /// Name of the function that interpolates a table, given its airspeeds, its values and the
+    /// airspeed `a`.
     table: &'static str,
     /// Whether lists of numbers must be declared as arrays; otherwise they are written in place, in
     /// square brackets.
     declares_arrays: bool,
-    /// Writes a channel name as a string literal.
+    /// Writes a string as a literal; the MATLAB template contains no such literals.
     text: fn(&str) -> String,
 }
 

@@ -97,8 +97,9 @@ fn check_available(analysis: &Analysis) -> Result<(), ExportFault> {
     Ok(())
 }
 
-/// Returns the correction parts in the requested models; none if the study lacks the requested
-/// schedule.
+/// Returns the correction parts in the requested models. If the schedule that they require does not
+/// exist, the parts in an exported schedule: at most couplings and physics parameters if the study
+/// has no schedule at all.
 pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     let conditions: Vec<ConditionId> = request.chosen(analysis).into_iter().collect();
     match ExportContents::of_models(analysis, request.correction, &conditions) {
@@ -166,7 +167,7 @@ fn exported_model(
 }
 
 /// Returns the phase lag \[deg\] at `omega` \[rad/s\] due to the omitted delays: the longest input
-/// delay plus the longest output delay over all conditions.
+/// delay plus the longest output delay over the conditions in `contents`.
 fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
     let mut input_s = 0.0_f64;
     let mut output_s = 0.0_f64;

@@ -14,7 +14,8 @@ pub enum Example {
     /// A synthetic UH-60A-class helicopter at eleven flight conditions.
     Simulated,
     /// An AscTec Pelican quadrotor: its published physics model and two flights from 2011. The
-    /// written folder also contains an ANT-X drone, as a second physics model to be corrected.
+    /// written folder also contains a physics model and flight data from an ANT-X drone, as a
+    /// second aircraft.
     RealAircraft,
 }
 
@@ -121,8 +122,9 @@ impl Example {
         }
     }
 
-    /// Returns the example with this name; if no example has it, the simulated one, with which
-    /// every study without a dataset path was read while it was the only example.
+    /// Returns the example with this name, or the simulated example if no example has it: older
+    /// program versions, which had no other example, opened it for every study without a dataset
+    /// path.
     pub(crate) fn from_name(name: &str) -> Self {
         for example in Self::ALL {
             if example.name() == name {

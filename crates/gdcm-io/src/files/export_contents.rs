@@ -102,7 +102,7 @@ pub struct ExportContents {
     pub gains: PartSource,
     pub delays: PartSource,
     pub leads: PartSource,
-    /// Mixing and feedback, identical for all conditions.
+    /// Mixing and feedback, which are fitted to several conditions together.
     pub couplings: PartSource,
     /// Physics parameter changes in words ("Ixx +4 %"); empty if the physics models are the
     /// dataset's. The other parts are computed for the moved models.
@@ -146,10 +146,11 @@ impl ExportContents {
 
     /// Returns the contents of a file with the corrected models for these conditions.
     ///
-    /// 1. Own corrections: no schedule, nothing is omitted.
+    /// 1. Own corrections: no schedule, and no delays or leads are omitted.
     /// 2. Otherwise the schedule; for a single condition, that of the others if requested.
     /// 3. Omitted delays are only those of these conditions, and only if the schedule has none.
     /// 4. Leads are omitted if requested.
+    /// 5. Physics parameters are listed only if they move a model in one of these conditions.
     ///
     /// # Errors
     /// [`ScheduleError`] if the schedule is requested but does not exist.
@@ -252,7 +253,8 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of a schedule, without the delays that it lacks.
+    /// Returns the contents of a schedule; the delays in the conditions' own corrections count as
+    /// omitted if the schedule has none.
     fn of_schedule(analysis: &Analysis, schedule: &Schedule) -> Self {
         let mut contents = Self {
             gains: PartSource::Scheduled,
@@ -294,7 +296,8 @@ impl ExportContents {
             .collect()
     }
 
-    /// Returns lines for a report: "contains: …", then "left out: …" for each omitted part.
+    /// Returns lines for a report: "contains: …"; if physics parameters are moved, "valid only for
+    /// physics models with …"; then "left out: …" for each omitted part.
     pub fn lines(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = vec![format!("contains: {}", self.words())];
         if !self.physics.is_empty() {

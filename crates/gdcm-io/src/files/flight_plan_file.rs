@@ -16,7 +16,7 @@ use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
 use crate::software::software;
 
-/// Planned sweeps for one condition.
+/// Planned sweeps for one condition, and ways to reach its targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionPlan {
     /// Condition in the dataset; `None` without a dataset.

@@ -33,7 +33,7 @@ pub struct IdentifiedModels<'f> {
     /// Identified models, in the units of `channels`.
     pub found: &'f Identification,
     pub channels: &'f RecordChannels,
-    /// Records used, ordered by their indices in the results.
+    /// Records that were used, in the order of `record_uses` in the results.
     pub records: &'f [ConditionRecord],
     pub cautions: &'f [CautionNote],
     /// Notes on assumptions made while the records were read.
@@ -66,9 +66,9 @@ struct MeasuredText {
     sd_deg: Nested<3>,
 }
 
-/// Adds a file with identification results to `outputs`: the recommended model, then the CT-PBSID
-/// model without refinement, then the other models in the bundle. Non-finite values are written as
-/// `null`.
+/// Adds a file with identification results to `outputs`. The models are, in this order, the
+/// recommended model, the CT-PBSID model without refinement, and the other models in the bundle.
+/// Non-finite values are written as `null`.
 pub fn add_identified(
     results: &IdentifiedModels<'_>,
     path: &Path,
@@ -225,8 +225,8 @@ fn pole_json(estimate: &PoleEstimate) -> Value {
     })
 }
 
-/// Describes the record at `index`: first and last time \[s\] in the used part and in each used
-/// segment, and the reasons why other segments were not used.
+/// Describes the record at `index`: first and last time \[s\] of the part that forms it and of each
+/// used segment, and in `why_not` its gaps, each with cause and treatment.
 fn record_json(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();
     if let Some(used) = found.record_uses.get(index) {

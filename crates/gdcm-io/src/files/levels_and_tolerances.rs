@@ -35,7 +35,7 @@ struct TolerancesText {
 /// [[rad/s, s], ...], "source": "..."}]` (M17.1); level and source are optional.
 ///
 /// # Errors
-/// [`FileError`] with the line if the file cannot be read, or a boundary is invalid.
+/// [`FileError`] if the file cannot be read, or if a boundary is invalid, with its line.
 pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
     let source = Source::read(path, &ReadingBudget::default())?;
     levels_from_text(source.text(), path)

@@ -272,8 +272,9 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// Returns labels for `count` channels from their names and units; either list may be empty.
-/// Returns `None` if another length differs from `count`.
+/// Returns labels for `count` channels from their names and units; either list may be empty. A unit
+/// in `units` replaces a unit beside the name. Returns `None` if a list that is not empty has
+/// another length than `count`.
 fn labels_from_texts(
     count: usize,
     names: Vec<LabelText>,

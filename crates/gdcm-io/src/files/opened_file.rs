@@ -58,7 +58,8 @@ fn begins_an_object(path: &Path) -> bool {
     read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
-/// Opens a dataset or a study, depending on the file's content.
+/// Opens a dataset or a study, depending on the stated format; a file without one is read as a
+/// dataset.
 pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
     let source = Source::read(path, budget)?;
     match Outline::format_of(source.text(), budget).as_deref() {

@@ -129,7 +129,7 @@ pub(crate) struct RulesText {
     pub(crate) models: BTreeMap<String, RowRule>,
 }
 
-/// Returns the patterns used for a file that contains none.
+/// Returns the patterns used for a file without the key `patterns`.
 fn standard() -> Vec<String> {
     pattern_texts(standard_patterns())
 }
@@ -279,7 +279,7 @@ fn pattern_texts(patterns: &[NamePattern]) -> Vec<String> {
         .collect()
 }
 
-/// Returns the error for an entry that contains an unexpected word.
+/// Returns the error for an entry with an unexpected word or value.
 fn word_error(entry: String, expected: &str, found: String) -> ContentError {
     let fault = ContentFault::Word {
         expected: expected.to_owned(),

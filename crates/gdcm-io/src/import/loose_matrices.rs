@@ -25,8 +25,8 @@ pub(super) struct LooseMatrix {
 }
 
 impl LooseMatrix {
-    /// Takes the matrix from a file; `None` unless it is the only variable and the file name ends
-    /// in a matrix letter.
+    /// Takes the matrix from a file; `None` unless the only variable is an array and the file name
+    /// ends in a matrix letter.
     pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
@@ -56,7 +56,8 @@ impl LooseMatrix {
 }
 
 /// Splits a file name without extension into the matrix letter at its end and the part before:
-/// "nominal_A" is the matrix A of "nominal".
+/// "nominal_A" is the matrix A of "nominal". `None` if the name does not end in a matrix letter, or
+/// if the letter belongs to a word.
 pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last()?;
     if !matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E') {

@@ -72,7 +72,7 @@ impl FoundModels {
 /// tables. A file that cannot be read is recorded in `faults`, and the others are read.
 ///
 /// # Errors
-/// [`FileError`] if a folder cannot be read, or the only file.
+/// [`FileError`] if a folder cannot be read, or if the only file cannot be read.
 pub fn read_models(
     paths: &[PathBuf],
     headings: &Headings,

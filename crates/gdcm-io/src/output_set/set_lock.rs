@@ -14,7 +14,8 @@ pub(super) struct SetLock {
 }
 
 impl SetLock {
-    /// Waits for the lock; `None` if the file system has no locks.
+    /// Waits for the lock; `None` if there can be none, for example because the file system has no
+    /// locks.
     pub(super) fn acquire(directory: &Path) -> Option<Self> {
         let path = directory.join(format!("{PREFIX}lock{SUFFIX}"));
         loop {

@@ -61,7 +61,7 @@ fn set_permissions(builder: &mut tempfile::Builder<'_, '_>, target: &Path) {
     builder.permissions(permissions);
 }
 
-/// Elsewhere a file has its directory's permissions.
+/// Does nothing on other systems, where a new file inherits its directory's permissions.
 #[cfg(not(unix))]
 fn set_permissions(_: &mut tempfile::Builder<'_, '_>, _: &Path) {}
 

@@ -110,8 +110,9 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
     }
 }
 
-/// Tabulates ΔJ for the responses `pairs` at every condition, with as many conditions side by side
-/// as fit on a page; the titles contain `name`.
+/// Tabulates ΔJ for the responses `pairs` in the first [`CONDITIONS_DRAWN`] conditions, with as
+/// many conditions side by side as fit on a page, and lists the reasons for missing values; the
+/// titles contain `name`.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,
@@ -162,7 +163,8 @@ fn add_tables(
     page.list(missing);
 }
 
-/// Tabulates J before and after, and its change in parts, for every condition and response.
+/// Tabulates J before and after, and its change in parts, for every assessed condition and those
+/// responses in `pairs` that have a value.
 fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]) -> Table {
     let columns = [
         "condition",

@@ -148,7 +148,8 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
     }
 }
 
-/// Plots the model poles, with their shifts due to couplings.
+/// Plots the model poles, with their shifts due to couplings; nothing if the poles cannot be
+/// computed.
 fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let Ok(modes) = ConditionModes::compute(&source.curves.condition, &Unobserved) else {
         return;

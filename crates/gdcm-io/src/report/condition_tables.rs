@@ -61,7 +61,7 @@ pub(super) fn condition_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Returns how many models in a bundle are kept: "8 of 9".
+/// Returns how many models in a bundle the analyst has not rejected: "8 of 9".
 fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     let models = condition.bundle(kind);
     let rejected = &study.choice(condition.id()).bundle(kind).rejected;
@@ -72,7 +72,7 @@ fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String 
     format!("{kept} of {}", models.len())
 }
 
-/// Returns in a single word whether the gains are proven optimal.
+/// Returns in two words whether the gains are proven optimal.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",

@@ -107,7 +107,8 @@ fn shared_remarks(analysis: &Analysis) -> Vec<String> {
 }
 
 /// Adds an appendix with a subsection for each condition: representatives, gains and delays with
-/// their basis, and plots.
+/// their basis, and plots for the first [`CONDITIONS_DRAWN`]; or the reason why there is no result.
+/// Each condition is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -252,7 +253,7 @@ fn flight_words(condition: &Condition) -> String {
     parts.join(", ")
 }
 
-/// Describes how many models are kept in a bundle, and its representative.
+/// Describes how many models in a bundle the analyst has not rejected, and its representative.
 fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleKind) -> String {
     let choice = analysis.study.choice(result.condition.id()).bundle(kind);
     let name = result.representative_name(kind);

@@ -164,15 +164,15 @@ fn correction_cells(
     cells
 }
 
-/// Returns the half-width of a net gain's error bar \[%\].
+/// Returns the half-width of a net gain's error bar \[%\]; `None` without an error bar.
 fn half_width_percent(analysis: &Analysis, result: &ConditionAnalysis, pair: Pair) -> Option<f64> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let bar = uncertainty.bar(result.condition.id(), Scalar::NetGain(pair))?;
     Some(100.0 * bar.half_width(uncertainty.level)?)
 }
 
-/// Tabulates each condition's net delays; negative values are leads. `None` if the correction
-/// delays no response.
+/// Tabulates each condition's net delays for `pairs`; negative values are leads. `None` if the
+/// study corrects no phase, and if all values are displayed as zero.
 fn delay_table(analysis: &Analysis, pairs: &[Pair]) -> Option<Table> {
     let study = &analysis.study;
     if study.settings.phase == PhaseCorrection::None {
@@ -210,7 +210,8 @@ fn net_signed_delay_ms(result: &ConditionAnalysis, pair: Pair) -> f64 {
     s_to_ms(delays_s[Channel::Input(pair.input)] + delays_s[Channel::Output(pair.output)])
 }
 
-/// Returns a sentence on how the schedule changes J for the nominal models.
+/// Returns a sentence on how the schedule changes J for the nominal models, and a warning if the
+/// schedule must not be used between the conditions' airspeeds.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();

@@ -1,7 +1,8 @@
 //! Limits on conditions, responses and models in the report, which keep it printable; the result
 //! files contain all of them.
 
-/// Maximum number of conditions with figures; the tables list all conditions.
+/// Maximum number of conditions with figures, and in the tables of ΔJ; the other tables list all
+/// conditions.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
 /// Maximum number of responses with figures, separately for on-axis and off-axis responses.
 pub(super) const PAIRS_DRAWN: usize = 40;

@@ -1,5 +1,5 @@
 //! Report on a study: a single HTML file without external resources, for printing on A4 or letter
-//! paper. The bytes depend only on the study.
+//! paper. The same inputs give the same bytes: the report states neither the time nor any folder.
 //!
 //! The first page has the verdict, the corrections and the signatures. The contents follow, then the
 //! sections that a reader needs, with figures four to a page, and appendices with the rest.
@@ -47,7 +47,8 @@ pub use self::first_page::assessment_sentence;
 pub struct ReportSource {
     /// Study file name; `None` if not saved.
     pub study: Option<String>,
-    /// Dataset file name; "(embedded example)" without a file.
+    /// Dataset file name; without a file, the example's name in parentheses, such as "(embedded
+    /// example)".
     pub dataset: String,
     /// SHA-256 of the dataset file, in hexadecimal.
     pub sha256: String,
@@ -106,9 +107,9 @@ pub fn report(
     Ok(compose_report(subject, source, engine, progress)?.html)
 }
 
-/// Returns the report on an analysis. Error bars and the assessments of couplings and
-/// physics parameters are computed first if the analysis lacks them, because several sections show them; `engine` also
-/// computes the responses that are plotted. Each condition is a progress step.
+/// Returns the report on an analysis. Error bars and the assessments of couplings and physics
+/// parameters are computed first if the analysis lacks them, because several sections show them;
+/// `engine` also computes the responses that are plotted. Each condition is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.

@@ -58,7 +58,7 @@ impl NotedTable {
 }
 
 /// Returns the table without the columns in which every cell is empty or missing. A table that
-/// would become empty is unchanged.
+/// would keep fewer than two columns is unchanged.
 fn without_empty_columns(table: &Table) -> Table {
     let mut kept = Vec::new();
     for column in 0..table.columns.len() {

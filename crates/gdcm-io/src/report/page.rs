@@ -165,8 +165,8 @@ impl Page {
         self.body.push_str("</tbody></table>\n");
     }
 
-    /// Adds a table under its title; the headings are repeated on every printed page. A table
-    /// without rows is omitted.
+    /// Adds a table with at most [`ROWS`] rows under its title, as a [`NotedTable`]; the headings
+    /// are repeated on every printed page. A table without rows is omitted.
     pub(super) fn table(&mut self, table: &Table) {
         if table.rows.is_empty() {
             return;
@@ -204,12 +204,13 @@ impl Page {
         }
     }
 
-    /// Adds a table in parts with at most `columns` columns; each part repeats the first column.
+    /// Adds a table in parts; each repeats the first column, followed by at most `columns` others.
     pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
         self.wide_table_behind(table, 1, columns);
     }
 
-    /// Adds a table in parts; each part repeats the first `heads` columns.
+    /// Adds a table in parts; each repeats the first `heads` columns, followed by at most `columns`
+    /// others.
     pub(super) fn wide_table_behind(&mut self, table: &Table, heads: usize, columns: usize) {
         for from in (heads..table.columns.len()).step_by(columns) {
             let to = from + columns;

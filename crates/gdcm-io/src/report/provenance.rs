@@ -49,7 +49,8 @@ fn channel_words(channels: &[Channel]) -> String {
     words.join(", ")
 }
 
-/// Adds the section on the models' source files, if the dataset records any.
+/// Adds the appendix on the models' source files: a table, or a sentence if the dataset states
+/// none.
 pub(super) fn add_models(page: &mut Page, study: &Study) {
     let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
     let mut unknown = 0;

@@ -6,7 +6,8 @@ use gdcm_study::results::export_note::ExportNote;
 use super::ReportSubject;
 use super::limits::CONDITIONS_DRAWN;
 
-/// Returns the notes on a report.
+/// Returns the notes on a report: conditions without a result or without figures; missing
+/// couplings, schedule and flight records.
 pub(super) fn report_notes(subject: ReportSubject<'_>) -> Vec<ExportNote> {
     let analysis = subject.analysis;
     let dataset = &analysis.study.dataset;

@@ -27,8 +27,8 @@ use super::{CancellationOnly, ReportSubject};
 const COLUMNS: usize = 9;
 /// Columns that each part of the summary table repeats: condition, airspeed and model.
 const SUMMARY_HEADS: usize = 3;
-/// Maximum number of other columns in the summary table: those that [`COLUMNS`] leaves with two
-/// repeated columns more than one.
+/// Maximum number of other columns in the summary table: two fewer than [`COLUMNS`], because it
+/// repeats two more columns than a table that repeats only its first.
 const SUMMARY_COLUMNS: usize = COLUMNS - 2;
 /// Maximum number of plots per row in the figure of bandwidths.
 const BANDWIDTH_COLUMNS: usize = 4;
@@ -79,8 +79,8 @@ pub(super) fn add_requirements(
     add_grids(page, requirements, subject.histories, study);
 }
 
-/// Adds the appendix on the requirements: bandwidths, modes, and time histories if flight records
-/// are available.
+/// Adds the appendix on the requirements: bandwidths, modes, time histories if flight records are
+/// available, and the reasons for missing values with cautions.
 pub(super) fn add_requirement_details(
     page: &mut Page,
     requirements: &Requirements,
@@ -174,8 +174,8 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     page.list(remarks.lines());
 }
 
-/// Returns "Level 1 of R: …" for each boundary with a source, and groups boundaries from the same
-/// source.
+/// Returns a line for each source of level boundaries, such as "Level 1 of R, Level 2 of R: …";
+/// boundaries without a source are omitted.
 fn level_sources(study: &Study) -> Vec<String> {
     let mut names_by_source: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for boundary in study.requirements.levels.as_slice() {
@@ -194,7 +194,7 @@ fn level_sources(study: &Study) -> Vec<String> {
     lines
 }
 
-/// Whether the bandwidth or the phase delay is defined.
+/// Returns whether the bandwidth or the phase delay is defined.
 fn is_known(finding: &BandwidthFinding) -> bool {
     finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
 }
@@ -242,7 +242,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.list(remarks.lines());
 }
 
-/// Tabulates the tolerances set by the user.
+/// Tabulates the tolerances with which the time histories were compared.
 fn tolerance_table(histories: &TimeHistories) -> Table {
     let mut table = Table::new(
         "Tolerances",

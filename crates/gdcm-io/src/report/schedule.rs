@@ -25,7 +25,7 @@ const PAIRS_IN_A_FIGURE: usize = 10;
 /// Maximum number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
 
-/// Adds the section on the schedule.
+/// Adds the section on the schedule; if there is none, only the reason.
 pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Schedule over airspeed");
     match &analysis.schedule {
@@ -52,7 +52,7 @@ pub(super) fn add_channels_of_conditions(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Places a figure's plots in at most two rows, with at least five plots each.
+/// Places a figure's plots in at most two rows of at least five columns.
 fn in_two_rows(figure: Figure) -> Figure {
     let columns = figure.plots.len().div_ceil(2).max(5);
     figure.columns(columns)
@@ -128,7 +128,8 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
     ]);
 }
 
-/// Describes a schedule's kind, degree and variables.
+/// Describes a schedule's kind, degree, variables and airspeed tolerance, and whether delays are
+/// scheduled.
 fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -214,7 +215,8 @@ fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     page.wide_table(&table, COLUMNS);
 }
 
-/// Adds the scheduled gains, net gains and, if scheduled, delays at every condition's airspeed.
+/// Adds the scheduled gains, net gains and, if scheduled, delays at each distinct scheduled
+/// airspeed.
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let channels = all_channels(dataset);

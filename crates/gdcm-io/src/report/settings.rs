@@ -9,8 +9,8 @@ use gdcm_words::gain_source::gain_source_text;
 use super::page::Page;
 use super::wording::{capital, names};
 
-/// Adds the section on the settings: constrained and ignored responses, then every setting that
-/// affects the results.
+/// Adds the section on the settings: on-axis, constrained and ignored responses, then every setting
+/// that applies to the study.
 pub(super) fn add_settings(page: &mut Page, study: &Study) {
     page.section("Settings");
     let settings = &study.settings;

@@ -7,9 +7,10 @@ use gdcm_study::{ConditionAnalysis, Study};
 
 use super::limits::MODELS_SHOWN;
 
-/// Returns the indices of a bundle's models that are listed and drawn: all models in a short
-/// bundle; in a long bundle the representative, nominal and suggested models, then rejected models,
-/// then others spread evenly over the bundle.
+/// Returns the indices of a bundle's models that are listed and drawn: all models if there are at
+/// most [`MODELS_SHOWN`]; otherwise, up to this number, the representative, the nominal model and
+/// suspected outliers, then rejected models (at most half), then models spread evenly over the
+/// bundle.
 pub(super) fn models_shown(
     study: &Study,
     result: &ConditionAnalysis,

@@ -36,8 +36,8 @@ fn program_path() -> io::Result<PathBuf> {
     Ok(folder.join("bin").join(name))
 }
 
-/// Runs the program until its window is closed; returns what it printed on standard error if it
-/// failed.
+/// Runs the program until its window is closed. If it fails, returns what it printed on standard
+/// error, or its exit status if it printed nothing.
 fn open_window(program: &Path, arguments: Vec<OsString>) -> Result<(), String> {
     let mut command = Command::new(program);
     command

@@ -35,8 +35,8 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
 /// Writes a figure to a file; the file extension selects the format.
 ///
 /// # Errors
-/// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without data; otherwise the
-/// error that prevents writing.
+/// [`FileError::FigureFormat`] for an unknown extension, [`FileError::FigureWithoutNumbers`] if CSV
+/// is requested for a figure without data; otherwise the error that prevents writing.
 pub fn write_figure(
     figure: &Figure,
     width: ColumnWidth,

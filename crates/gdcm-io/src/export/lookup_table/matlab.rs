@@ -7,9 +7,10 @@ use crate::export::matlab_values::{Fields, cell_of_texts, column, contained_part
 use crate::formats::variables::{Value, Variable};
 
 impl BreakpointTable<'_> {
-    /// Returns the variable `gdcm_table`: the airspeeds, and for inputs and outputs matrices with
-    /// gains, delays \[s\] and lead numerators \[s\] with a row for each airspeed and a column for
-    /// each channel, with their maximum deviations.
+    /// Returns the variable `gdcm_table`: the breakpoints (airspeed and, if scheduled, second
+    /// variable); for inputs and outputs, matrices with gains, delays \[s\] and lead numerators
+    /// \[s\], a row for each breakpoint and a column for each channel, with their maximum
+    /// deviations; couplings and lead filters, if there are any; and a description.
     pub(super) fn variable(&self) -> Variable {
         let scheduled = &self.scheduled;
         let mut fields = Fields::default();

@@ -166,8 +166,8 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
 /// scheduled correction, for every response in the chosen conditions. A missing value is an empty
 /// cell. `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
 /// (M15.2), and the columns `…_low` and `…_high` contain confidence intervals. The last two columns
-/// contain the gain that the condition's own leads add to the response at ten times the band, and
-/// the validity limit (M15.6).
+/// contain the gain that the condition's own leads add to the response at ten times the band's
+/// upper end, and the frequency above which they make the model invalid (M15.6).
 pub fn write_assessment_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -201,8 +201,9 @@ impl ResponseRow<'_> {
         }
     }
 
-    /// Returns the deviation in the band that remains because one gain cannot match every
-    /// frequency.
+    /// Returns the half-width of `ln |H_ref / H_sim|` over the band (identified over physics
+    /// representative), a mismatch that remains because one gain cannot match every frequency;
+    /// `None` without uncertainty.
     fn left_in_band(&self) -> Option<f64> {
         let uncertainty = self.results.analysis.uncertainty.as_ref()?;
         let id = self.results.condition.id();

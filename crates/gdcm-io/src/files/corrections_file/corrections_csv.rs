@@ -98,10 +98,10 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
 ];
 
 /// Writes `corrections.csv`: for the chosen conditions, the channel gains (factors) and delays
-/// \[s\], and their scheduled values at the same airspeeds; with leads, also the signed delays and
-/// the lead filters (M15). With couplings, further columns give, in the row of an input, its
-/// coefficients for each input (mixing) and each output (feedback) (M16). A missing value is an
-/// empty cell.
+/// \[s\], their confidence intervals, and their scheduled values at the same flight state; with
+/// leads, also the signed delays and the lead filters (M15). With couplings, further columns give,
+/// in the row of an input, its coefficients for each input (mixing) and each output (feedback)
+/// (M16). A missing value is an empty cell.
 pub fn write_corrections_csv(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -151,7 +151,7 @@ impl ChannelRow<'_> {
     }
 
     /// Returns the coefficients with which all inputs (mixing) and outputs (feedback) act on the
-    /// row's input; empty without couplings.
+    /// row's input; empty cells in an output's row, and no cells without couplings.
     fn coupling_cells(&self) -> Vec<String> {
         let Some(fitted) = self.results.analysis.fitted_couplings() else {
             return Vec::new();

@@ -15,7 +15,9 @@ use gdcm_words::coupling_remark::coupling_remark_text;
 use super::pair_rows::rows_of;
 use crate::json_empty_members::without_empty;
 
-/// Returns the study's mixing and feedback, in the dataset's units; null without couplings.
+/// Returns the study's feedback, in the dataset's units, with the benefit of the couplings; null
+/// without couplings, and only the reason (`why`) if they are unavailable. The mixing, which
+/// depends on airspeed, is in each condition.
 pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,

@@ -91,7 +91,8 @@ impl ConditionResults<'_> {
         }
     }
 
-    /// Formats a variance component as a standard deviation; empty if it is missing.
+    /// Formats a variance component as a standard deviation: for a gain, of its natural logarithm;
+    /// for a delay, in seconds. Empty if it is missing.
     pub(super) fn deviation(
         &self,
         scalar: Scalar,

@@ -47,7 +47,8 @@ impl<'a> LabelledAnalysis<'a> {
         Value::Object(members)
     }
 
-    /// Returns an object that maps each channel name to its value.
+    /// Returns an object with the members `inputs` and `outputs`, each of which maps channel names
+    /// to values.
     pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
         let mut inputs = Map::new();
         for (index, name) in self.inputs.iter().enumerate() {
@@ -60,7 +61,7 @@ impl<'a> LabelledAnalysis<'a> {
         json!({"inputs": inputs, "outputs": outputs})
     }
 
-    /// Returns each channel's regression coefficients.
+    /// Returns each channel's regression parameters: polynomial coefficients or table values.
     pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
         self.by_channel(|channel| regressions[channel].parameters().to_vec())
     }

@@ -41,7 +41,8 @@ pub const RESULT_FILES: [&str; 4] = [
     "corrections.sha256",
 ];
 
-/// Name of the physics parameter table, which is written if physics parameters are requested.
+/// Name of the physics parameter table, which is written with the result files if physics
+/// parameters are applied.
 pub const PHYSICS_FILE: &str = "physics.csv";
 
 /// Returns the paths of the result files in a directory.
@@ -49,9 +50,9 @@ pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the result files for the chosen conditions into a directory, which is created if missing.
-/// Either all files are written or none. The checksums, written last, show whether the files belong
-/// together.
+/// Writes the result files for the chosen conditions into a directory, which is created if missing,
+/// with [`PHYSICS_FILE`] if physics parameters are applied. Either all files are written or none.
+/// The checksums, written last, show whether the files belong together.
 ///
 /// `sha256` is the dataset file's hash.
 pub fn write_results(

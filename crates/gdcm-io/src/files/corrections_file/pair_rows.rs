@@ -4,8 +4,8 @@ use serde_json::Value;
 
 use gdcm_model::dataset::{Pair, PairTable};
 
-/// Returns a table as a list of rows, one per output. Non-finite values become null, because JSON
-/// cannot represent them.
+/// Returns a table as a list of rows, one per output. Missing values become null, and so do
+/// non-finite values, which JSON cannot represent.
 pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
     rows_of(table.outputs(), table.inputs(), |pair| {
         table[pair].as_ref().map(&figure).into()

@@ -57,7 +57,8 @@ const PLAUSIBLE_SD: usize = 7;
 /// Place of "applied" in `COLUMNS`, the last column.
 const APPLIED: usize = 20;
 
-/// Returns the study's parameters with their diagnosis; null where none are requested.
+/// Returns the study's physics parameters: their diagnosis, applied changes and benefit; null if
+/// none are requested, and only the reason and the unused data if they are unavailable.
 pub(super) fn physics(analysis: &Analysis) -> Value {
     let applied = match &analysis.physics {
         None => return Value::Null,

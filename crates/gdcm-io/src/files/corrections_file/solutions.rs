@@ -46,7 +46,7 @@ pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAna
     let mut unmatched = Vec::new();
     for entry in &delays.unmatched {
         let mut why = miss_text(entry, band_top_rad_s, &names.inputs, &names.outputs);
-        // `is_lone_lead`: if a single response needs lead, its own description already states this.
+        // If a single response would need a lead (`is_lone_lead`), `why` already states this.
         if !entry.why.is_lone_lead() {
             why = format!(
                 "{why} {}",
@@ -76,8 +76,8 @@ pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAna
     without_empty(solution, &["kkt_residual_s"])
 }
 
-/// Explains why gains or delays are not matched: the conflicts, the changes that would resolve
-/// them, and each constraint's cost.
+/// Explains why gains or delays are not matched: the conflicts, loops that agree within the
+/// tolerance, the changes that would resolve the conflicts, and each constraint's cost.
 fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {

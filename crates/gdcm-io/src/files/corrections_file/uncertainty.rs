@@ -79,9 +79,10 @@ impl ConditionBars<'_> {
     }
 }
 
-/// Returns a confidence interval with its standard deviations, and the deviation in the band that
-/// remains because one gain cannot match every frequency. For a gain, intervals are factors, and
-/// standard deviations refer to the natural logarithm; for a delay, all values are in seconds.
+/// Returns a confidence interval with its standard deviations and remarks, and `left_in_band`, the
+/// mismatch over the band that remains because one gain cannot match every frequency. For a gain,
+/// intervals are factors, and standard deviations and `left_in_band` refer to the natural
+/// logarithm; for a delay, all are in seconds. Missing values are omitted.
 fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
     let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
     let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));

@@ -93,7 +93,7 @@ pub(super) struct ParameterText {
     pub(super) description: Option<String>,
 }
 
-/// How a physics model moves a named parameter.
+/// Change to a named parameter in a physics model.
 #[derive(Clone, Deserialize, Serialize)]
 pub(crate) struct ParameterChangeText {
     pub(super) name: String,
@@ -153,7 +153,7 @@ pub(crate) struct RecordText {
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct ModelText {
     pub(crate) name: String,
-    /// Only for physics models.
+    /// Only for physics models and, outside a dataset, for identified models.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) role: Option<String>,
     #[serde(
@@ -199,7 +199,7 @@ pub(crate) struct ModelText {
     pub(crate) input_units: Option<Limited<String, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) output_units: Option<Limited<String, MOST_CHANNELS>>,
-    /// State names; they are only displayed.
+    /// State names; they affect no result.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) states: Option<Limited<String, MOST_STATES>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
@@ -253,7 +253,7 @@ impl LabelText {
     }
 }
 
-/// A model's source: file and variable.
+/// A model's provenance: file, variable, date and notes.
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct SourceText {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -266,7 +266,7 @@ pub(crate) struct SourceText {
     pub(super) made: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) note: Option<String>,
-    /// Flight records at the condition.
+    /// Names of the flight records from which an identified model was estimated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) records: Option<Limited<String, MOST_PIECES>>,
     /// Variables in the file that were not used.
@@ -278,7 +278,7 @@ pub(crate) struct SourceText {
     pub(super) by_position: Option<Limited<SideText, 2>>,
 }
 
-/// All inputs or all outputs, as a list.
+/// One of a model's two channel lists.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum SideText {
@@ -286,7 +286,7 @@ pub(crate) enum SideText {
     Outputs,
 }
 
-/// Standard deviations of a model's response.
+/// Standard deviations of a model's response, outputs x inputs x frequencies.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct BandsText {
     #[serde(deserialize_with = "list::<MOST_FREQUENCIES, _, _>")]

@@ -145,7 +145,7 @@ pub(crate) fn dataset_from(
 ) -> Result<LoadedDataset, FileError> {
     let path = origin.message_path();
     let error = |fault| FileError::content_of(&path, fault, source.text());
-    // Cautions concern unknown keys, keys of other models, and unusual values.
+    // Cautions concern unknown keys, keys that have no meaning in their place, and unusual values.
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
     let CautionedDraft {
         draft,
@@ -166,10 +166,12 @@ pub(crate) fn dataset_from(
     })
 }
 
-/// Returns all faults in a dataset file, each with its place; empty if the dataset can be loaded.
+/// Returns the faults in a dataset file, up to a maximum number, each with its place; empty if the
+/// dataset can be loaded.
 ///
 /// # Errors
-/// Fails if the text structure is so damaged that it cannot be read at all.
+/// Fails if the file or its structure cannot be read, or an entry spelled as a word (unit, role,
+/// kind) is invalid: further faults cannot be found then.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;

@@ -251,7 +251,8 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the unit of an excess, or the trend that a correlation indicates.
+/// Returns the remark on a value: the unit of an excess, the scale of a peak error, the trend that
+/// a correlation indicates or why there is no correlation; empty for other values.
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),

@@ -1,5 +1,5 @@
 //! `requirements.json`: the findings as the analysis holds them, with sentences instead of codes
-//! for missing values and cautions.
+//! for missing values, and with sentences on the cautions.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -92,7 +92,7 @@ struct GridDocument {
     rows: Vec<GridRowDocument>,
 }
 
-/// A requirement in all conditions; its values are fractions, seconds or costs.
+/// A requirement in all conditions; its values are fractions, seconds, costs or level numbers.
 #[derive(Serialize)]
 struct GridRowDocument {
     requirement: &'static str,
@@ -176,8 +176,8 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
-/// Converts the findings to the content of `requirements.json`, adds levels for bandwidths and
-/// phase delays, and replaces codes for missing values and cautions by sentences.
+/// Converts the findings to the content of `requirements.json`, adds levels to the bandwidths,
+/// replaces codes for missing values by sentences, and adds sentences to the cautions.
 fn with_sentences(
     document: &RequirementsDocument<'_>,
     results: RequirementResults<'_>,

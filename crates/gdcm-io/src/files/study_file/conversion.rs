@@ -157,7 +157,8 @@ pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisio
     Ok(decisions)
 }
 
-/// Returns the decisions in effect, without the variants.
+/// Returns the decisions in the settings and conditions, for a study or for one of its variants;
+/// adopted models, signs, requirements and exports have default values.
 ///
 /// # Errors
 /// [`ContentError`] for a setting outside its range, or a condition that appears twice.

@@ -34,13 +34,12 @@ pub struct OpenedStudy {
     pub study: Study,
     pub loaded: LoadedDataset,
     pub path: PathBuf,
-    /// Changes in the dataset, and decisions that no longer apply; empty if the dataset is
-    /// unchanged.
+    /// Changes in the dataset, and decisions that do not apply to it; empty if there are neither.
     pub differences: Vec<Difference>,
 }
 
 /// Opens a study and its dataset, which is expected at the path given in the study, otherwise in
-/// the directory of the study file.
+/// the directory of the study file. A study without a path uses an embedded example.
 pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     let budget = ReadingBudget::default();
     study_from(&Source::read(path, &budget)?, path, None, &budget)
@@ -130,8 +129,8 @@ fn load_referenced(
     }
 }
 
-/// Returns the file name of the dataset to which a study file refers, for display. Returns `None`
-/// if the study file cannot be read.
+/// Returns the file name of the dataset to which a study file refers, or the name of the embedded
+/// example, for display. Returns `None` if the study file cannot be read.
 pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;

@@ -110,9 +110,9 @@ pub(super) fn is_delay(name: &str) -> bool {
     delay_meaning(name).is_some()
 }
 
-/// Returns what a field name means. First without the unit at its end: a delay name, with the unit
-/// of MATLAB if the name is spelled as in MATLAB, else with the unit in the name; else a name that
-/// resembles one, `Unclear`; else `None`.
+/// Returns a field name's meaning; a unit at its end does not count as part of the name. A delay
+/// name has MATLAB's unit if it is spelled as in MATLAB, else the unit at its end. A name that only
+/// resembles a delay name is `Unclear`; any other name is no delay (`None`).
 fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     let (stem, unit) = split_unit(name);
     let folded = folded_name(stem);

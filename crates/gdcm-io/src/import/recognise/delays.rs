@@ -225,7 +225,8 @@ impl DelayReading {
     /// Converts delays to seconds.
     ///
     /// # Errors
-    /// The question to the user if the unit is ambiguous.
+    /// The question to the user if the unit is ambiguous; the reason if a delay is negative, or
+    /// above the maximum for a channel.
     fn in_seconds(
         &mut self,
         field: &DelayField<'_>,

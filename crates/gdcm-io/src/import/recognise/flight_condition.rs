@@ -18,7 +18,7 @@ const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
 const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
 const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
 const MASSES: &[&str] = &["mass_kg", "m_kg"];
-/// Paths to the structs that may hold a flight condition.
+/// Names of the structs that may hold a flight condition.
 const CONDITION_STRUCTS: [&[&str]; 4] = [
     &["trim"],
     &["flight_condition"],
@@ -45,7 +45,8 @@ impl Page {
     pub(super) const ONLY: Self = Self { index: 0, count: 1 };
 }
 
-/// Returns the flight condition that is given beside a model and in enclosing records.
+/// Returns the flight condition that is given beside a model and in enclosing records. A condition
+/// id that is not a whole number, or too large, is left out.
 ///
 /// # Errors
 /// The reason if a list's length differs from the number of models, or a value contradicts an
@@ -172,7 +173,7 @@ fn is_fact_name(name: &str) -> bool {
 }
 
 /// Returns the name given beside a model, or its entry in a list of names. A single name beside
-/// several models is ignored.
+/// several models is ignored, and so are names in a record that several models share.
 fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     if record.is_shared {
         return None;

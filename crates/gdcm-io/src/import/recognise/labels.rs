@@ -144,7 +144,7 @@ fn list_of_labels(
 }
 
 /// Returns the labels in a list of strings, or of channel objects with a name and a unit as in a
-/// dataset file; `None` for numbers.
+/// dataset file; `None` for numbers, and for objects of a MATLAB class.
 ///
 /// # Errors
 /// The reason if the list mixes objects and other values, or an object has no name: a struct whose

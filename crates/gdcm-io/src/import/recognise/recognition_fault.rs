@@ -21,7 +21,8 @@ const APPROXIMATE: &str =
 /// Reason why a model or a record cannot be read, with the place among the variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FoundFault {
-    /// Files with the model's matrices; empty if the model is in a single file.
+    /// Files with the model's matrices, or their common path without the matrix letters; empty if
+    /// the model is in a single file.
     pub(crate) files: String,
     /// Path to the variable; empty if a file's variables together form the model.
     pub(crate) variable: String,

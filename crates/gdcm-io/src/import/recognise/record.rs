@@ -84,8 +84,8 @@ impl<'v> Record<'v> {
     }
 
     /// Creates a record from element `index` of a struct array or, if `class` is given, of an
-    /// object array. The fields in an object's parts are added to its own; from a part that is an
-    /// array, those in the element `page`.
+    /// object array. The fields in the parts of an object, or of a struct with a measured response,
+    /// are added to its own; from a part that is an array, those in the element `page`.
     pub(super) fn from_object(
         records: &'v StructArray,
         index: usize,
@@ -189,7 +189,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the unused field names; empty for objects, which hold much internal data.
+    /// Returns the unused field names, and the paths to unused fields inside structs that were
+    /// used; empty for objects, which hold much internal data.
     pub(super) fn unused(&self) -> Vec<String> {
         if self.class.is_some() {
             return Vec::new();

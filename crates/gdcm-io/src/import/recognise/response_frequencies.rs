@@ -130,7 +130,8 @@ impl FrequencyUnit {
         }
     }
 
-    /// Returns the factor from the unit to rad/s; without a unit, 1.
+    /// Returns the factor from the unit to rad/s; without a unit, 1. Any unit other than an angle
+    /// in rad over a time is an error.
     fn rad_s_per_angular_rate(&self) -> Result<f64, RecognitionFault> {
         if let Some(unit) = self.angular_rate {
             return Ok(unit.size);

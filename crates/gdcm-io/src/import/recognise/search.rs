@@ -138,7 +138,7 @@ struct Search<'r, T> {
 
 impl<T> Search<'_, T> {
     /// Adds the models or flight records formed by a record's fields; returns whether there are
-    /// any.
+    /// any, with or without faults.
     fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
@@ -157,7 +157,7 @@ impl<T> Search<'_, T> {
     }
 
     /// Searches a value and its contents, down to `levels` levels; `outer` is the record that
-    /// contains the value. Returns whether anything was found.
+    /// contains the value. Returns whether anything was found; a fault counts.
     fn descend<'v>(
         &mut self,
         name: &str,

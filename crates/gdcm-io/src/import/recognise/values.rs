@@ -190,8 +190,9 @@ pub(super) fn complex_list_of(
 }
 
 /// Returns the strings in a value, without surrounding blanks: those in a string array, the first
-/// string in each cell of a cell array (empty for a cell without strings), or none for an empty
-/// array, which MATLAB writes for an empty list. Returns `None` for any other value.
+/// string in each cell of a cell array (empty for an empty cell), or none for an empty array, which
+/// MATLAB writes for an empty list. Returns `None` for any other value, and for a cell array that
+/// contains one.
 pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {
     match value {
         Value::Text(text) => Some(

@@ -17,8 +17,8 @@ pub(super) const FEWEST_TIMED: usize = 20;
 /// Minimum number of samples in a record with neither time stamps nor a sample time: a shorter
 /// matrix may be any table of numbers.
 const FEWEST: usize = 50;
-/// First rank ([`time_name_rank`]) that only contains the word "time"; lower ranks denote time
-/// itself.
+/// Rank ([`time_name_rank`]) of names that only contain the word "time"; names with lower ranks
+/// denote the time itself.
 const UNSURE_TIME_RANK: u8 = 2;
 const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fs",

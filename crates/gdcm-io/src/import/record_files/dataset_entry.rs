@@ -28,9 +28,10 @@ pub fn relative_entry(
     entry
 }
 
-/// Finds the path of a record's file: a requested file with this name, or the file in a requested
-/// folder. A record joined from topics in several files has an empty file name; its path is the
-/// first requested file's folder.
+/// Finds the path of a record's file: the first of `requested` that has this file name, or that is
+/// a folder, which is taken to contain the file. A record joined from topics in several files has
+/// an empty file name; its path is the first requested folder or, if only files are requested, the
+/// first file's folder.
 fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {
         let is_file = path

@@ -56,7 +56,7 @@ pub struct FoundRecords {
     /// Descriptions of contents that are not records.
     pub ignored: Vec<String>,
     pub files: usize,
-    /// Files requested by name that could not be read completely.
+    /// Files requested by name that could not be read completely, or contain no record.
     pub unread: Vec<PathBuf>,
 }
 
@@ -64,7 +64,7 @@ pub struct FoundRecords {
 /// `faults`, and the others are read.
 ///
 /// # Errors
-/// [`FileError`] if a folder cannot be read, or the only file.
+/// [`FileError`] if a folder cannot be read, or if the only file cannot be read.
 pub fn read_records(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
@@ -105,8 +105,9 @@ pub fn records_of_bytes(
     Ok(found)
 }
 
-/// Reads again the records that a dataset refers to by these variables of a file; `None` refers to
-/// the only record. The file is read once.
+/// Reads again the records to which a dataset refers by a file or folder and these variables;
+/// `None` refers to the record without a variable name, such as the only one in a text. The file is
+/// read once.
 ///
 /// # Errors
 /// [`FileError`] if the file cannot be read; in the returned list, [`FileError::NoRecord`] for each
@@ -286,7 +287,8 @@ impl FoundRecords {
         self.ignored.extend(with_file_name(name, found.ignored));
     }
 
-    /// Splits a table into records and adds them.
+    /// Splits a table into records and adds them; tables side by side in it, each with its own time
+    /// column, first become topics.
     fn add_table(&mut self, table: RecordTable) {
         let table = table.side_by_side();
         let separation = Separation::proposed(&table);

@@ -15,7 +15,7 @@ pub(super) struct Samples {
 /// Returns the real numbers in a value as samples; a vector is a single column. Time runs along the
 /// dimension with length `rows` if given, otherwise along the longer dimension. If neither
 /// dimension has the length `rows`, time runs along the first, and the caller must compare
-/// [`Samples::rows`]. `None` if the value has another form.
+/// [`Samples::rows`]. `None` if the value has another form, is empty, or contains complex numbers.
 pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
     let array = match value {
         Value::Array(array) => array,

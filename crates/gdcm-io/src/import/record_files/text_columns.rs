@@ -62,7 +62,7 @@ pub(super) fn text_columns(
     }
 }
 
-/// Whether a fault is in the text itself, rather than an exceeded budget limit.
+/// Returns whether a fault is in the text itself, rather than an exceeded budget limit.
 fn is_of_the_text(fault: &VariableFault) -> bool {
     matches!(
         fault,
@@ -116,7 +116,8 @@ fn table_columns(table: TextTable) -> Columns {
     }
 }
 
-/// Removes a first line that numbers the columns: 1, 2, 3, …
+/// Removes a first line that numbers the columns (1, 2, 3, …), and adds a note; not in a table with
+/// at most [`FEW_COLUMNS`] columns.
 fn remove_numbering(columns: &mut [Vec<f64>], notes: &mut Vec<ReadingNote>) {
     let is_numbering = columns
         .iter()

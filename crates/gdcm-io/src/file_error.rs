@@ -355,8 +355,8 @@ fn line_words(line: Option<usize>) -> String {
     }
 }
 
-fn no_record_words(record: Option<&str>, held: usize) -> String {
-    let held = match held {
+fn no_record_words(record: Option<&str>, count: usize) -> String {
+    let held = match count {
         0 => "contains no records".to_owned(),
         1 => "contains only another record".to_owned(),
         _ => format!("contains {held} records"),
@@ -367,6 +367,7 @@ fn no_record_words(record: Option<&str>, held: usize) -> String {
             dataset",
             quoted(record)
         ),
+        None if count < 2 => "the file contains no records".to_owned(),
         None => format!(
             "a single record is required, but the file {held}; name one as \"variable\" of the record \
             in the dataset"

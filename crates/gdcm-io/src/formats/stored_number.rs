@@ -97,8 +97,13 @@ impl StoredNumber {
         Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
     }
 
-    /// Returns the bits of a number; missing bytes count as zeros.
-    fn bits(self, bytes: &[u8]) -> u64 {
+    /// Returns whether the number is a 64-bit integer.
+    pub(crate) fn is_whole_word(self) -> bool {
+        self.size == 8 && matches!(self.class, NumberClass::Signed | NumberClass::Unsigned)
+    }
+
+    /// Returns the bits of a number, the lowest in bit 0; missing bytes count as zeros.
+    pub(crate) fn bits(self, bytes: &[u8]) -> u64 {
         let mut eight = [0; 8];
         let count = bytes.len().min(self.size);
         eight[..count].copy_from_slice(&bytes[..count]);

@@ -8,30 +8,36 @@ const MOST_SPANS: usize = 1000;
 
 /// Returns the time spans during which `values` is constant, at most `MOST_SPANS`. Each lasts until
 /// the sample with the next value. `name` returns a value's name, or `None` if it needs no span.
+///
+/// A value continues the last span only if that span is its own: beyond `MOST_SPANS`, a named value
+/// has none.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
     name: impl Fn(f64) -> Option<String>,
 ) -> Vec<ModeSpan> {
     let mut spans: Vec<ModeSpan> = Vec::new();
-    // Value in the preceding sample.
+    // Value in the preceding sample, and whether the last span is its own.
     let mut last: Option<f64> = None;
+    let mut is_open = false;
     for (&time, value) in time_s.iter().zip(values) {
         // The preceding value lasts until this sample, even if the value changes here.
         if let Some(open) = spans.last_mut()
-            && last.is_some_and(|last| name(last).is_some())
+            && is_open
         {
             open.ends_s[1] = time;
         }
-        let value_changes = last != Some(value);
-        if value_changes
-            && spans.len() < MOST_SPANS
-            && let Some(name) = name(value)
-        {
-            spans.push(ModeSpan {
-                name,
-                ends_s: [time, time],
-            });
+        if last != Some(value) {
+            is_open = false;
+            if spans.len() < MOST_SPANS
+                && let Some(name) = name(value)
+            {
+                is_open = true;
+                spans.push(ModeSpan {
+                    name,
+                    ends_s: [time, time],
+                });
+            }
         }
         last = Some(value);
     }
@@ -61,5 +67,15 @@ mod tests {
             Some(ReadingNote::FlightModes(spans.clone()))
         );
         assert_eq!(modes_note(&[]), None);
+    }
+
+    #[test]
+    fn a_state_beyond_the_most_spans_does_not_extend_the_last_span() {
+        let times: Vec<f64> = (0..MOST_SPANS + 500).map(|k| k as f64).collect();
+        let values = times.iter().map(|time| time % 2.0);
+        let spans = mode_spans(&times, values, |value| Some(format!("mode {value}")));
+        assert_eq!(spans.len(), MOST_SPANS);
+        let end = MOST_SPANS as f64;
+        assert_eq!(spans[MOST_SPANS - 1].ends_s, [end - 1.0, end]);
     }
 }

@@ -6,7 +6,7 @@ use crate::formats::element_order::{Places, element_count, matrix_shape};
 use crate::formats::mat73::chunks::check_chunks;
 use crate::formats::mat73::library_fault::{damaged, library_fault};
 use crate::formats::mat73::number_type::NumberType;
-use crate::formats::variables::{Array, ElementKind};
+use crate::formats::variables::Array;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
@@ -154,19 +154,16 @@ impl Elements {
         path: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Option<Vec<u64>>, VariableFault> {
-        let is_integer = match NumberType::from_datatype(&self.datatype) {
-            Some(number_type) => {
-                !number_type.is_complex() && number_type.number.kind() == ElementKind::Integer
-            }
-            None => false,
+        let Some(number_type) = NumberType::from_datatype(&self.datatype) else {
+            return Ok(None);
         };
-        if self.size != 8 || !is_integer {
+        if number_type.is_complex() || !number_type.number.is_whole_word() {
             return Ok(None);
         }
         budget.take(self.count() as u64, 8, path)?;
         let words = self
             .places()
-            .map(|place| little_endian_word(self.bytes_at(place)));
+            .map(|place| number_type.number.bits(self.bytes_at(place)));
         Ok(Some(words.collect()))
     }
 }
@@ -192,13 +189,4 @@ fn sides_in_memory(sides: &[u64]) -> Option<Vec<usize>> {
 
 fn too_many_elements(path: &str) -> VariableFault {
     damaged(path, Damage::ElementCount)
-}
-
-/// Decodes an integer of up to eight bytes, the lowest first.
-fn little_endian_word(bytes: &[u8]) -> u64 {
-    let mut word = 0;
-    for &byte in bytes.iter().rev() {
-        word = word << 8 | u64::from(byte);
-    }
-    word
 }

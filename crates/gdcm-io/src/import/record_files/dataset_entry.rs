@@ -29,9 +29,8 @@ pub fn relative_entry(
 }
 
 /// Finds the path of a record's file: the first of `requested` that has this file name, or that is
-/// a folder, which is taken to contain the file. A record joined from topics in several files has
-/// an empty file name; its path is the first requested folder or, if only files are requested, the
-/// first file's folder.
+/// a folder with this file. A record joined from topics in several files has an empty file name;
+/// its path is the first requested folder or, if only files are requested, the first file's folder.
 fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {
         let is_file = path
@@ -40,12 +39,35 @@ fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
         if is_file {
             return Some(path.clone());
         }
-        if path.is_dir() {
-            return Some(path.join(file));
+        let in_folder = path.join(file);
+        if path.is_dir() && in_folder.exists() {
+            return Some(in_folder);
         }
     }
     if file.is_empty() {
         return requested.first()?.parent().map(Path::to_owned);
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_is_found_in_the_requested_folder_that_has_its_file() {
+        let place = tempfile::tempdir().unwrap();
+        let [empty, other] = ["empty", "other"].map(|name| place.path().join(name));
+        std::fs::create_dir(&empty).unwrap();
+        std::fs::create_dir(&other).unwrap();
+        let file = other.join("sweep.csv");
+        std::fs::write(&file, "").unwrap();
+        let requested = [empty.clone(), file.clone()];
+        assert_eq!(place_of_record("sweep.csv", &requested), Some(file.clone()));
+        let requested = [empty.clone(), other];
+        assert_eq!(place_of_record("sweep.csv", &requested), Some(file));
+        assert_eq!(place_of_record("missing.csv", &requested), None);
+        // A record joined from several files belongs to a folder.
+        assert_eq!(place_of_record("", &requested), Some(empty.join("")));
+    }
 }

@@ -7,7 +7,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeCone
 /// by its upper triangle: an interior-point method (Goulart & Chen, "Clarabel", arXiv:2405.12762).
 ///
 /// # Errors
-/// The solver's status if it finds no solution.
+/// The solver's status if it is not `Solved`, or its message about invalid data.
 pub fn convex_program(
     p: &CscMatrix<f64>,
     q: &[f64],

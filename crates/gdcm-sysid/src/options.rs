@@ -135,7 +135,8 @@ pub struct SearchSpace {
 }
 
 impl SearchSpace {
-    /// Replaces the defaults in `options`.
+    /// Replaces the defaults in `options` by the lists that are not empty. The band in `options`
+    /// must be final, because poles are stored relative to its upper end.
     pub fn set(&self, options: &mut Options) {
         if !self.orders.is_empty() {
             options.orders = Some(self.orders.clone());

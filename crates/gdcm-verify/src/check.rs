@@ -7,7 +7,7 @@ use crate::reference_study::ReferenceStudy;
 pub struct Check {
     /// Stable code, for scripts and tests.
     pub code: &'static str,
-    /// Sections in `docs/method.md` and the pages beside it: "M8", "M3 to M7".
+    /// Sections in `docs/method.md` and the pages beside it: "M8", "M3, M6, M7".
     pub sections: &'static str,
     /// What is compared.
     pub what: &'static str,

@@ -35,7 +35,7 @@ pub(crate) const PHYSICS: ReferenceFile = reference_file!("physics.json");
 pub(crate) const REQUIREMENTS: ReferenceFile = reference_file!("requirements.json");
 pub(crate) const UNCERTAINTY: ReferenceFile = reference_file!("uncertainty.json");
 
-/// Models from the literature, by the names in [`RESPONSES`].
+/// Models from the literature and a nearly defective one, by the names in [`RESPONSES`].
 const MODELS: [(&str, ReferenceFile); 5] = [
     (
         "compleib_HE2_AH64_130kt.json",
@@ -59,7 +59,7 @@ const MODELS: [(&str, ReferenceFile); 5] = [
     ),
 ];
 
-/// Returns the file for a model from the literature, by its name in [`RESPONSES`].
+/// Returns the file for a model in [`MODELS`], by its name in [`RESPONSES`].
 pub(crate) fn model_file(name: &str) -> Result<ReferenceFile, CheckFault> {
     for (known, file) in MODELS {
         if known == name {
@@ -173,7 +173,7 @@ impl Reference {
         member.value.as_i64().ok_or_else(|| self.fault(name))
     }
 
-    /// Returns a member as a text.
+    /// Returns a member as a string.
     pub(crate) fn text(&self, name: &str) -> Result<String, CheckFault> {
         let member = self.member(name)?;
         match member.value.as_str() {
@@ -182,7 +182,7 @@ impl Reference {
         }
     }
 
-    /// Returns a member, a list, as texts.
+    /// Returns a member, a list, as strings.
     pub(crate) fn texts(&self, name: &str) -> Result<Vec<String>, CheckFault> {
         let mut texts = Vec::new();
         for element in self.list(name)? {

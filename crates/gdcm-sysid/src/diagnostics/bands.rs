@@ -30,7 +30,7 @@ pub(crate) const MEASURED_FACTOR: f64 = 2.0;
 /// Largest standard deviation that is reported, in neper and radians.
 pub(crate) const UNKNOWN: f64 = 1e3;
 
-/// A model, with what makes it uncertain besides the fit.
+/// A model, and the sources of its uncertainty besides the fit.
 pub(crate) struct BandModels<'a> {
     pub(crate) model: &'a SchurModel,
     /// Models with neighbouring orders.

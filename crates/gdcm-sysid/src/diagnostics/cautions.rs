@@ -41,7 +41,8 @@ pub enum IdentificationCaution {
     )]
     NotSwept {
         signal: Signal,
-        /// Median partial coherence with the output that the input affects most.
+        /// Median over frequency: largest partial coherence with any output, less the share
+        /// explained by chance.
         partial_coherence: f64,
     },
     /// Several inputs were moved only together.
@@ -89,7 +90,7 @@ pub enum IdentificationCaution {
         /// The output with the largest residual.
         signal: Signal,
     },
-    /// A record's residual is larger than the noise.
+    /// A record's residual is larger than the noise and than the residual over all records.
     #[error(
         "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: \
         another trim, a large amplitude, a gust. Consider leaving the record out"
@@ -198,7 +199,7 @@ impl IdentificationCaution {
         )
     }
 
-    /// Returns whether `other` is a mere consequence.
+    /// Returns whether `other` is a mere consequence of this caution.
     ///
     /// - A contradiction explains the residual and the noise level of its records; points that no
     ///   model follows, because they are means over contradicting records; and, if a channel's sign

@@ -106,7 +106,7 @@ pub struct Feedback {
 pub enum FeedbackLevel {
     /// No visible effect.
     None,
-    /// The model is wrong by tenths of a dB to 2 dB (M14.24).
+    /// The model is wrong by tenths of a dB to 2 dB (M14.14).
     Some,
     /// The model must not be used.
     TooMuch,
@@ -143,7 +143,7 @@ impl Feedback {
     }
 
     /// Returns a response's `|G_b / G|` at `omega` \[rad/s\], as the root mean square over three
-    /// points; 0 if the bands need no widening.
+    /// points; 0 if `b` is below 0.04, for which the bands are not widened.
     pub(crate) fn ratio(&self, omega: f64, pair: (usize, usize)) -> f64 {
         if self.share < WIDENED {
             return 0.0;

@@ -29,9 +29,9 @@ pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
 pub const NARROW_WINDOW: f64 = 0.6;
 /// Number of neighbouring points in a mean.
 const POINTS: usize = 5;
-/// `T` above which the model departs from the points (M14.17).
+/// `T` in [`Departure`] above which the model departs from the points (M14.17).
 const SIGNIFICANT: f64 = 12.0;
-/// `D` above which the model departs from the points: 1 dB or 7 degrees (M14.17).
+/// `D` in [`Departure`] above which the model departs from the points: 1 dB or 7 degrees (M14.17).
 const RELEVANT: f64 = 0.12;
 
 /// The recommended model, and the data for examining it.
@@ -42,10 +42,10 @@ pub(crate) struct Diagnostics<'a> {
     pub(crate) fit: &'a Fit,
 }
 
-/// The data that the model was fitted to.
+/// The measured data by which a fitted model is examined.
 #[derive(Clone, Copy)]
 pub(crate) struct MeasuredData<'a> {
-    /// Spectral lines from the fitted records.
+    /// Spectral lines from the fitted records' segments without gaps.
     pub(crate) spectra: &'a [Spectrum],
     /// The measured response.
     pub(crate) measured: &'a ResponseEstimate,

@@ -15,7 +15,8 @@
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
 //!      an input late -W G_j jw U_j,  a gain W e_o Y_o
 //!      h = d'e - d'J G^+ g,  S = d'd - d'J G^+ J'd
-//!    the fault with the largest h^2/S, but all outputs late from 98 % of it on; its size is -h/S
+//!    the fault with the largest h^2/S, but all outputs late if that has at least 98 % of it; its
+//!    size is -h/S
 //! ```
 //!
 //! If leaving a record out changes the model much, the record need not be wrong: it may be the only
@@ -49,7 +50,8 @@ const CONTRADICTS: f64 = 6.0;
 /// `F` above which a record contradicts the others if gusts are fed back, because gusts differ
 /// between flights.
 const CONTRADICTS_IN_GUSTS: f64 = 12.0;
-/// Only the worst record is reported if its `F` is at least this many times the second largest.
+/// Only the worst record is reported if its `F` is at least this many times the second largest, and
+/// if there is a third record.
 const ALONE: f64 = 1.5;
 /// A delay common to all outputs is preferred to another fault if it explains at least this share
 /// of the largest explained cost.
@@ -201,7 +203,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Lists the faults that a record may have, with size zero.
+    /// Lists the faults that a record may have, with delay 0 or factor 1.
     fn possible_faults(&self, options: &Options) -> Vec<RecordFault> {
         let (outputs, inputs) = self.fit.model.d().shape();
         let mut faults = vec![RecordFault::OutputsLate(0.0)];

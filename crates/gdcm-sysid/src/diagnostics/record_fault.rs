@@ -5,8 +5,8 @@ use std::fmt;
 use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::simulation::Signal;
 
-/// A gain this close to -1 is treated as a reversed sign: for a reversed output, -0.98 was found
-/// (M14.16).
+/// A gain this close to -1 is treated as a reversed sign: the factor estimated for a reversed
+/// output is not exactly -1, but for example -0.98.
 const NEAR_A_SIGN: f64 = 0.3;
 
 /// A fault in a record's outputs or in one channel.

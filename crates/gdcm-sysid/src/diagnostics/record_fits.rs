@@ -29,7 +29,8 @@ pub(crate) struct HeldOutCost {
 /// How well a model fits all records, each record and each output.
 pub(crate) struct RecordFits {
     /// Fits for the records that have degrees of freedom, in record order. A fitted record's cost
-    /// is corrected for the parameter count: `(J_r / dof_r) N / (N - k)` (M14.13).
+    /// is corrected for the k parameters of the model: `(J_r / dof_r) N / (N - k)`, N degrees of
+    /// freedom over all fitted records.
     pub(crate) records: Vec<RecordFit>,
     /// `J` per degree of freedom for each output, over the fitted records.
     pub(crate) outputs: Vec<f64>,

@@ -151,8 +151,8 @@ impl Assessment<'_> {
         })
     }
 
-    /// Measures the feedback; `None` with a reference, or if inputs were moved only together, which
-    /// hides the feedback.
+    /// Measures the feedback; `None` with a reference, if inputs were moved only together, which
+    /// hides the feedback, or if it cannot be measured.
     fn feedback(&self) -> Option<Feedback> {
         let mut cautions = self.data.cautions.iter();
         if !self.is_direct() || cautions.any(IdentificationCaution::is_of_collinear_inputs) {
@@ -192,7 +192,7 @@ impl Assessment<'_> {
         Ok(Some(contrasts))
     }
 
-    /// Collects all doubts about records and models.
+    /// Collects all doubts about records and models, without those that only follow from others.
     fn cautions(
         &self,
         uncertainty: &Uncertainty,

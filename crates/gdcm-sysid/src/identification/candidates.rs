@@ -22,8 +22,8 @@ use crate::subspace::tried_orders::SPACING;
 const RANKING_ORDER: usize = 18;
 /// Number of pairs (pole, past window) that propose models of all orders.
 const KEPT: usize = 2;
-/// Modes faster than this many times the upper end of the band are artefacts of discrete poles near
-/// -1.
+/// Modes faster than this many times the upper end of the band are artefacts: they come from
+/// eigenvalues of `Ao` near -1 (`continuous_model`).
 const FASTEST: f64 = 8.0;
 /// The candidates' share of the total progress.
 const SHARE: f64 = 0.2;
@@ -61,8 +61,9 @@ impl SubspaceSettings {
     /// Returns the two cheapest pairs (pole, past window), the cheapest first.
     ///
     /// ```text
-    /// 1  R for each Laguerre pole a
-    /// 2  for each a and past window p: the model of order 18, its cost
+    /// 1  the triangular factor of the projections for each Laguerre pole a
+    /// 2  for each a and past window p: the model of order 18, or of the highest order that is
+    ///    listed and that every past window allows; its cost
     /// 3  the two cheapest (a, p)
     /// ```
     pub(crate) fn candidates(

@@ -40,7 +40,8 @@ const UNREFINED: &str = "CT-PBSID";
 pub struct Identification {
     /// The recommended model: CT-PBSID, refined, with standard deviations for its responses.
     pub refined: Model,
-    /// CT-PBSID without refinement, with the same order or, if there is none, the next lower.
+    /// CT-PBSID without refinement, with the same order or, if there is none, the next lower, else
+    /// the lowest.
     pub unrefined: Model,
     /// The bundle around the recommended model: models of neighbouring orders, then models fitted
     /// without one record each.
@@ -57,7 +58,7 @@ pub struct Identification {
     pub past: usize,
     /// BIC at each refined order, ascending by order.
     pub criteria: Vec<(usize, f64)>,
-    /// Fit at each refined order, ascending by order.
+    /// Fit at each order that was refined to its minimum, ascending by order.
     pub order_fits: Vec<OrderFit>,
     /// `J / (N - k)` over the fitted records; 1 is adequate.
     pub cost: f64,
@@ -66,15 +67,18 @@ pub struct Identification {
     /// `J` per degree of freedom over the held-out records, with the model free to move within its
     /// uncertainty: up to 1.3 good, above 2 not predicted (M14.17).
     pub held_out_normalised: Option<f64>,
-    /// Noise and gusts fed back into the measured response (M14.14).
+    /// Noise and gusts fed back into the measured response (M14.14); `None` if it was not measured.
     pub feedback: Option<Feedback>,
-    /// Contradiction between each fitted record and the others; empty for a single record (M14.16).
+    /// Contradiction between each fitted record and the others (M14.16); empty for a single record,
+    /// and with a reference.
     pub contrasts: Vec<RecordContrast>,
     /// Fit for every used record, in record order.
     pub record_fits: Vec<RecordFit>,
     /// `J` per degree of freedom for each output, over the fitted records.
     pub output_costs: Vec<f64>,
-    /// Comparison of the recommended model with the held-out records in time.
+    /// Comparison of the recommended model with the held-out records in time. `None` without
+    /// held-out records, if the model has an unstable pole above the lines used, or if its
+    /// simulation fails.
     pub validation: Option<Validation>,
     /// The parts used from every record.
     pub record_uses: Vec<RecordUse>,
@@ -102,8 +106,9 @@ pub struct Identification {
 /// step 2.
 ///
 /// # Errors
-/// Records that cannot be prepared, a band without a visible response, invalid options, channels
-/// that depend on each other, records too short for a model; or `progress` is cancelled.
+/// Invalid options, records that cannot be prepared, that are too short or are sampled too slowly
+/// for the band, channels that depend on each other, a response that cannot be measured, no record
+/// left to fit, no model found; or `progress` is cancelled.
 pub fn identify(
     records: &[FlightRecord],
     options: &Options,
@@ -134,7 +139,7 @@ pub fn identify(
         .ok_or_else(|| data.no_model())
 }
 
-/// Converts block models to dataset models.
+/// Converts models from scaled units to dataset models in record units, and gathers the result.
 struct Models<'a> {
     records: &'a [FlightRecord],
     options: &'a Options,
@@ -226,7 +231,7 @@ impl Models<'_> {
             .unwrap_or_default()
     }
 
-    /// Names a model after its method and order.
+    /// Converts a model to record units, named after its method and order.
     fn of_order(&self, method: &str, model: &SchurModel) -> Option<Model> {
         let name = format!("{method}, order {}", model.order());
         self.model(name, method, model, None)

@@ -39,7 +39,8 @@ pub(super) struct KnownFlight {
     pub(super) truth: StateSpace,
     /// Response of the outputs to the disturbances.
     pub(super) disturbed: StateSpace,
-    /// Power density of each disturbance, `S` of `s^2 dt` for white noise of sample time dt.
+    /// Power density of each disturbance: `s^2 dt` for white noise with standard deviation s and
+    /// sample time dt.
     pub(super) density: f64,
     /// Standard deviations of the measurement noise.
     pub(super) noise: Vec<f64>,
@@ -149,7 +150,7 @@ pub(super) fn scaled(at: &StateSpace, data: &PreparedData) -> SchurModel {
     SchurModel::new(at.a().clone(), b, c, d).unwrap()
 }
 
-/// Returns the largest response of each output over the band.
+/// Returns each output's response with the largest mean log modulus over the band.
 pub(super) fn largest_pairs(model: &StateSpace, band: [f64; 2]) -> Vec<Pair> {
     let mut sums = DMatrix::zeros(model.outputs(), model.inputs());
     for omega in log_spaced(band[0], band[1], POINTS) {

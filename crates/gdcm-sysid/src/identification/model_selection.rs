@@ -80,7 +80,8 @@ pub(crate) fn propose(
     })
 }
 
-/// Chooses the order, measures the noise once more at its model, and descends to the minimum.
+/// Chooses the order, measures the noise over all records at its model, and descends to the
+/// minimum; if records get noise factors, also to the minimum without these.
 pub(crate) fn refine_from<'a>(
     data: &PreparedData<'a>,
     starts: &BTreeMap<usize, Fit>,

@@ -11,8 +11,8 @@
 //!    an order ends early if BIC(J - 3 delta^2) cannot reach the best
 //! 4  if the top order is best: once more from the next available order
 //! 5  of the orders within 3 % of the least BIC, the best without an unstable pole above the lines
-//!    used; then a held-out record decides between the orders within 1 % of that, with such a pole
-//!    or without it alike
+//!    used; then the held-out records decide between the orders within 1 % of that; only orders
+//!    that, like it, have or lack such a pole are compared
 //! ```
 //!
 //! The weights remain those of the top order: a model that lacks a mode would take it for noise,
@@ -41,7 +41,7 @@ const NEAR_UNSTABLE: f64 = 0.03;
 /// Neighbouring orders count as equally plausible while their criterion exceeds the chosen order's
 /// by at most this share (M14.5).
 const NEIGHBOUR: f64 = 0.1;
-/// How many consecutive rises of the criterion end the search.
+/// Number of consecutive orders worse than the best after which the search ends.
 const RISES: usize = 2;
 /// Number of channels above which states are removed in pairs.
 const SINGLE_CHANNELS: usize = 6;

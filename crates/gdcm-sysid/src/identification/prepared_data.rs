@@ -57,7 +57,7 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) record_uses: Vec<RecordUse>,
     /// Factors from scaled units to record units.
     pub(crate) scales: Scales,
-    /// Segments to fit, without gaps, low-passed for the projections.
+    /// Segments to fit, without gaps, low-passed and thinned for the projections.
     pub(crate) segments: Vec<Segment>,
     /// Segments to fit, without gaps and without the low-pass.
     pub(crate) unfiltered: Vec<Segment>,
@@ -65,7 +65,8 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) lines: LineRange,
     /// Held-out segments without gaps, in record units.
     pub(crate) held_out_segments: Vec<Segment>,
-    /// Spectral lines to fit, from records that are cut only at gaps too long to be estimated.
+    /// Spectral lines to fit, from records that are cut only at gaps too long to be estimated; with
+    /// a reference, the lines measured through it.
     pub(crate) spectra: Vec<Spectrum>,
     /// Lines from the segments without gaps, in the fitted range.
     gap_free_spectra: Vec<Spectrum>,

@@ -22,7 +22,8 @@ use crate::identification_error::IdentificationError;
 use crate::likelihood::cost::Likelihood;
 use crate::likelihood::descent::{COMPARABLE, Fit};
 
-/// Refines the proposed models; with missing inputs, from two starts.
+/// Refines the proposed models. With missing inputs there are two starts, and the result with the
+/// lower V is returned; errors from the second start are ignored, but not a cancellation.
 pub(crate) fn refine<'a>(
     data: &PreparedData<'a>,
     proposal: &Proposal,
@@ -40,7 +41,7 @@ pub(crate) fn refine<'a>(
 }
 
 /// Returns the models refined on the records cut at the gaps (step 1); `None` if no input misses
-/// samples.
+/// samples, or no model is left.
 pub(super) fn starts_from_pieces(
     data: &PreparedData,
     proposal: &Proposal,

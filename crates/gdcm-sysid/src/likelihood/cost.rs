@@ -113,7 +113,7 @@ impl SpectralLines {
     }
 
     /// Returns the degrees of freedom at this model order: the real values in the lines less the
-    /// unknowns in the transient.
+    /// unknowns tau, c0 and c1. The hats are not subtracted.
     pub(crate) fn freedom(&self, order: usize) -> usize {
         let outputs = self.outputs.nrows();
         (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
@@ -148,7 +148,7 @@ impl SpectralLines {
     /// Removes trim, drift, the transient in `model` and the missing samples from a whitened
     /// column, outputs x lines.
     ///
-    /// Returns `None` if the result is not finite.
+    /// Returns `None` if the result is not finite, or the eigenvalue iteration does not converge.
     pub(crate) fn without_transient(
         &self,
         model: &SchurModel,
@@ -174,8 +174,8 @@ impl SpectralLines {
         inputs
     }
 
-    /// Returns the share of each line that the transient takes, averaged over the outputs and
-    /// between 0 and 1 (M14.20): the diagonal of the projector on the nuisance columns.
+    /// Returns the share of each line, 0 to 1, that the nuisance columns take, averaged over the
+    /// outputs (M14.20): the diagonal of the projector on these columns.
     pub(crate) fn transient_shares(
         &self,
         model: &SchurModel,
@@ -381,7 +381,7 @@ impl<'a> Likelihood<'a> {
         hats.any(|hat| hat.side == ChannelSide::Input)
     }
 
-    /// Computes each segment's contribution to the cost; `None` if one is not finite.
+    /// Computes each segment's contribution to the cost; `None` if one cannot be computed.
     pub(crate) fn parts(&self, model: &SchurModel) -> Option<Vec<SegmentCost>> {
         let resolvents = self.resolvents(model);
         each(self.executor, &self.segments, |segment| {

@@ -67,7 +67,8 @@ const STEP_PROGRESS: f64 = 0.01;
 pub(crate) struct Limits {
     /// `delta^2 / (k phi)` below which the model has converged.
     pub(crate) decrement: f64,
-    /// Cost above which the model is useless: the descent ends if `J - 3 delta^2` exceeds it.
+    /// Cost above which the model is useless: the descent ends if `J - 3 delta^2`, or `J`
+    /// extrapolated to the last step, exceeds it.
     pub(crate) hopeless_above: f64,
 }
 
@@ -93,7 +94,7 @@ pub(crate) struct Fit {
     pub(crate) decrement: f64,
     /// `lambda` for the next step.
     damping: f64,
-    /// Gramians in the present coordinates where they were last computed.
+    /// Gramians from the last step, in the present coordinates; `None` before the first.
     gramians: Option<Gramians>,
 }
 
@@ -136,7 +137,8 @@ impl Fit {
         Some(square / (self.model.parameters() as f64 * self.dispersion(likelihood)?))
     }
 
-    /// Descends until a limit is reached, or no step lowers the cost; `Err` if cancelled.
+    /// Descends until a limit is reached, no step lowers the cost, or 40 steps are taken; `Err` if
+    /// cancelled.
     pub(crate) fn descended(
         mut self,
         likelihood: &Likelihood,
@@ -164,7 +166,8 @@ impl Fit {
         Ok(self)
     }
 
-    /// Takes a step (1 to 4); returns whether a further one may be worthwhile.
+    /// Takes a step (1 to 4); returns whether a further one may be worthwhile. `fall` is the
+    /// decrease in the cost over the last six steps, infinite before.
     fn step(&mut self, likelihood: &Likelihood, limits: Limits, fall: f64) -> bool {
         let Some(dispersion) = self.dispersion(likelihood) else {
             return false;

@@ -84,7 +84,7 @@ impl LocalParameters {
 }
 
 /// Returns at most `count` pivots from the Cholesky factorisation of a positive semidefinite matrix
-/// with a scaled diagonal.
+/// whose diagonal is scaled to 1.
 fn pivots(matrix: &DMatrix<f64>, count: usize) -> Vec<usize> {
     let size = matrix.nrows();
     let whole = matrix.diagonal();

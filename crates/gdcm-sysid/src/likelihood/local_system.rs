@@ -101,7 +101,8 @@ impl LocalSystems {
         Self::in_parameters(parameters, likelihood, &fit.model, &fit.parts)
     }
 
-    /// Computes the systems in given parameters; `parts` are the segment costs at the model.
+    /// Computes the systems in given parameters; `parts` are the segment costs at the model. `None`
+    /// under the conditions of [`NormalEquations::new`].
     pub(crate) fn in_parameters(
         parameters: LocalParameters,
         likelihood: &Likelihood,

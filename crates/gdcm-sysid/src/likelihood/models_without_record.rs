@@ -11,7 +11,7 @@ use super::schur_model::SchurModel;
 const FIRST_DAMPING: f64 = 1e-4;
 /// Damping factor after a failure.
 const DAMPING_FACTOR: f64 = 8.0;
-/// Number of failed steps after which no further one is tried.
+/// Number of times that the damping is increased before giving up.
 const FAILURES: usize = 8;
 
 /// A model fitted to all records but one.

@@ -7,8 +7,7 @@ use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
 
 /// Weights on a point and its neighbours in the smoothed covariance (M14.2).
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
-/// Share added to the diagonal, which keeps the covariance regular if outputs depend on each other
-/// (M14.2).
+/// Share added to the diagonal, which keeps the covariance regular if outputs depend on each other.
 const ADDED: f64 = 1e-4;
 /// Minimum noise variance relative to the output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;

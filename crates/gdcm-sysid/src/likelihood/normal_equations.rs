@@ -129,7 +129,7 @@ pub(super) fn products_with(
 
 /// The bin of every line (step 1).
 struct Binning {
-    /// Mean frequency of each bin \[rad/s\].
+    /// Geometric mean frequency of each bin \[rad/s\].
     omega: Vec<f64>,
     /// Segment and line whose weight represents each bin.
     representatives: Vec<(usize, usize)>,

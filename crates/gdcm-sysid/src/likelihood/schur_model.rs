@@ -110,7 +110,8 @@ impl SchurModel {
         )
     }
 
-    /// Returns the model after a step in `[[A, B], [C, D]]`, (n + outputs) x (n + inputs).
+    /// Returns the model after a step in `[[A, B], [C, D]]`, (n + outputs) x (n + inputs); `None`
+    /// under the conditions of [`SchurModel::new`].
     pub(crate) fn stepped(&self, step: &DMatrix<f64>) -> Option<Self> {
         let (outputs, inputs) = self.d.shape();
         let order = self.order();

@@ -2,7 +2,7 @@
 //! information from further flights.
 //!
 //! ```text
-//! G = sum over lines of Re(V^H V (x) conj(S) S'),   phi = max(J / (N - k), 1)     (M14.19, M14.22)
+//! G = sum over lines of Re(V^H V (x) conj(S) S'),   phi = max(J / (N - k), 1)     (M14.19, M14.25)
 //! information = G / phi,   noise of a line = phi Cv
 //! ```
 
@@ -27,7 +27,7 @@ use crate::subspace::tried_orders::parameters_of_order;
 
 /// Minimum distance in ln omega between frequencies at which the noise is kept.
 const NOISE_SPACING: f64 = 0.02;
-/// First line used, in units of a record's first line (M14.12).
+/// Lowest frequency used, in units of a record's first line, as in `spectra::spectrum`.
 const FIRST_LINE: f64 = 1.5;
 
 /// The flown records' Fisher information about a model.
@@ -146,7 +146,8 @@ fn balanced(likelihood: &Likelihood, model: &SchurModel) -> Option<SchurModel> {
     model.in_coordinates(&coordinates.transformation, &coordinates.inverse)
 }
 
-/// Returns the range of the lines used, from the first that a record of this length has \[rad/s\].
+/// Returns the range of the lines used \[rad/s\], from the first that a record of this length has,
+/// but at most from half its upper end.
 fn sweep_band(lines: [f64; 2], length_s: f64) -> [f64; 2] {
     let first = FIRST_LINE * TAU / length_s;
     [lines[0].max(first).min(0.5 * lines[1]), lines[1]]
@@ -189,7 +190,7 @@ struct FlownSweep {
 }
 
 /// Returns a sweep for each input like the strongest flown; inputs that were not swept get the
-/// others' medians. `None` without lines.
+/// others' medians, if any input was swept. `None` without lines.
 fn standard_sweeps(fitted: &FittedModel) -> Option<Vec<StandardSweep>> {
     let mut flown = Vec::with_capacity(fitted.scales.inputs.len());
     for (input, scale) in fitted.scales.inputs.iter().enumerate() {
@@ -246,7 +247,7 @@ fn median_of(sweeps: &[FlownSweep], property: fn(&FlownSweep) -> f64) -> f64 {
 }
 
 /// Measures a sweep's amplitude in a segment: a planned sweep with this amplitude and the same
-/// length has the lines' power in the median. `None` for fewer than two lines.
+/// length has the same power as the lines, in the median. `None` for fewer than two lines.
 fn flown_sweep(segment: &SpectralLines, input: usize, lines: [f64; 2]) -> Option<FlownSweep> {
     let [first, second, ..] = segment.omega[..] else {
         return None;

@@ -32,13 +32,14 @@ pub struct PlannedResponse {
     /// \[rad/s\].
     pub omega: f64,
     pub now: ResponseInterval,
-    /// After each number of sweeps.
+    /// Interval after each sweep count in [`SweepPlan::repeats`].
     pub after: Vec<ResponseInterval>,
 }
 
 impl FlightPlanner<'_> {
     /// Predicts the intervals of all responses to the swept input at `omega` \[rad/s\], for each
-    /// sweep count in `repeats`; `None` if an iteration does not converge.
+    /// sweep count in `repeats`; `None` if the sweep has no lines in the range used, or if an
+    /// iteration does not converge.
     #[must_use]
     pub fn sweep_plan(
         &self,

@@ -5,7 +5,7 @@
 //!    and ends in trim), the other inputs 0, the noise that of the flown records
 //! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   N the changes of coordinates,
 //!    c such that c N N' and G/phi have the same trace
-//! 3  h = gradient of ln H_oi:  dH = [C R, I]_o dTheta [R B; I]_i     (M14.22)
+//! 3  h = gradient of ln H_oi:  dH = [C R, I]_o dTheta [R B; I]_i     (M14.25)
 //!    var = h' T^-1 h, the same as h' (...)^+ h: h is orthogonal to N, and N' G = 0
 //! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = |G_b/G|^2 / 2 (M14.17)
 //! ```

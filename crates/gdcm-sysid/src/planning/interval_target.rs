@@ -32,9 +32,10 @@ pub struct IntervalTarget {
 /// How much is needed for a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need<T> {
-    /// The least amount, and the half-width then \[dB\].
+    /// The minimum amount that reaches the target, and the half-width with it \[dB\].
     Least { amount: T, half_db: f64 },
-    /// The largest amount considered, which is not enough, and the half-width then \[dB\].
+    /// The largest amount considered, which does not reach the target, and the half-width with it
+    /// \[dB\].
     NotWithin { most: T, half_db: f64 },
 }
 
@@ -45,7 +46,7 @@ pub struct TargetPlan {
     /// The sweep of the response's input, with `repeats` 1.
     pub sweep: StandardSweep,
     pub now: ResponseInterval,
-    /// For infinitely many flights.
+    /// Interval after infinitely many flights.
     pub limit: ResponseInterval,
     /// `None` if the interval is narrow enough now.
     pub ways: Option<TargetWays>,
@@ -59,15 +60,16 @@ pub struct TargetWays {
     pub length_s: Need<f64>,
     /// Amplitude, for a single sweep, in the input's unit.
     pub amplitude: Need<f64>,
-    /// Narrow band, from half to twice the target frequency \[rad/s\].
+    /// Narrow band \[rad/s\], from half to twice the target frequency, within the lines used.
     pub narrow_band: [f64; 2],
-    /// For sweeps over the narrow band.
+    /// Number of sweeps over the narrow band.
     pub narrow_repeats: Need<usize>,
 }
 
 impl FlightPlanner<'_> {
-    /// Finds out how to reach a target, with at most `most_repeats` sweeps; `None` if an iteration
-    /// does not converge, or if the response does not exist.
+    /// Finds out how to reach a target, with at most `most_repeats` sweeps; `None` if the sweep has
+    /// no lines in the range used, or if an iteration does not converge. The target's response must
+    /// exist.
     #[must_use]
     pub fn target_plan(
         &self,

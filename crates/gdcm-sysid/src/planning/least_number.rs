@@ -8,7 +8,7 @@ pub(super) enum Least {
     NotWithin,
 }
 
-/// Searches by bisection between 1 and `most`; `None` if a test fails.
+/// Searches by bisection between 1 and `most`; `None` if the condition cannot be evaluated.
 pub(super) fn least_number(
     most: usize,
     mut is_enough: impl FnMut(usize) -> Option<bool>,

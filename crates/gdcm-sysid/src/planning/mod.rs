@@ -1,4 +1,5 @@
-//! Planning the next flight: confidence intervals predicted after further frequency sweeps.
+//! Planning the next flight: confidence intervals predicted after further frequency sweeps
+//! (M14.25).
 //!
 //! The Fisher information from the flown records, kept at the end of the identification, plus that
 //! from planned sweeps, gives the standard deviations after a flight that has not been flown.

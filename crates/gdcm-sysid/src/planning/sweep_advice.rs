@@ -16,13 +16,13 @@ const MOST_ADVISED: usize = 8;
 pub struct SweepAdvice {
     /// The sweep, with the advised count in `repeats`.
     pub sweep: StandardSweep,
-    /// The response whose interval is the widest then.
+    /// The response with the widest interval after the advised sweeps.
     pub pair: Pair,
     /// \[rad/s\].
     pub omega: f64,
     pub now: ResponseInterval,
     pub then: ResponseInterval,
-    /// Whether all responses to the input are identified then.
+    /// Whether the advised sweeps identify all responses to the input.
     pub is_enough: bool,
 }
 

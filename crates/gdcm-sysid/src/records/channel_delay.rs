@@ -7,8 +7,8 @@ use super::sample_step::median_step;
 const LONGEST_LINE: f64 = 4.5;
 
 /// Removes a logging delay \[s\] from a channel: the value at t becomes the linear interpolation at
-/// t + delay between two adjacent samples; NaN beyond the ends, next to a missing sample, and in a
-/// gap between stamps.
+/// t + delay between two adjacent samples; NaN beyond the ends, next to a missing sample or stamp,
+/// and in a gap between stamps.
 pub(super) fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let lines = SampleLines {
         time_s,
@@ -37,13 +37,13 @@ struct SampleLines<'r> {
     /// Stamps \[s\].
     time_s: &'r [f64],
     values: &'r [f64],
-    /// Longest line \[s\].
+    /// Longest line \[s\]; a longer interval between stamps is a gap.
     longest_s: f64,
 }
 
 impl SampleLines<'_> {
-    /// Returns the value at `read_s` on the line that ends at row `next`; NaN if there is no such
-    /// line.
+    /// Returns the value at `read_s` on the line that ends at row `next`, or the preceding sample
+    /// itself if its stamp is `read_s`; NaN if there is neither.
     fn value_before(&self, next: usize, read_s: f64) -> f64 {
         let Some(before) = next.checked_sub(1) else {
             return f64::NAN;

@@ -18,7 +18,7 @@ pub struct RequestedChannel {
     pub name: String,
     /// Unit; empty if not given.
     pub unit: String,
-    /// Column: its name, `TOPIC.FIELD`, or `#3` (the third column).
+    /// Column: its name, `TOPIC.FIELD`, or `#3` (the third column); `None` if not given.
     pub column: Option<String>,
 }
 
@@ -47,7 +47,8 @@ impl ChannelListError {
 }
 
 impl RequestedChannel {
-    /// Returns the rule for this channel, column and unit.
+    /// Returns the rule for this channel: its column becomes an alias, and a file without units is
+    /// taken to be in its unit.
     pub fn rule(&self) -> ChannelRule {
         ChannelRule {
             unit: self.unit.clone(),

@@ -5,7 +5,7 @@
 //!    aliases replace the name: exactly as given; else the first column that an alias finds without
 //!    regard to case, by its number or by its index (RecordTable::find); else, unless an alias is a
 //!    number, in folded spelling, then beside a sign mark, then a synonym
-//!    only columns that the file does not assign to the other side
+//!    RecordTable::find apart, only columns that the file does not assign to the other side
 //! 2  none: columns that the logging system's documentation assigns to the channel
 //! 3  none: fields of topics with the exact name (`xyz` in TOPIC.xyz), but without aliases not in
 //!    logs with documented columns
@@ -104,8 +104,8 @@ impl ColumnSearch<'_> {
         self.named(|column| same_channel(&without_sign_mark(column), &wanted))
     }
 
-    /// Returns the columns whose name is a user-defined alias, in any spelling: "elev_yoke1" is
-    /// "elev,yoke1". A column number selects a column but is not a name.
+    /// Returns the columns that the user's aliases denote, in the order of step 1. In folded
+    /// spelling "elev_yoke1" is "elev,yoke1". If an alias is a column number, no names are tried.
     fn by_aliases(&self, aliases: &[String]) -> Vec<usize> {
         let exact = self.named(|column| self.rule.aliases.iter().any(|alias| alias == column));
         if !exact.is_empty() {
@@ -168,7 +168,7 @@ impl ColumnSearch<'_> {
         !self.rule.aliases.is_empty() || !is_documented
     }
 
-    /// Returns the columns with the channel's name within their topic (step 3).
+    /// Returns the columns whose name within their topic is in `names` (step 3).
     fn by_field(&self, names: &[String]) -> Vec<usize> {
         self.columns(|column| names.iter().any(|name| column.field() == *name))
     }

@@ -11,7 +11,8 @@ use super::record_table::{RecordColumn, RecordTable};
 /// How a column's unit was determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitBasis {
-    /// By the file, by the samples, or by the user.
+    /// By the file, by the samples, or by the user; also for a column used unchanged because no
+    /// conversion is possible.
     Known,
     /// Not at all: neither the file nor the samples determine the unit, so that the record cannot
     /// be used.
@@ -77,7 +78,8 @@ impl ColumnUse {
         }
     }
 
-    /// Converts the column from the unit `from`, given by the user, to the channel's unit `unit`.
+    /// Converts the column from the unit `from`, given by the user, to the channel's unit `unit`,
+    /// and marks the unit as known. The factor is unchanged if there is no conversion.
     #[must_use]
     pub fn in_unit(self, from: &str, unit: &str) -> Self {
         Self {
@@ -140,8 +142,8 @@ impl ColumnUse {
     }
 }
 
-/// Returns the factor that converts the column's unit and sign convention to the channel's; 1 where
-/// the units are unknown.
+/// Returns the factor that converts the column's unit and sign convention to the channel's. Units
+/// that are unknown or cannot be converted contribute a factor of 1, as does an unknown sign.
 fn factor_from_file(column: &RecordColumn, rule: &ChannelRule) -> f64 {
     let mut factor = 1.0;
     if let Some(unit) = column.unit_in_file()

@@ -6,21 +6,22 @@ use std::f64::consts::{PI, TAU};
 use super::resampling_error::ResamplingError;
 use super::stamped_channel::StampedChannel;
 
-/// Ratio of the highest spectral line used to the upper end of the band (M14.2).
+/// Ratio of the highest spectral line used to the upper end of the band (M14.9).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
-/// Minimum number of samples per period of the highest line, in a channel.
+/// Minimum number of samples per period of the highest line, in a channel and at a requested rate.
 const NEEDED: f64 = 2.5;
-/// Minimum number of samples per period of the highest line, on the common clock.
+/// Minimum number of samples per period of the highest line, on a clock without a requested rate.
 const LEAST_ON_CLOCK: f64 = 4.0;
-/// Maximum number of samples per period of the highest line, on the common clock.
+/// Maximum number of samples per period of the highest line, on a clock without a requested rate.
 const MOST_ON_CLOCK: f64 = 20.0;
 /// Ratio of the cut-off to the highest line.
 const CUT_OFF: f64 = 5.0;
-/// Highest cut-off, as a fraction of half the slowest sample rate.
+/// Highest cut-off, as a fraction of half the lowest sample rate among the channels and the clock.
 const CUT_OFF_OF_RATE: f64 = 0.8;
 /// Tolerance for a sample just outside an end of the clock, in samples.
 const ROUNDING: f64 = 1e-6;
-/// Maximum number of samples, about a day at 100 Hz; more indicate a wrong stamp.
+/// Maximum number of samples, about a day at 100 Hz; more indicate a wrong stamp or too high a
+/// requested rate.
 const MOST_SAMPLES: f64 = 1e7;
 
 /// The uniform clock to which channels are resampled.

@@ -20,8 +20,8 @@ const UNKNOWN_UNIT: &str = "?";
 /// Creates a dataset with these records in one condition. Its physics model is a placeholder with
 /// zero response, `y = 0 u`; analyses have no result until a real model is added.
 ///
-/// A helicopter's usual responses are marked as on-axis for the channels found, otherwise each
-/// output to the input with the same index.
+/// The responses that are usually on-axis in a helicopter are marked as such. If the channels have
+/// none, each output is on-axis to the input with the same index, counted cyclically.
 ///
 /// # Errors
 /// No input or no output, or a duplicate name.

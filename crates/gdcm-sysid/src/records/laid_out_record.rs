@@ -84,9 +84,10 @@ impl LaidOutRecord {
         (record, notes)
     }
 
-    /// Creates a record with its channels. A record named by the dataset is read with the factors
-    /// and delays stored there, and in the dataset's units if the file gives none. A user-defined
-    /// conversion replaces the stored factor, and an alias with a sign mark its sign.
+    /// Creates a record with proposed columns, and returns a note for each choice. If the dataset
+    /// names the record, its entry is applied (`with_entry`), and samples without a unit in the
+    /// file are taken to be in the dataset's units. A user-defined conversion replaces the stored
+    /// factor, and an alias with a sign mark the factor's sign.
     pub fn proposed_for_dataset(
         table: RecordTable,
         channels: &RecordChannels,
@@ -136,7 +137,7 @@ impl LaidOutRecord {
         }
     }
 
-    /// Applies the record's dataset entry: its remedies, whether it is reserved for
+    /// Applies the record's dataset entry: its remedies, its manoeuvre, whether it is reserved for
     /// validation, and whether it is used.
     #[must_use]
     pub fn with_entry(self, entry: &ConditionRecord, channels: &RecordChannels) -> Self {
@@ -152,7 +153,7 @@ impl LaidOutRecord {
         record
     }
 
-    /// Returns the record's samples if it is used.
+    /// Returns the record's samples if it is used and has no problems.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         if self.used {
             self.flight.as_ref()
@@ -161,8 +162,8 @@ impl LaidOutRecord {
         }
     }
 
-    /// Creates the dataset entry: the location, the information in the record's name, and the
-    /// intervals used by an identification.
+    /// Creates the dataset entry: the location, the remedies, the information in the record's name,
+    /// and the intervals used by an identification.
     pub fn entry(&self, found: &RecordUse, channels: &RecordChannels) -> ConditionRecord {
         let mut entry = self
             .layout

@@ -21,8 +21,9 @@ impl RecordLayout {
     /// a record.
     ///
     /// ```text
-    /// 1  time: none chosen, not positive, not increasing, steps too long
-    /// 2  each channel: no column; or the first of factor, delay, samples, unit
+    /// 1  time: none chosen; a sample time that is not positive; stamps that do not increase, or
+    ///    with too long steps
+    /// 2  each channel: no column; or the first of factor, delay, samples, unit, magnitude
     /// 3  a column chosen twice
     /// 4  without these: clocks that cannot be combined (M14.11)
     /// ```
@@ -93,7 +94,7 @@ impl RecordLayout {
     }
 
     /// Returns unusual features, which may be correct: missing stamps; for each channel an assumed
-    /// unit, missing samples, and a constant or else the same samples as an earlier channel.
+    /// unit, missing samples, and samples that are constant or else equal to an earlier channel's.
     pub fn cautions(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutCaution> {
         let mut cautions = Vec::new();
         cautions.extend(self.missing_stamps(table));
@@ -104,7 +105,8 @@ impl RecordLayout {
                 continue;
             };
             cautions.extend(assumed_unit(table, channel));
-            // In a table that joins several clocks, most samples are missing.
+            // A table that joins several clocks lacks many samples in each column; resampling fills
+            // them.
             let are_holes_filled = is_resampled && has_holes(&column.values);
             if !are_holes_filled {
                 cautions.extend(missing_samples(table, channel, &column.values));
@@ -184,7 +186,7 @@ fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     problem
 }
 
-/// Returns the first problem with a channel's factor, delay, samples or unit.
+/// Returns the first problem with a channel's factor, delay, samples, unit or magnitude.
 fn channel_problem(
     table: &RecordTable,
     rule: &ChannelRule,

@@ -76,7 +76,7 @@ pub enum LayoutProblem {
         /// Column names in quotation marks.
         found: Vec<String>,
     },
-    /// The columns have no names.
+    /// The columns have no names, and no channel has an alias.
     #[error(
         "the file has {} without names; give the column number of each channel, for example \
         {channel}=#2",
@@ -113,17 +113,18 @@ pub enum LayoutProblem {
         /// Units in which the samples are plausible.
         units: Vec<String>,
     },
-    /// The unit in the file has another dimension than the channel's unit.
+    /// The unit from the file, the user or the channel's rule cannot be converted to the channel's
+    /// unit.
     #[error(
-        "{channel}: the unit \"{from}\" in the file (column {column}) cannot be converted to \"{to}\"; give a factor"
+        "{channel}: the unit \"{from}\" of column {column} cannot be converted to \"{to}\"; give a factor"
     )]
     Conversion {
         channel: String,
         /// Column name in quotation marks.
         column: String,
-        /// Unit in the file.
+        /// Unit from the file, the user or the channel's rule.
         from: String,
-        /// Requested unit.
+        /// The channel's unit.
         to: String,
     },
     /// Two channels use the same column.
@@ -201,7 +202,7 @@ impl LayoutProblem {
         }
     }
 
-    /// Returns whether a channel has no column.
+    /// Returns whether no column was found for a channel; several matching columns do not count.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::NoColumn { .. } | Self::Unnamed { .. })
     }

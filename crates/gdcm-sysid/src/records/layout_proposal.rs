@@ -16,7 +16,7 @@ use super::record_table::RecordTable;
 use super::resampling::Resampling;
 use super::time_base::TimeBase;
 
-/// User settings for the time in records.
+/// User settings for the time in records; ignored if the record's topics have their own stamps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TimeSettings {
     /// Time column; `None` selects the most likely column.
@@ -28,7 +28,7 @@ pub struct TimeSettings {
 /// A layout proposed for a record, with a note for each choice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayoutProposal {
-    /// The layout; columns that are not determined remain open.
+    /// The layout; `None` for a time or column that could not be determined.
     pub layout: RecordLayout,
     /// Choices with their reasons.
     pub notes: Vec<LayoutNote>,
@@ -44,7 +44,7 @@ impl RecordLayout {
     /// ```text
     /// 1  time     the topics' stamps, if columns have their own clocks (M14.11); else the user's
     ///             sample time; the user's column; the column named like a time; the file's sample
-    ///             time; else open, with a problem
+    ///             time; else none, with a problem
     /// 2  channel  by name, or by aliases if it has some (column_candidates); if no input has a
     ///             candidate, but the file marks equally many columns as inputs (such as the
     ///             columns of u): these in order (the same for outputs). Neither a column name nor
@@ -240,7 +240,8 @@ impl Proposer<'_> {
         None
     }
 
-    /// Returns the column with its factor and sign (steps 3 and 4); adds notes.
+    /// Returns the column with its factor and sign (steps 3 and 4), and adds notes; `None`, with a
+    /// problem, if the unit cannot be converted or the sign is unknown.
     fn column_use(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let used = self.converted(rule, column)?;
         let name = self.table.columns[column].name.as_str();
@@ -271,7 +272,7 @@ impl Proposer<'_> {
     /// Returns the sign by which a column's factor is multiplied (step 4):
     ///
     /// 1. a user-defined factor includes the sign: 1, or -1 if the user also put a minus before the
-    ///    column's name
+    ///    name of a column that has none
     /// 2. an alias with a sign mark: by this mark
     /// 3. an alias without a sign mark, for a column without one: 1, by the user's decision
     /// 4. else by the column's name; `None` if it leaves the sign open
@@ -321,7 +322,8 @@ impl Proposer<'_> {
         Some(self.by_samples(rule, column))
     }
 
-    /// Converts a column from `unit` to the channel's unit, and adds a note.
+    /// Converts a column from `unit` to the channel's unit, and adds a note; `None`, with a
+    /// problem, if that is not possible.
     fn converted_from(
         &mut self,
         rule: &ChannelRule,

@@ -15,7 +15,8 @@ use super::time_base::TimeBase;
 
 impl RecordLayout {
     /// Returns the flight record from the chosen columns: resampled, if they have several clocks or
-    /// a rate is requested (M14.11); else each sample times its factor, otherwise unchanged.
+    /// a rate is requested (M14.11); else each sample times its factor, interpolated only where a
+    /// delay is removed.
     ///
     /// # Errors
     /// All problems with the columns.
@@ -86,7 +87,8 @@ struct RowSamples<'r> {
 }
 
 impl RowSamples<'_> {
-    /// Returns the samples, one column per channel; NaN where a sample is missing.
+    /// Returns the samples in channel units, delays removed, one column per channel; NaN where a
+    /// sample is missing.
     fn matrix(&self, uses: &[Option<ColumnUse>]) -> DMatrix<f64> {
         let mut samples = DMatrix::from_element(self.rows.len(), uses.len(), f64::NAN);
         for (channel, used) in uses.iter().enumerate() {

@@ -28,8 +28,8 @@ impl RecordLayout {
     /// Applies the changes between two layouts for `from` to this layout for `table`, channel by
     /// channel: transfers the user's edits to another record with the same column names.
     ///
-    /// A channel whose column was removed, or is missing in this record, keeps its own. So do the
-    /// remedies, which belong to one record.
+    /// A channel whose column was removed by the user, or is missing in this record, keeps its own
+    /// column. Remedies are kept as well, because they belong to one record.
     #[must_use]
     pub fn following(
         &self,

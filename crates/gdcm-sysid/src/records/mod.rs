@@ -14,8 +14,9 @@
 //! | separate clocks (M14.11) | `resampling`, [`stamped_channel`], [`common_clock`], [`resampling_error`] |
 //! | further information about a record | [`record_copies`], `possible_references`, [`record_guess`], [`spectrogram`] |
 //!
-//! Samples are read from the file and multiplied by a factor, never filtered or detrended. Channels
-//! with separate clocks are resampled to a common clock (M14.11), and this is reported.
+//! Samples are multiplied by a factor, and a logging delay is removed by interpolation; they are
+//! not filtered or detrended. Only channels with separate clocks, or records with a requested
+//! sample rate, are filtered and resampled to a common clock (M14.11), and this is reported.
 
 mod channel_delay;
 pub mod channel_list;

@@ -46,9 +46,10 @@ pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
     Some(limit.value * conversion_factor(limit.unit, unit)?)
 }
 
-/// Returns the units in which a column's samples are plausible for a channel with this unit: units
-/// with the same dimension whose largest plausible value is not below the largest sample, with the
-/// channel's unit first. Empty if all samples are zero or the unit is unknown.
+/// Returns the units in which a column's samples are plausible for a channel with this unit: the
+/// channel's unit first, then units used in logs with the same dimension, without those whose
+/// largest plausible value is below the largest sample. Empty also if the samples are all zero or
+/// missing, or the channel's unit is unknown.
 pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
     let Some(peak) = column.peak() else {
         return Vec::new();

@@ -53,8 +53,9 @@ fn is_place_angle(column: &RecordColumn, factor: f64) -> bool {
         && least.abs().max(most.abs()) * factor <= LARGEST_ANGLE_DEG
 }
 
-/// Returns whether a column with a folded name from `names` changes, but by less than
-/// `largest_change` relative to its largest absolute value.
+/// Returns whether a column with a folded name from `names`, taken to be in degrees, passes
+/// [`is_place_angle`] and changes, but by less than `largest_change` relative to its largest
+/// absolute value.
 fn has_near_constant_angle(table: &RecordTable, names: &[&str], largest_change: f64) -> bool {
     table.columns.iter().any(|column| {
         let Some((least, most)) = column.range() else {

@@ -27,7 +27,7 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
     }
 }
 
-/// Returns the first used record with the same samples.
+/// Returns the first used earlier record with the same samples; `None` if `record` is not used.
 fn original_of<'r>(
     record: &LaidOutRecord,
     earlier: &'r [LaidOutRecord],

@@ -70,7 +70,7 @@ impl RecordGuess {
     }
 }
 
-/// Returns the first manoeuvre that a folded name contains.
+/// Returns the first manoeuvre in [`MANOEUVRES`] that a folded name contains; else `Other`.
 fn manoeuvre(folded: &str) -> RecordKind {
     for (kind, parts) in MANOEUVRES {
         if contains_any(folded, parts) {

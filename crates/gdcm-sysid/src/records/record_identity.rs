@@ -7,7 +7,8 @@ use super::record_table::{RecordColumn, RecordTable};
 
 impl RecordTable {
     /// Returns the record's dataset entry, and its condition. The entry names the same variable in
-    /// a file with the same name, or the same record in an archive with another name.
+    /// a file with the same name, or the same record in an archive with another name. Entries for a
+    /// part of a record do not count.
     pub fn entry_of_dataset<'d>(
         &self,
         dataset: &'d Dataset,
@@ -28,9 +29,9 @@ impl RecordTable {
         None
     }
 
-    /// Returns whether both are the same record: the same variable and part in a file, or equal
-    /// samples under the same name. A table with equal samples under another name is a copy
-    /// ([`leave_out_copies`](super::leave_out_copies)).
+    /// Returns whether both are the same part of the same record: the same variable in a file with
+    /// equal name and content, or equal columns under the same name. A table with equal samples
+    /// under another name is a copy ([`leave_out_copies`](super::leave_out_copies)).
     pub fn is_same_record(&self, other: &Self) -> bool {
         let is_same_file = self.source.sha256 == other.source.sha256
             && !self.source.sha256.is_empty()

@@ -18,9 +18,9 @@ use super::time_base::TimeBase;
 pub struct RecordLayout {
     /// Source of the sample times; `None` if not yet chosen.
     pub time: Option<TimeBase>,
-    /// A column for each input; `None` while open.
+    /// A column for each input; `None` if not yet chosen.
     pub inputs: Vec<Option<ColumnUse>>,
-    /// A column for each output; `None` while open.
+    /// A column for each output; `None` if not yet chosen.
     pub outputs: Vec<Option<ColumnUse>>,
 }
 
@@ -82,7 +82,7 @@ impl RecordLayout {
         add_remedies(&mut self.outputs, &channels.outputs, remedies);
     }
 
-    /// Returns a channel's column for editing.
+    /// Returns a channel's column for editing; `None` if none is chosen.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
         role.pick(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
@@ -121,7 +121,8 @@ impl RecordLayout {
         layout
     }
 
-    /// Creates the record's dataset entry: its location, and the information in its name.
+    /// Creates the record's dataset entry: its location, hash, part and sample time, the remedies
+    /// to store, and the manoeuvre and use for validation from `guess`.
     pub fn condition_record(
         &self,
         table: &RecordTable,

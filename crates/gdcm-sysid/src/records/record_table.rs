@@ -112,7 +112,7 @@ pub struct RecordTable {
     pub notes: Vec<String>,
     /// Mode intervals from the logging system.
     pub modes: Vec<ModeSpan>,
-    /// First and last time used \[s\]; `None` for the whole file.
+    /// First and last time used \[s\]; `None` for the whole record.
     pub part_s: Option<[f64; 2]>,
 }
 
@@ -194,7 +194,8 @@ impl RecordTable {
         self.position_ignoring_case(&format!("{matrix}_{number}"))
     }
 
-    /// Returns the part of the record between two times \[s\] on the record's clock.
+    /// Returns the record restricted to the time between two stamps \[s\] on its clock: under
+    /// another name, with `part_s` set, and with all samples.
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();
@@ -225,7 +226,7 @@ impl RecordTable {
     }
 }
 
-/// Joins names, shortened to fit a message.
+/// Joins names with commas; after the first 20, the others are only counted.
 pub fn shortened_list<S: AsRef<str>>(names: &[S]) -> String {
     /// Maximum number of names in a message.
     const SHOWN: usize = 20;

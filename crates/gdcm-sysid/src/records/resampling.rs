@@ -46,7 +46,7 @@ struct ChannelColumn<'r> {
 
 impl RecordLayout {
     /// Returns whether the chosen columns have several clocks, or a rate is requested; the record
-    /// is then resampled to a common clock.
+    /// is then resampled to a common clock. `false` while a channel has no column.
     pub fn is_resampled(&self, table: &RecordTable, channels: &RecordChannels) -> bool {
         Resampling::new(self, table, channels).is_some()
     }
@@ -226,8 +226,8 @@ pub(super) fn has_holes(values: &[f64]) -> bool {
     holes as f64 > SHARE_OF_HOLES * values.len() as f64
 }
 
-/// Returns whether 95 % of the steps differ from multiples of the median step by at most 20 %
-/// (M14.1).
+/// Returns whether at least 95 % of the steps differ from positive multiples of the median step by
+/// at most 20 % of it (M14.1).
 fn is_even(time_s: &[f64]) -> bool {
     let Some(median) = median_step(time_s) else {
         return false;

@@ -5,7 +5,8 @@
 pub enum ResamplingError {
     #[error("{topic} has {samples} samples with a time stamp, but at least 3 are needed")]
     TooFew { topic: String, samples: usize },
-    /// A topic has fewer than 2.5 samples in a period of the highest line.
+    /// A channel, or the requested rate, has fewer than 2.5 samples in a period of the highest
+    /// line.
     #[error(
         "{topic} is sampled at {rate_hz:.1} Hz, but a band up to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
          the band at {possible:.2} rad/s"
@@ -25,10 +26,10 @@ pub enum ResamplingError {
          clocks differ"
     )]
     NoCommonTime {
-        /// The topic that ends first.
+        /// The channel that ends first.
         first: String,
         first_end_s: f64,
-        /// The topic that begins last.
+        /// The channel that begins last.
         second: String,
         second_start_s: f64,
     },

@@ -29,7 +29,7 @@ impl Separation {
     pub const FEWEST: usize = 20;
 
     /// Proposes a separation by a column with record numbers or, without one, by stamps that
-    /// restart.
+    /// restart; [`Self::None`] if there are neither, and for a table with topics.
     pub fn proposed(table: &RecordTable) -> Self {
         if table.has_topics() {
             return Self::None;

@@ -21,7 +21,8 @@ impl RecordTable {
     /// 2  side by side: several, the first column among them, a sample column after each; clocks
     ///    that differ, and overlap with the first by over half the shorter one. A second clock with
     ///    another origin is an ordinary column
-    /// 3  the columns after each stamp column become a topic; the stamp columns are removed
+    /// 3  the columns after each stamp column become a topic, with stamps in the first stamp
+    ///    column's unit; the stamp columns are removed
     /// ```
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {

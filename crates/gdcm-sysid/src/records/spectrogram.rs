@@ -14,11 +14,11 @@ use crate::spectra::spectrum::{Spectrum, spectra};
 ///
 /// ```text
 /// windows  Hann, 0.15 times the record, between 4 s and 20 s; one every eighth of their length,
-///          or fewer so that there are at most 400
+///          or fewer so that there are at most 401
 /// power    |U(omega_k)|^2, from the samples in the window less their mean (M14.2); missing samples
 ///          count as the mean
 /// rows     frequencies evenly in ln(omega), from two periods in a window up to `highest`: the
-///          maximum of the lines within half a row
+///          maximum of the lines within half a row, or the next line above
 /// level    10 log10(power / maximum power), at least FLOOR
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ const LONGEST_WINDOW_S: f64 = 20.0;
 const FEWEST_SAMPLES: usize = 8;
 /// Number of steps from window to window in a window length.
 const STEPS_A_WINDOW: usize = 8;
-/// Maximum number of windows.
+/// Maximum number of steps from the first window to the last.
 const MOST_WINDOWS: usize = 400;
 /// Highest frequency, as a fraction of half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
@@ -56,7 +56,7 @@ impl Spectrogram {
     pub const FLOOR: f64 = -40.0;
 
     /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the record is shorter than a
-    /// window, or if the usable frequencies span less than an octave.
+    /// window, a window has fewer than 8 samples, or the usable frequencies span at most an octave.
     #[must_use]
     pub fn new(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
         let windows = Windows::new(time_s, samples.len())?;
@@ -137,8 +137,8 @@ struct FrequencyRows {
 }
 
 impl FrequencyRows {
-    /// Spaces rows from the frequency with two periods in a window to `highest` \[rad/s\]; `None`
-    /// if these are less than an octave apart.
+    /// Spaces rows from the frequency with two periods in a window to `highest` \[rad/s\], or to
+    /// 0.9 times half the sample rate if that is lower; `None` if these span at most an octave.
     fn new(windows: &Windows, highest: f64) -> Option<Self> {
         let lowest = 2.0 * TAU / windows.seconds;
         let highest = highest.min(HIGHEST_OF_RATE * TAU / (2.0 * windows.step_s));

@@ -25,7 +25,8 @@ impl StampUnit {
     const SHORT: [(&str, f64); 3] = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
 
     /// Determines the unit: the one in the file, else the last word in the column's name
-    /// (`time_ms`), else a unit that makes the median step plausible, else the second.
+    /// (`time_ms`), else seconds, unless the median step is implausible in seconds and plausible in
+    /// another unit.
     pub(super) fn new(stamps: &RecordColumn) -> Self {
         if let Some(unit) = stamps.unit.as_deref().and_then(Self::from_name) {
             return unit;
@@ -63,7 +64,7 @@ impl StampUnit {
     }
 
     /// Returns a unit that was chosen because the median step `step`, taken in seconds, is
-    /// implausible: over [`LONGEST_STEP_S`] or far below a second.
+    /// implausible: over [`LONGEST_STEP_S`] or below [`SHORTEST_STEP_S`].
     fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
         Self {
             name,

@@ -33,7 +33,7 @@ pub struct StampedChannel {
     values: Vec<f64>,
     /// Index ranges without gaps; never empty.
     runs: Vec<Range<usize>>,
-    /// Sample rate without gaps \[Hz\].
+    /// Mean sample rate outside gaps \[Hz\]; 0 if every run has a single sample.
     pub rate_hz: f64,
 }
 
@@ -118,7 +118,8 @@ impl StampedChannel {
     }
 }
 
-/// Moves each stamp later by half the time to the next, at most by half `longest_s`.
+/// Moves each stamp later by half the time to the next, at most by half `longest_s`; after a gap,
+/// the last stamp by up to `longest_s`.
 fn delay_by_half_a_hold(times: &mut [f64], longest_s: f64) {
     // From front to back, because each stamp needs the next one unchanged.
     for k in 0..times.len() - 1 {
@@ -173,8 +174,8 @@ pub fn is_held(values: &[f64]) -> bool {
 /// Δ_k  = half the distance between the neighbours of t_k; at an end, the distance to its neighbour
 /// ```
 ///
-/// Constants do not change, nor does a sample without a neighbour in the kernel. Stamps increase;
-/// `cutoff` is wc \[rad/s\].
+/// Constants do not change, nor does a sample without a neighbour in the kernel. NaN if the weights
+/// have no positive sum. Stamps increase; `cutoff` is wc \[rad/s\].
 fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     let half = HALF_TAPS * PI / cutoff;
     let from = time_s.partition_point(|time| *time <= t - half);

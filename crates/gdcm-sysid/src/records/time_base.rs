@@ -71,7 +71,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns the median step \[s\]; `None` with fewer than two stamps, and for topics.
+    /// Returns the median step \[s\]; `None` for topics, and without two adjacent stamps.
     pub fn step_s(self, table: &RecordTable) -> Option<f64> {
         match self {
             TimeBase::SampleTime(step_s) => Some(step_s),
@@ -100,8 +100,8 @@ impl TimeBase {
         }
     }
 
-    /// Finds the time column by its name; in a table without column names, the first column if it
-    /// mostly increases.
+    /// Finds the time column by its name, among several by preference one that mostly increases; in
+    /// a table without column names, the first column if it mostly increases.
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let best = (0..table.columns.len())
             .filter_map(|column| TimeRank::new(table, column))

@@ -21,7 +21,7 @@ impl RecordTable {
     pub const TOPICS: &'static str = "its topics";
 
     /// Returns the record that topics form under this name: all as [`Self::TOPICS`], or the topics
-    /// in one log as "its topics, log_7".
+    /// in one log as "its topics, log_7"; `None` for other names.
     pub fn of_topics_called(tables: &[RecordTable], variable: &str) -> Option<RecordTable> {
         if variable == Self::TOPICS {
             return Some(join_topics(tables));

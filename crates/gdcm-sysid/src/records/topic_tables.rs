@@ -76,8 +76,8 @@ impl TopicJoiner<'_> {
             .collect()
     }
 
-    /// Returns whether a channel has no column, or several candidate columns, as tables of several
-    /// logs have together.
+    /// Returns whether a channel has no column, or several candidate columns, as in a table joined
+    /// from several logs.
     fn lacks_channels(&self, table: &RecordTable) -> bool {
         let proposal = RecordLayout::proposed(table, self.channels, self.time);
         proposal.problems.iter().any(|problem| {

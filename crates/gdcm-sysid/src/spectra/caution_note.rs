@@ -13,7 +13,8 @@ pub struct CautionNote {
     pub channel: Option<String>,
     /// The affected response: names of output and input.
     pub pair: Option<[String; 2]>,
-    /// Affected frequencies \[rad/s\].
+    /// Affected frequencies \[rad/s\]; for the codes `band-narrowed` and `order-limit`, the
+    /// narrower band instead.
     pub band_rad_s: Option<[f64; 2]>,
     /// The full text.
     pub text: String,

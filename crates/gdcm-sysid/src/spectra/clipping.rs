@@ -26,7 +26,7 @@ const USUAL: f64 = 0.9;
 const OUTER: f64 = 0.05;
 /// Largest share of samples at a limit that is acceptable in a smooth channel.
 const MOST_AT_LIMIT: f64 = 0.005;
-/// Largest acceptable share in a coarse channel or one with stairs.
+/// Largest acceptable share in a held channel, such as one with coarse steps or stairs.
 const MOST_AT_LIMIT_HELD: f64 = 0.1;
 /// A channel counts as held if flat runs away from the limits hold more than this share of its
 /// samples.
@@ -81,7 +81,7 @@ impl Clipping {
     }
 }
 
-/// Returns the usual length in samples; 1 without runs.
+/// Returns the usual length (step 1) in samples; 1 without runs.
 fn usual_length(runs: &[usize]) -> f64 {
     if runs.is_empty() {
         return 1.0;

@@ -13,7 +13,7 @@ pub(crate) fn is_coarse(values: &[f64]) -> bool {
 }
 
 /// Returns the smallest step between two values divided by the standard deviation; `None` if the
-/// channel is constant.
+/// channel is constant, or if all steps are below a thousandth of the standard deviation.
 pub(crate) fn coarseness(values: &[f64]) -> Option<f64> {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;

@@ -1,5 +1,5 @@
-//! Chooses the cut-off frequency for the zero-phase low-pass before the Laguerre projections
-//! (M14.1), and the sampling after it (M14.24).
+//! Chooses the cut-off frequency for the zero-phase low-pass before the Laguerre projections, and
+//! the sampling after it (M14.1).
 //!
 //! ```text
 //! wc = 5 whi, or 2 whi for a vibrating output
@@ -21,7 +21,7 @@ use super::spectrum::spectra;
 const USUAL: f64 = 5.0;
 /// Ratio of the cut-off to the highest line used, if an output vibrates (M14.1).
 const VIBRATING: f64 = 2.0;
-/// Ratio of the sampling frequency that the projections need to the highest line used (M14.24).
+/// Ratio of the sampling frequency that the projections need to the highest line used (M14.1).
 const SAMPLING: f64 = 20.0;
 /// Tolerance for a sample time that was rounded.
 const ROUNDING: f64 = 1e-9;
@@ -81,8 +81,9 @@ impl CutOff {
         }
     }
 
-    /// Filters every channel, unless the cut-off is above half the sampling frequency, and thins
-    /// records that are logged much faster than the highest line used needs.
+    /// Filters every channel, and thins records that are logged much faster than the highest line
+    /// used needs. Segments are unchanged if the cut-off is above 0.8 times half the sampling
+    /// frequency.
     #[must_use]
     pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
         each(executor, segments, |segment| {

@@ -29,7 +29,8 @@ const USUAL_QUANTILE: f64 = 0.95;
 /// An output can be frozen only if it has at least this many runs with equal samples: with fewer,
 /// it never moves.
 const MOVING_RUNS: usize = 10;
-/// Minimum number of equal samples in a run at an output's minimum or maximum.
+/// Minimum number of equal samples in a run at an output's minimum or maximum; two such runs mean
+/// that the output is at its limit there.
 const LIMIT_RUN: usize = 5;
 
 /// Finds the runs in which an output is frozen: it repeats the value before them. `channels` are

@@ -42,7 +42,8 @@ impl Treatment {
     }
 }
 
-/// A gap in a record, between the last valid sample before it and the next after it.
+/// A gap in a record, between the last valid sample before it and the next after it; or a part that
+/// is too short to be used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// Start \[s\], on the record's time axis.

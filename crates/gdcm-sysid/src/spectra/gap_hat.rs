@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! true signal = signal filled by a straight line + sum_q c_q hat_q
-//! dt sample time, T length of the segment, whi highest line used
+//! dt sample time, T length of the segment, whi highest line used, gap = missing samples times dt
 //! hat_q: linear B-splines, zero at both ends of the gap, at most pi/(2 whi) apart
 //!     count = ceil(2 whi (gap + dt) / pi), at most one a sample
 //! b_q(omega) = dt / sqrt(T) sum_n hat_q(n) e^(-j omega n dt)

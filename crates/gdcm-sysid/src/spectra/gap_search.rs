@@ -1,8 +1,9 @@
 //! Finds a record's gaps: missing rows, stamps and samples, frozen outputs (M14.1).
 //!
 //! A gap lies between two stamps or, in a channel, between two valid samples. Gaps up to the length
-//! that the settings allow are bridged by straight lines (`valid_samples`), others are cut out
-//! (`preparation`). Parts too short to be used become gaps there too.
+//! that the settings allow are bridged by straight lines (`valid_samples`), others are cut out or,
+//! if their samples can be estimated, filled (`preparation`). Parts too short to be used become
+//! gaps there too.
 
 use std::collections::BTreeMap;
 

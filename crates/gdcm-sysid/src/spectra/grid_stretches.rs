@@ -4,9 +4,9 @@
 //! ```text
 //! row   all channels' values at a grid point;   hole: consecutive rows in which a value is missing
 //! run   consecutive rows between holes
-//! hat   an unknown for missing samples (`gap_hat`);   l outputs
+//! hat   an unknown for missing samples (`gap_hat`);   l outputs, n lines
 //! 1  a part: from the first run to the last
-//! 2  no hole in the part, or the hats of all its gaps < 1/10 of the 2 l lines real values in its
+//! 2  no hole in the part, or the hats of all its gaps < 1/10 of the 2 l n real values in its
 //!    outputs' lines:   it stays whole
 //!    otherwise it is cut at the hole with the most hats, and both parts are examined
 //! ```
@@ -170,7 +170,7 @@ impl GridRows {
         let Some(lines) = lines else {
             return runs;
         };
-        // How many hats the hole after each run takes.
+        // Number of hats that the hole after each run needs.
         let mut hats_after = Vec::with_capacity(runs.len());
         for pair in runs.windows(2) {
             let mut hats = 0;

@@ -21,7 +21,7 @@ pub enum LocalPolynomialError {
         longer, or leave out channels"
     )]
     TooFewLines {
-        /// Number of spectral lines in all records.
+        /// Number of spectral lines, over all records with more than two.
         lines: usize,
         needed: usize,
     },

@@ -80,7 +80,7 @@ impl Regression {
         record_rows -= explained;
     }
 
-    /// Adds a ridge proportional to the column lengths in `A`.
+    /// Adds a ridge proportional to the column lengths in `A`; 1 for a zero column.
     fn add_ridge(&mut self, top: usize, unknowns: usize) {
         for column in 0..unknowns {
             let length = self.rows.column(column).norm();

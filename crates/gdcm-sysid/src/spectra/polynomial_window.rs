@@ -19,12 +19,11 @@ use super::spectrum::Spectrum;
 const FEWER_TERMS: usize = 2;
 /// Minimum window half-width \[rad/s\] (M14.2).
 const LEAST_HALF_WIDTH: f64 = 0.45;
-/// First factor by which a window with too few lines is widened (M14.12).
+/// First factor by which a window with too few lines is widened.
 const FIRST_WIDENING: f64 = 1.2;
-/// Factor for each further widening (M14.12).
+/// Factor for each further widening.
 const FURTHER_WIDENING: f64 = 1.05;
-/// Number of lines that a window with three terms needs in addition to one per unknown and output
-/// (M14.12).
+/// Number of lines that a window with three terms needs in addition to one per unknown and output.
 const SPARE_LINES: usize = 6;
 /// Number of lines that a window with two terms needs in addition to one per unknown and output.
 const SPARE_LINES_FEWER_TERMS: usize = 4;

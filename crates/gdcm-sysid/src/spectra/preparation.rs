@@ -39,8 +39,8 @@ pub struct Prepared {
 ///
 /// ```text
 /// for each record
-/// 1  dt = median stamp difference; stamps more than 20 % off the multiples of dt are
-///    an error unless allowed
+/// 1  dt = median stamp difference; if over 5 % of the differences are more than 20 % off the
+///    multiples of dt, an error unless allowed
 /// 2  for each channel the samples that count: finite, not frozen; fresh if the sensor is slow
 ///    (valid_samples, frozen_outputs); between them, the gaps (gap_search)
 /// 3  value of a channel at t: the straight line at t + shift between two samples that are at most
@@ -51,12 +51,12 @@ pub struct Prepared {
 ///    cautions about channels (record_cautions)
 /// ```
 ///
-/// No mean or trend is removed, and nothing is filtered. No gap is filled: `filled` holds the same
-/// segments as `segments`.
+/// No mean or trend is removed, and nothing is filtered. Every gap that is not bridged is cut out:
+/// `filled` holds the same segments as `segments`.
 ///
 /// # Errors
-/// Invalid settings, records that do not fit them, time that does not increase or is uneven,
-/// no segment left, a constant channel.
+/// No records, invalid settings, records that do not fit them, time that does not increase or is
+/// uneven, no segment left, a constant channel.
 pub fn prepare(
     records: &[FlightRecord],
     preparation: &Preparation,

@@ -50,8 +50,8 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns how much later \[s\] a sample is stamped than the channel had its value; negative
-    /// for a held command, which is stamped when its hold begins.
+    /// Returns how much later \[s\] a sample is stamped than the channel had its value: the delay,
+    /// less half the hold of a command, or plus half the hold of a slow sensor.
     pub(crate) fn shift_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } => self.delay_s - 0.5 * hold_s,
@@ -178,7 +178,7 @@ pub enum PreparationError {
     NoRecords,
     #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
-    /// A record has other channels than the settings.
+    /// A record has another number of channels than the settings.
     #[error("record {record}: expected {named} {role}s, found {found}")]
     ChannelsDiffer {
         record: String,

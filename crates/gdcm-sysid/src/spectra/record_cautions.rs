@@ -65,7 +65,7 @@ pub enum RecordCaution {
     #[error("{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
-        /// The samples' largest modulus.
+        /// Largest modulus of the samples that are used, spikes apart.
         greatest: f64,
         /// Largest plausible modulus.
         limit: f64,
@@ -93,7 +93,7 @@ pub enum RecordCaution {
         /// Number of affected records.
         records: usize,
     },
-    /// Single samples in a channel are far off their neighbours (M14.24).
+    /// At most three consecutive samples in a channel are far off their neighbours (M14.24).
     #[error("{}", spike_text(record, signal, times_s, *deviations))]
     Spike {
         record: String,
@@ -465,7 +465,8 @@ pub(crate) fn inputs_at_limit(
 }
 
 impl RecordCaution {
-    /// Returns the note with code and subject, but without the text.
+    /// Returns the note with code and subject, but without the text. It names only the second of
+    /// two inputs that moved together, and only the first of several outputs that stood still.
     pub(crate) fn note(&self) -> CautionNote {
         match self {
             Self::Resampled { record, .. } => CautionNote::new("resampled").with_record(record),

@@ -13,7 +13,7 @@ pub struct RecordUse {
     pub sample_time_s: f64,
     /// Time between the first and the last stamp \[s\].
     pub logged_s: f64,
-    /// Total segment length \[s\].
+    /// Total length of the filled segments \[s\], estimated samples included.
     pub used_s: f64,
     /// Gaps, sorted by their start.
     pub gaps: Vec<Gap>,

@@ -224,8 +224,8 @@ fn through_reference(lines: &Spectrum, points: &[InstrumentPoint], outputs: usiz
     }
 }
 
-/// Computes the pseudo-inverse without singular values below a share of the largest; zero if the
-/// decomposition fails.
+/// Computes the pseudo-inverse without singular values below [`TOLERANCE`] times the largest; zero
+/// if the decomposition fails.
 fn pseudo_inverse(matrix: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     let zero = DMatrix::zeros(matrix.ncols(), matrix.nrows());
     let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else {

@@ -12,8 +12,7 @@ use super::scales::Scales;
 pub(crate) const TERMS: usize = 3;
 /// Minimum median partial coherence for an input that was swept by itself (M14.2).
 const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
-/// Largest condition number of the inputs' spectral matrix if they were moved independently
-/// (M14.2).
+/// Largest condition number of the inputs' spectral matrix if they were moved independently.
 const GREATEST_CONDITION: f64 = 1e3;
 /// Minimum partial coherence at which a point is trusted (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
@@ -56,8 +55,9 @@ impl EstimatePoint {
         (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
     }
 
-    /// Returns an input's largest partial coherence over the outputs, less the share that as many
-    /// noise columns would explain: `1 - (1 - c) (freedom + 3) / freedom`.
+    /// Returns an input's largest partial coherence `c` over the outputs, less the share that noise
+    /// would explain with as many columns as the input has terms: `1 - (1 - c) (freedom + 3) /
+    /// freedom`, at least 0.
     ///
     /// Without this correction, the maximum over many outputs would hardly ever be small.
     fn greatest_coherence(&self, input: usize) -> f64 {

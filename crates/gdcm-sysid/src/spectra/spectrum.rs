@@ -11,7 +11,7 @@ use gdcm_numerics::{FourierPlanner, FourierTransform};
 use super::gap_hat::GapHat;
 
 /// Lowest frequency used, in units of a segment's first line. The first line contains the drift, so
-/// that the lines are used from the second on (M14.12).
+/// that the lines are used from the second on.
 pub(crate) const FIRST_LINE: f64 = 1.5;
 
 /// A segment's spectral lines (M14.2): columns are lines, rows are channels.

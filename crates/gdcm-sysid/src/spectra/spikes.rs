@@ -73,7 +73,8 @@ struct Candidate {
 }
 
 impl Spikes {
-    /// Finds spikes among a channel's samples in a record; `None` if there are none.
+    /// Finds spikes among a channel's samples in a record; `None` if there are none, or so many
+    /// that the channel moves in pulses.
     pub(crate) fn find(samples: Vec<Sample>) -> Option<Self> {
         let fresh = FreshSamples::new(samples);
         let samples = &fresh.samples;

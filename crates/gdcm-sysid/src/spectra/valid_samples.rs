@@ -101,7 +101,8 @@ pub(crate) struct SampleReader<'a> {
 }
 
 impl SampleReader<'_> {
-    /// Returns the channel's value at `t` \[s\], with the delay removed:
+    /// Returns the channel's value at `t` \[s\] after the record's first stamp, with the delay
+    /// removed:
     ///
     /// - before the first sample, `None`
     /// - after the last, its value within the rounding, else `None`

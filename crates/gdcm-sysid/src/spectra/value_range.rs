@@ -1,6 +1,6 @@
 //! A channel's minimum and maximum.
 
-/// A channel's minimum and maximum.
+/// A channel's minimum and maximum; infinity and minus infinity without values.
 pub(crate) struct ValueRange {
     pub(crate) least: f64,
     pub(crate) greatest: f64,

@@ -55,7 +55,8 @@ impl Subspace {
     /// Computes the states (steps 1 to 3) from the triangular factor at a Laguerre pole \[rad/s\];
     /// `ridge` applies to columns scaled to unit length.
     ///
-    /// Returns `None` if the regressors depend on each other or an iteration does not converge.
+    /// Returns `None` if `factor` has fewer projections than the past window, if the regressors
+    /// depend on each other, or if an iteration does not converge.
     pub(crate) fn new(
         factor: &TriangularFactor,
         pole: f64,
@@ -107,7 +108,7 @@ impl Subspace {
     }
 
     /// Computes the continuous-time model at an order (steps 4 and 5); `None` if the data do not
-    /// contain so many states.
+    /// contain so many states, or do not determine the model.
     pub(crate) fn model(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;
         let width = self.map.ncols();

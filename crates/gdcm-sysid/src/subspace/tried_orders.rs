@@ -59,7 +59,7 @@ impl Extent {
         self.inputs + self.outputs
     }
 
-    /// Returns the most block rows that the map to the future may have: enough for 30 states, and
+    /// Returns the maximum number of block rows in the map to the future: enough for 30 states, and
     /// at least 12.
     pub(crate) fn longest_future(self) -> usize {
         FUTURE_STATES

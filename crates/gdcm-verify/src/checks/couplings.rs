@@ -32,7 +32,7 @@ pub(super) fn coupled_state_space(_: &mut ReferenceStudy) -> Result<Found, Check
     )
     .map_err(CheckFault::no_result)?;
     let couplings = constant_couplings(&case.matrix("M")?, &case.matrix("K")?)?;
-    // The model has no delays: the order does not matter.
+    // The model has no delays: the approximant's order does not matter.
     let Some(pade) = Pade::new(4) else {
         return Err(CheckFault::no_result("no approximant of order 4"));
     };

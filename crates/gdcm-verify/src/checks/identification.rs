@@ -20,7 +20,8 @@ const RECORDS: usize = 3;
 /// Sine waves per input.
 const LINES: usize = 40;
 
-/// The true system: a Dutch roll near 2.1 rad/s, coupled to a faster pair of modes.
+/// The true system: a Dutch roll near 2.1 rad/s, coupled to a well-damped pair of modes near 1.3
+/// rad/s.
 fn truth() -> Result<StateSpace, CheckFault> {
     StateSpace::new(
         dmatrix![

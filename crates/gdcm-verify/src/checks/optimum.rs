@@ -34,8 +34,9 @@ fn gain_problem(instance: &Reference) -> Result<Problem, CheckFault> {
     })
 }
 
-/// Compares minima for eq. (7) with certified ones. A minimum that is not proven, or whose proven
-/// lower bound exceeds the certified minimum, disagrees.
+/// Compares minima for eq. (7) with certified ones. A minimum disagrees if it is not proven, if its
+/// proven lower bound exceeds the certified minimum, or if it differs on whether the held products
+/// are feasible.
 pub(super) fn certified_gains(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for instance in GAIN_INSTANCES.read()?.list("instances")? {
@@ -80,7 +81,7 @@ pub(super) fn held_products(_: &mut ReferenceStudy) -> Result<Found, CheckFault>
     Ok(found)
 }
 
-/// Compares minima for eq. (11) with certified ones.
+/// Compares minima for eq. (11) with certified ones, and whether the held delays are feasible.
 pub(super) fn certified_delays(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for instance in DELAY_INSTANCES.read()?.list("instances")? {

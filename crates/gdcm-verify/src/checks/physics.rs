@@ -91,8 +91,8 @@ fn condition(
     })
 }
 
-/// Compares the synthetic aircraft's parameters after each pass, with exact and with disturbed
-/// flight responses.
+/// Compares the synthetic aircraft's parameters and misfit after each pass, and its delays, for
+/// exact and for disturbed flight responses.
 pub(super) fn synthetic_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let aircraft = PHYSICS.read()?.member("toy")?;
     let models = aircraft.list("models")?;

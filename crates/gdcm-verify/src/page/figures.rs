@@ -90,7 +90,7 @@ impl Figures {
         Ok(figures)
     }
 
-    /// Adds a figure from a JSON line.
+    /// Adds a figure from a JSON line; it replaces an earlier one with the same code.
     fn add(&mut self, line: &str) -> Result<(), serde_json::Error> {
         let value: serde_json::Value = serde_json::from_str(line)?;
         if value.get("nominal").is_some() {
@@ -103,7 +103,8 @@ impl Figures {
         Ok(())
     }
 
-    /// Compares these figures, those on the page, with fresh ones, code by code.
+    /// Compares these figures, those on the page, with fresh ones, code by code; returns those that
+    /// are missing, different or new.
     pub fn differences(&self, fresh: &Self) -> Vec<FigureFault> {
         let mut faults = Vec::new();
         for (code, known) in &self.deviations {
@@ -138,7 +139,8 @@ impl Figures {
         faults
     }
 
-    /// Replaces the figures that differ from fresh ones, and adds new ones.
+    /// Replaces the figures that differ from fresh ones, and adds new ones; figures without a fresh
+    /// one remain.
     pub fn update(&mut self, fresh: &Self) {
         for (code, fresh) in &fresh.deviations {
             match self.deviations.get(code) {
@@ -167,7 +169,8 @@ fn unreadable(path: &Path, error: &dyn std::error::Error) -> FigureFault {
 }
 
 impl Deviations {
-    /// Returns whether two runs of a test give the same figure, but for rounding.
+    /// Returns whether two runs of a test give the same figure: equal test, counts and tolerance,
+    /// and worst deviations that are both rounding or within a factor of 2.
     fn agrees(&self, other: &Self) -> bool {
         let is_same_test = self.package == other.package && self.test == other.test;
         let is_same_count = self.instances == other.instances && self.values == other.values;
@@ -186,7 +189,8 @@ impl Coverage {
         self.covered as f64 / self.intervals as f64
     }
 
-    /// Returns whether two runs of a test give the same figure, but for rounding.
+    /// Returns whether two runs of a test give the same figure: equal test, interval count, seeds
+    /// and nominal share, and shares that differ by at most 0.005.
     fn agrees(&self, other: &Self) -> bool {
         self.package == other.package
             && self.test == other.test

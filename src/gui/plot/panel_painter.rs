@@ -107,7 +107,6 @@ impl PanelPainter<'_> {
             Gestures::PanAndZoom => plot
                 .sense(Sense::click_and_drag())
                 .allow_drag(true)
-                .allow_zoom(true)
                 .allow_axis_zoom_drag(true),
             Gestures::Following(follow) => following(plot, follow),
         }

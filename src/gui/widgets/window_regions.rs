@@ -146,10 +146,12 @@ pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
 pub fn leave_region(ctx: &Context, forward: bool) {
     let focused = ctx.memory(|memory| memory.focused());
     let regions = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).clone());
+    // The key is handled before or after the regions of the same pass are drawn.
+    let previous_pass = ctx.cumulative_pass_nr().saturating_sub(1);
     let targets: Vec<&DrawnRegion> = regions
         .drawn
         .values()
-        .filter(|target| !target.controls.is_empty())
+        .filter(|target| target.pass >= previous_pass && !target.controls.is_empty())
         .collect();
     let Some(last) = targets.len().checked_sub(1) else {
         return;

@@ -118,16 +118,17 @@ impl StampedChannel {
     }
 }
 
-/// Moves each stamp later by half the time to the next, at most by half `longest_s`; after a gap,
-/// the last stamp by up to `longest_s`.
+/// Moves each stamp later by half its hold, which lasts until the next stamp, at most `longest_s`;
+/// the last hold is assumed to last as long as the one before.
 fn delay_by_half_a_hold(times: &mut [f64], longest_s: f64) {
+    let mut hold_s = 0.0;
     // From front to back, because each stamp needs the next one unchanged.
     for k in 0..times.len() - 1 {
-        times[k] += 0.5 * (times[k + 1] - times[k]).min(longest_s);
+        hold_s = (times[k + 1] - times[k]).min(longest_s);
+        times[k] += 0.5 * hold_s;
     }
-    // The last hold is assumed to last as long as the one before.
-    if let [.., before, last] = times {
-        *last += (*last - *before).min(longest_s);
+    if let Some(last) = times.last_mut() {
+        *last += 0.5 * hold_s;
     }
 }
 

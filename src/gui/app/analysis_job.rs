@@ -44,7 +44,7 @@ pub(super) struct AnalysisJob {
 }
 
 impl AnalysisJob {
-    /// Returns whether the request contains a proof for `problem`.
+    /// Returns whether the job has a proof for `problem`.
     pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
         self.proofs
             .iter()

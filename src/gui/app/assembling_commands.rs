@@ -19,7 +19,7 @@ use crate::gui::state::forms::FormKind;
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Carries out a command from the import view.
+    /// Carries out a command from the import view; begins an import if there is none.
     pub(super) fn carry_out_assembling(&mut self, command: AssemblingCommand) {
         let import = self
             .state
@@ -68,7 +68,7 @@ impl GdcmApp {
         Some(import.assembly().rules().clone())
     }
 
-    /// Reads rules from a file.
+    /// Reads rules from a file, and applies them as an undoable step.
     fn take_rules(&mut self, path: PathBuf) {
         let path = self.files.at_home(path);
         let Some((rules, cautions)) = self.value_or_notify(load_rules(&path)) else {
@@ -99,7 +99,8 @@ impl GdcmApp {
         );
     }
 
-    /// Writes the dataset and its rules, and opens the dataset; asks before overwriting.
+    /// Writes the dataset and its rules, ends the import, and opens the dataset; asks before
+    /// overwriting.
     fn make_dataset(&mut self, path: PathBuf) {
         let Some(import) = &self.state.assembling else {
             return;

@@ -125,7 +125,8 @@ impl Autosave {
         let _ = self.tasks.send(task);
     }
 
-    /// Keeps unsaved decisions; the newest reach the recovery file soon after the first change.
+    /// Passes unsaved decisions to the thread, which writes the newest ones to the recovery file a
+    /// fixed time (`keep_after`) after the first that it has not yet written.
     pub(super) fn keep(&self, unsaved: Unsaved) {
         self.send(Task::Keep(Box::new(unsaved), SystemTime::now()));
     }
@@ -152,7 +153,7 @@ impl Autosave {
         }
     }
 
-    /// Finishes pending work, then ends the thread.
+    /// Finishes pending work, for which it waits at most `limit`, then ends the thread.
     pub(super) fn close(&self, limit: Duration) {
         self.at_end.get_or_init(|| self.flush(limit));
         self.send(Task::Close);

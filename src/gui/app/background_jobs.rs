@@ -16,7 +16,7 @@
 //! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
 //! | long   | variants, proofs                       | complete the displayed results      |
 //! | long   | couplings, physics parameters          | views that show their progress      |
-//! | long   | responses to all records               | a view that shows its progress      |
+//! | long   | responses to held-out records          | a view that shows its progress      |
 //! | long   | report, and its dry run                | requested explicitly; seconds       |
 //! | long   | error bars                             | repeated after every change         |
 //! | long   | identification                         | minutes; occupies a thread longest  |
@@ -43,8 +43,8 @@ use crate::gui::state::background::Background;
 use crate::gui::state::view::View;
 use crate::gui::views::need::Need;
 
-/// Creates an engine: at the start, and after a panic, which may leave the old engine's caches
-/// inconsistent.
+/// Creates an engine: for the first job of a kind, and after a panic, which may leave the old
+/// engine's caches inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
 
 /// Returns the jobs of a kind that the visible views need.
@@ -99,7 +99,7 @@ impl BackgroundJobs {
         }
     }
 
-    /// Returns the running jobs' progress.
+    /// Returns the progress of the running and waiting jobs.
     pub(super) fn running_work(&self) -> Background {
         let mut background = Background::default();
         for kind in self.kinds.iter() {

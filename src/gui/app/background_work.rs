@@ -35,7 +35,7 @@ pub(super) struct BackgroundWork {
 }
 
 impl GdcmApp {
-    /// Applies the replies from the threads.
+    /// Applies the replies from the threads, and updates the displayed background work.
     pub(super) fn receive_replies(&mut self) {
         while let Ok(reply) = self.work.reply_receiver.try_recv() {
             reply(self);
@@ -43,7 +43,7 @@ impl GdcmApp {
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.work.jobs.running_work();
-        // The queue follows the request only after the next frame.
+        // The job queue learns only after the next frame that a report is no longer requested.
         if self.work.report_job.is_none() {
             results.background.report = None;
         }
@@ -57,7 +57,7 @@ impl GdcmApp {
         }
     }
 
-    /// Requests a stopped computation again.
+    /// Requests the analysis again, lets stopped jobs start again, and closes fault messages.
     pub(super) fn compute_again(&mut self) {
         self.work.newest_request = None;
         self.state

@@ -24,7 +24,8 @@ impl GdcmApp {
         self.readers.opener.give_up();
         self.readers.record_reader.give_up();
         if records.is_some() {
-            // These entries, even if they are empty, prevent another automatic search for records.
+            // Create entries, even without records, to prevent another automatic search for
+            // records.
             let ids: Vec<ConditionId> = self.state.study.dataset.ids().collect();
             for id in ids {
                 self.records_of(id);

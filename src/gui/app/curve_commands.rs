@@ -5,8 +5,8 @@ use crate::gui::plot::Pane;
 use crate::gui::plot::curve_command::CurveCommand;
 
 impl GdcmApp {
-    /// Applies a command about curves. If the command changes the units, the value axis is fitted
-    /// again.
+    /// Applies a command about curves. If the command changes the form of phases or phase errors,
+    /// their axis is fitted again.
     pub(super) fn carry_out_curve(&mut self, command: CurveCommand) {
         let display = &mut self.state.display;
         match command {

@@ -9,7 +9,7 @@ use gdcm_io::user_paths::FileStamp;
 
 use super::threads::ReplySender;
 
-/// The watched file's changed content.
+/// The watched file, and the hash of its content after a change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ChangedFile {
     pub(super) path: PathBuf,
@@ -58,10 +58,11 @@ struct LastCheck {
 }
 
 impl LastCheck {
-    /// Checks the file once; returns its content if it has changed. The bytes are read if time and
-    /// length (the stamp) equal those of the last check, so that a file that is being written is
-    /// not read, and differ from those at the last reading. `None` in every other case: the file
-    /// is missing, cannot be read, was written meanwhile, or has the same bytes as before.
+    /// Checks the file once; returns the hash of its content if this has changed, or is read for
+    /// the first time. The bytes are read if time and length (the stamp) equal those of the last
+    /// check, so that a file that is being written is not read, and differ from those at the last
+    /// reading. `None` in every other case: the file is missing, cannot be read, was written
+    /// meanwhile, or has the same bytes as before.
     fn check(&mut self, path: &Path) -> Option<ChangedFile> {
         if self.path != path {
             *self = LastCheck {

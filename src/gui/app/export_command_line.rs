@@ -1,7 +1,7 @@
 //! The command line that writes the same files as the export dialog.
 //!
-//! It names the saved study, or the dataset with options for the decisions. Options cannot express
-//! every decision; then the study must be saved first.
+//! It names the saved study, or else the dataset, with options for the decisions that differ from
+//! this file. If options cannot express a difference, the study must be saved first.
 
 use std::path::{Path, PathBuf};
 
@@ -18,14 +18,14 @@ use crate::message::Message;
 
 /// File that a command reads, with the study that it contains.
 pub(super) struct CommandSource {
-    /// `None` for the simulated example.
+    /// `None` for an embedded example.
     file: Option<PathBuf>,
     /// Study in the file; `None` if a command cannot read it.
     study: Option<Study>,
 }
 
 impl CommandSource {
-    /// Returns the saved study, otherwise the dataset.
+    /// Returns the saved study; if there is none, or if it counts as unsaved, the dataset.
     pub(super) fn from_files(files: &DocumentFiles) -> Self {
         if let (Some(path), Some(study)) = (&files.saved.path, &files.saved.study) {
             return Self {
@@ -48,7 +48,8 @@ impl CommandSource {
     }
 }
 
-/// Returns the command line, with a second line for the report.
+/// Returns the command line: a line for the formats, if any, and a line for the report, if it is
+/// among the files.
 ///
 /// # Errors
 /// A message if the form is incomplete, or if the study must be saved first.
@@ -183,7 +184,8 @@ fn study_words(study: &Study, source: &CommandSource) -> Option<Vec<String>> {
     if is_same { Some(words) } else { None }
 }
 
-/// Returns the option for the held responses, if they differ; holds them in `trial`.
+/// Returns the option for the held responses, if they differ, and holds them in `trial`; `None` if
+/// the study does not permit this.
 fn held_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
     if trial.settings.constrained == study.settings.constrained {
         return Some(Vec::new());

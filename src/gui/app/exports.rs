@@ -53,12 +53,13 @@ impl GdcmApp {
         }
     }
 
-    /// Writes the files that the export dialog lists. Errors stay in the dialog:
+    /// Writes the files that the export dialog lists. Errors are shown in the dialog:
     ///
-    /// 1. the form is incomplete;
-    /// 2. the results are incomplete;
-    /// 3. the dry run has not ended: [`Self::take_export_plan`] calls this function again;
-    /// 4. write the files; if that fails, a new dry run sees what is in the folder now.
+    /// 1. if the form is incomplete, show what is missing;
+    /// 2. if the results are incomplete, show why;
+    /// 3. if the dry run has not ended, wait: [`Self::take_export_plan`] calls this function again;
+    /// 4. write the files; if that fails, request a new dry run, which sees what is in the folder
+    ///    now.
     pub(super) fn export(&mut self) {
         let form = &mut self.state.forms.export;
         form.error = None;
@@ -104,8 +105,8 @@ impl GdcmApp {
         plan.write(&folder, outputs)
     }
 
-    /// Closes the dialog after the files were written, reports them, remembers the choices, and
-    /// starts the report if it is among the files.
+    /// Closes the dialog after the files were written, reports them, stores the choices in the
+    /// study if this was chosen, and starts the report if it is among the files.
     fn exported(&mut self, plan: &ExportPlan, folder: PathBuf, count: usize, existing: Existing) {
         self.state.forms.shown = None;
         let report = self.current_report();
@@ -137,8 +138,8 @@ impl GdcmApp {
         self.state.forms.export.report_of(analysis).map(Arc::clone)
     }
 
-    /// Carries out a remedy that the dialog offers; a change of the study starts a new analysis, and
-    /// a new dry run follows.
+    /// Carries out a remedy that the dialog offers; a change of the study starts a new analysis,
+    /// followed by a new dry run.
     pub(super) fn apply_export_remedy(&mut self, remedy: ExportRemedy) {
         if self.state.forms.export.apply_remedy(remedy) {
             return;

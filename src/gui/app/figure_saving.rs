@@ -96,8 +96,8 @@ impl GdcmApp {
         figure
     }
 
-    /// Returns why a view's figure lacks error bars, as [`Self::absent_bars`] does; `None` if it
-    /// shows none.
+    /// Returns why a view's figure lacks error bars, as [`Self::absent_bars`] does; `None` also for
+    /// a figure that never has error bars, and while they are hidden.
     fn absent_bars_of(&self, view: View) -> Option<AbsentBars> {
         let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
             && !self.state.display.gains.hide_bars;

@@ -80,7 +80,8 @@ impl GdcmApp {
     }
 
     /// Handles a dialog without a choice. A cancelled dialog and a desktop without dialogs look
-    /// alike, so the path can be typed instead.
+    /// alike, so a form opens in which the path can be typed, unless the dialog was opened beside
+    /// such a field.
     fn nothing_chosen(&mut self, purpose: DialogPurpose) {
         match purpose {
             DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),

@@ -41,8 +41,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a written file with its folder, or the error. If the file exists, asks whether the
-    /// command `again` may overwrite it.
+    /// Closes the form, remembers the file's folder, and reports the file; or reports the error. If
+    /// the file exists, asks whether the command `again` may overwrite it.
     pub(super) fn notify_file(
         &mut self,
         written: Result<Message, FileError>,

@@ -61,8 +61,8 @@ fn short_message(error: &FileError) -> String {
     shortened_message(&sanitized(&error.to_string()))
 }
 
-/// Returns the file that was open last; `None` if the preferences do not ask for it or it no longer
-/// exists.
+/// Returns the most recent file that still exists; `None` if there is none, or if the preferences
+/// do not ask for it.
 pub(super) fn last_opened(setup: &Setup) -> Option<PathBuf> {
     if setup.preferences.opens_with != OpensWith::LastStudy {
         return None;

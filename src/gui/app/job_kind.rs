@@ -15,10 +15,11 @@ pub(super) struct JobKind<J: Job> {
     pub(super) wanted: fn(&mut GdcmApp) -> Vec<J>,
     /// Stores a job's output.
     pub(super) store: fn(&mut GdcmApp, J, J::Output),
-    /// Adds the running work to the displayed progress.
+    /// Adds the unfinished work to the displayed progress.
     pub(super) report: fn(&JobQueue<J>, &mut Background),
-    /// Withdraws the request after a stop or a fault, if the kind has its own trigger; then only
-    /// that trigger, not "Compute", starts it again.
+    /// For a kind with its own trigger: withdraws the request, or marks it as stopped, after a stop
+    /// or a fault. Only the trigger starts such a job again, and it does not count as stopped
+    /// background work ([`Background::stopped`]).
     pub(super) withdraw: Option<fn(&mut GdcmApp)>,
     /// Returns whether a view in front has its own *Stop* for this kind; the *Stop* in the status
     /// bar then leaves it running.
@@ -64,11 +65,12 @@ impl<J: Job> JobKind<J> {
 pub(super) trait AnyJobKind {
     /// Requests exactly the jobs that the display needs.
     fn want(&self, app: &mut GdcmApp);
-    /// Cancels the running job and the waiting ones, unless a view in front has its own *Stop*.
+    /// Cancels the running job and the waiting ones, and withdraws their request, unless a view in
+    /// front has its own *Stop*.
     fn stop(&self, app: &mut GdcmApp);
     /// Allows stopped jobs to start again.
     fn resume(&self);
-    /// Adds the running work to `background`.
+    /// Adds the unfinished work to `background`, and whether work was stopped.
     fn report(&self, background: &mut Background);
 }
 

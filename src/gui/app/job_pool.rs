@@ -96,7 +96,7 @@ pub(super) struct JobPool {
 
 impl JobPool {
     /// Starts a thread for the live analysis, a thread for short jobs, and a thread per processor
-    /// core for all other lanes.
+    /// core for short and long jobs.
     ///
     /// # Errors
     /// The operating system's reason, if a thread cannot be started.
@@ -105,8 +105,8 @@ impl JobPool {
         Self::with_shared_threads(cores)
     }
 
-    /// Starts a pool with `shared` threads in addition to the two reserved ones: for the live analysis, and for
-    /// short jobs.
+    /// Starts a pool with `shared` threads in addition to the two reserved ones: for the live
+    /// analysis, and for short jobs.
     pub(super) fn with_shared_threads(shared: usize) -> io::Result<Self> {
         let pool = Self {
             schedule: Arc::default(),

@@ -21,14 +21,15 @@ use crate::gui::state::background::Steps;
 /// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
-/// Time that an unwanted job may continue: during a drag, every output is worth showing.
+/// Age up to which a job continues although it is no longer wanted: during a drag, every output is
+/// worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
 /// Progress of a running job, and whether it is still wanted.
 #[derive(Debug)]
 struct Run {
     started: Instant,
-    /// Whether the job is no longer requested.
+    /// Whether the job is no longer requested, and serves no requested job.
     outdated: AtomicBool,
     /// Whether the job was stopped.
     stopped: AtomicBool,
@@ -135,7 +136,7 @@ impl<J: Job> Orders<J> {
 /// Requests, tools and delivery function for a kind of job.
 struct JobLane<J: Job> {
     orders: Mutex<Orders<J>>,
-    /// Tools kept between jobs; `None` before the first job and while a job runs.
+    /// Tools kept between jobs; `None` before the first job, while a job runs, and after a fault.
     tools: Mutex<Option<J::Tools>>,
     make_tools: Box<dyn Fn() -> J::Tools + Send + Sync>,
     deliver: Box<dyn Fn(J, Ending<J>) + Send + Sync>,
@@ -164,7 +165,8 @@ impl<J: Job> JobLane<J> {
         Ok(outcome)
     }
 
-    /// Records that the running job has ended: complete, stopped by a fault, or cancelled.
+    /// Records that the running job has ended; if it is still requested, it is complete, stopped by
+    /// a fault, or, after a cancellation, waiting again or stopped.
     fn finish(&self, job: &J, ending: Option<&Ending<J>>) {
         let mut orders = self.orders();
         orders.running = None;
@@ -252,7 +254,8 @@ impl<J: Job> JobQueue<J> {
     }
 
     /// Requests exactly these jobs, the most urgent first. A running job continues if it is among
-    /// them. A completed or stopped job does not start again as long as it remains requested.
+    /// them, or serves one of them. A completed or stopped job does not start again as long as it
+    /// remains requested.
     pub(super) fn want(&self, jobs: Vec<J>) {
         self.change_orders(|orders| {
             orders.done.retain(|job| jobs.contains(job));
@@ -292,7 +295,8 @@ impl<J: Job> JobQueue<J> {
         !self.lane.orders().stopped.is_empty()
     }
 
-    /// Returns completed and total steps while a requested job is incomplete.
+    /// Returns the running job's steps, or none so far if jobs only wait; `None` if no requested
+    /// job is unfinished.
     pub(super) fn progress(&self) -> Option<Steps> {
         let orders = self.lane.orders();
         orders.unfinished().next()?;

@@ -10,7 +10,7 @@ use crate::gui::commands::entry::Reach;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::escape_key::was_focused;
 
-/// Returns the commands for keys pressed since the last frame.
+/// Returns the commands for keys pressed since the last frame, and consumes the key events.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     if !is_any_key_pressed(ctx) {
         return Vec::new();

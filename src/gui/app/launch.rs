@@ -31,9 +31,9 @@ use crate::executor::start_threads;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::file::FileCommand;
 
-/// Exit status if the window could not be opened or panicked.
+/// Exit status if the window could not be opened, or ended by an error or a panic.
 const NO_WINDOW: u8 = 1;
-/// Exit status if the requested file could not be read.
+/// Exit status if there is no display and the requested file cannot be read either.
 const WRONG_FILE: u8 = 2;
 
 /// Opens the window on a dataset or a study, or on the embedded example, and returns once the
@@ -79,7 +79,7 @@ pub fn open(path: Option<PathBuf>) -> u8 {
     }
 }
 
-/// Prints an error that prevents a window; returns the exit status.
+/// Prints an error that prevented or ended the window; returns the exit status.
 fn fail(message: &str) -> u8 {
     eprintln!("error: {message}");
     NO_WINDOW

@@ -1,7 +1,7 @@
 //! Live analysis: the results follow every change to the study or the displayed condition.
 //!
-//! 1. After each frame, `request_results` compares both with the newest request. If they differ, it
-//!    gives the new request a number (`Results::requested`).
+//! 1. After each frame, `request_results` compares the study and the condition with the newest
+//!    request. If they differ, it gives the new request a number (`Results::requested`).
 //! 2. `start_live_analysis` makes an [`AnalysisJob`] for the request. `want_jobs`
 //!    (`background_jobs.rs`) passes it to its queue, also after each frame.
 //! 3. The job sends the displayed condition's result (`Results::first`) before the others.

@@ -116,7 +116,7 @@ impl GdcmApp {
 /// Bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;
 
-/// Informs the window which file is being read.
+/// Informs the window which file is being read, and how far.
 struct ReadingReport {
     number: u64,
     replies: ReplySender,

@@ -45,7 +45,8 @@ impl GdcmApp {
         self.notify_error_of(Activity::Other, message, None);
     }
 
-    /// Shows a toast about a failed activity, with its remedy.
+    /// Shows a toast about a failed activity, with its remedy; after a stopped computation, this is
+    /// always *Compute*.
     pub(super) fn notify_error_of(
         &mut self,
         activity: Activity,

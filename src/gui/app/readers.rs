@@ -11,7 +11,7 @@ use gdcm_io::FolderProgress;
 pub(super) struct Reader {
     /// Number of the newest reading.
     newest: u64,
-    /// Stop flag shared with the threads of that reading.
+    /// Stop flag shared with the threads of the newest reading.
     stop: Arc<AtomicBool>,
 }
 
@@ -32,7 +32,7 @@ impl Reader {
     }
 
     /// Starts a reading in parallel to the reading in progress; both have the same number and are
-    /// stopped together.
+    /// stopped together. After a stop, starts a new reading.
     pub(super) fn join(&mut self) -> Reading {
         if self.is_stopped() {
             return self.begin();

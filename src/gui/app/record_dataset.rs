@@ -126,7 +126,8 @@ impl DatasetRequest {
     /// 4. build the dataset; the problems say what it leaves out.
     ///
     /// # Errors
-    /// The problems in the records, if no record is suitable, or the fault in the dataset.
+    /// At most [`MOST_PROBLEMS`] problems in the records, if no record is suitable; otherwise the
+    /// fault in reading or in the dataset.
     fn make(self, progress: &SilentProgress) -> Result<MadeDataset, Vec<Message>> {
         let Self {
             sources,

@@ -14,7 +14,8 @@ use crate::gui::state::records::RecordsSnapshot;
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Applies an edit to a condition's records; it can be undone.
+    /// Applies an edit to a condition's records, which makes the identification outdated; it can be
+    /// undone.
     pub(super) fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
@@ -65,7 +66,7 @@ impl GdcmApp {
         }
         leave_out_copies(&mut records.rows);
         records.changed = true;
-        // The topics' common clock was chosen for another condition.
+        // The topics' common clock was chosen for another condition; `follow_band` chooses it anew.
         records.clock_band_end = None;
         let change = RecordChange::Assign {
             records: count,
@@ -87,7 +88,7 @@ impl GdcmApp {
         self.record_edited(RecordChange::Discard { record }, before);
     }
 
-    /// Adds a record edit to the undo history.
+    /// Adds a record edit to the undo history, and removes toasts that it makes obsolete.
     pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsSnapshot) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, change, before);
@@ -143,10 +144,11 @@ fn record_name(records: &ConditionRecords, index: usize) -> String {
 }
 
 /// Applies an edit to a condition's records; returns false if nothing was applied: the command is
-/// not an edit of records, or its record or part does not exist.
+/// not an edit of records, it uses or leaves out a row that does not exist, or it removes a row
+/// that is no part.
 ///
 /// # Errors
-/// A message, if the edit is impossible.
+/// A message, if a part cannot be added or moved.
 fn apply_edit(
     records: &mut ConditionRecords,
     command: RecordsCommand,

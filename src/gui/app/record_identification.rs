@@ -14,7 +14,8 @@ use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Requests identification in these conditions; replaces a waiting job for the same condition.
+    /// Requests identification in these conditions; replaces waiting and running jobs for the same
+    /// conditions. If requests are refused, reports the last refusal.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
             self.state.records.requested_count = 0;
@@ -51,7 +52,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores an identification's outcome, unless it was stopped in the meantime.
+    /// Stores an identification's outcome, unless it was stopped or replaced in the meantime.
     pub(super) fn identified(
         &mut self,
         job: IdentifyJob,

@@ -77,8 +77,8 @@ impl GdcmApp {
         });
     }
 
-    /// Returns the conditions whose own records are to be read next: the displayed one, then all
-    /// others, which the views *Records* and *Requirements* show too.
+    /// Returns the conditions whose own records are to be read next: the displayed one alone, then
+    /// all others, which the views *Records* and *Requirements* show too.
     fn unread_conditions(&self) -> Vec<ConditionId> {
         let known = &self.state.records.conditions;
         let shown = self.state.condition().id();
@@ -174,7 +174,7 @@ impl GdcmApp {
         });
     }
 
-    /// Returns a condition's records, initially none.
+    /// Returns a condition's records; creates an entry without records if there is none.
     pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         self.state
             .records
@@ -230,8 +230,9 @@ impl GdcmApp {
     /// Adds records to their conditions, or to those without a condition; this can be undone:
     ///
     /// 1. if a record has problems, unfold the columns, where they are solved;
-    /// 2. add the records condition by condition; a condition with new records is outdated, its
-    ///    common clock unknown if older records have another, and copies are left out;
+    /// 2. add the records condition by condition; where records are new, the identification is
+    ///    outdated, copies are left out, and the common clock counts as unknown if older records
+    ///    have another;
     /// 3. add the records without a condition;
     /// 4. record an undo step with what has changed, and report the counts.
     fn store_added_records(
@@ -292,7 +293,7 @@ impl GdcmApp {
     }
 }
 
-/// Counts added records by outcome, and conditions with new records.
+/// Counts added records by outcome, and conditions with new or changed records.
 #[derive(Default)]
 struct AddedCounts {
     new: usize,

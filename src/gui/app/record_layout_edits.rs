@@ -91,9 +91,12 @@ struct LayoutChange {
 }
 
 impl LayoutChange {
-    /// Returns a record's new layout: first, for the edited record itself, the layout as edited;
-    /// `None`, if only one of both is listed by the dataset, because listed records are in its
-    /// units; else the record's own layout with the same changes, as far as its columns are alike.
+    /// Returns a record's new layout, by the first rule that applies:
+    ///
+    /// 1. the edited record itself: the layout as edited;
+    /// 2. the dataset lists only one of the two records: `None`, because listed records are in the
+    ///    dataset's units;
+    /// 3. otherwise: the record's own layout with the same changes, as far as columns are alike.
     fn layout_for(&self, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());

@@ -26,7 +26,7 @@ pub(super) struct ReadRecords {
     pub(super) own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     /// Records from the files that the engineer added.
     pub(super) added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
-    /// Added records whose names match no condition.
+    /// Added records for which [`condition_of`] finds no condition.
     pub(super) unassigned: Vec<LaidOutRecord>,
     pub(super) faults: Vec<String>,
     /// File paths, by SHA-256.

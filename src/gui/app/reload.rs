@@ -16,7 +16,8 @@ impl GdcmApp {
         self.files.disk.watch(self.files.loaded.path());
     }
 
-    /// Offers to reload the dataset if its file's content has changed.
+    /// Offers to reload the dataset if its file's content has changed; withdraws the offer if the
+    /// content is again that of the open dataset.
     pub(super) fn file_changed(&mut self, changed: &ChangedFile) {
         if self.files.loaded.path() != Some(&changed.path) {
             return;

@@ -86,8 +86,8 @@ impl GdcmApp {
         ReportSource::from_files(&self.files.loaded, self.files.saved.path.as_deref())
     }
 
-    /// Returns the job that composes the report which the open export dialog describes; `None`
-    /// without a report, and while results are being computed.
+    /// Returns the job that composes the report which the export dialog describes; `None` if the
+    /// dialog is closed or has no report, and while results are incomplete.
     pub(super) fn report_contents_job(&mut self) -> Option<ReportContentsJob> {
         let is_open = self.state.forms.shown == Some(FormKind::Export);
         if !(is_open && self.state.forms.export.has_report())

@@ -16,7 +16,7 @@ use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Saves the study to the file from which it was opened, or asks for a path.
+    /// Saves the study to its file, or asks for a path if it has none.
     pub(super) fn save(&mut self) {
         match self.files.saved.path.clone() {
             Some(path) => self.save_as(path, Existing::Replace),

@@ -37,7 +37,8 @@ impl GdcmApp {
         }
     }
 
-    /// Applies a decision to the study and adds it to the history; reports a refusal.
+    /// Applies a decision to the study and adds it to the history, unless it changes nothing;
+    /// reports a refusal.
     pub(super) fn decide(&mut self, edit: &Edit) {
         let before = self.state.study.clone();
         match self.state.study.apply(edit) {

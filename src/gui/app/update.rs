@@ -58,7 +58,7 @@ impl GdcmApp {
             && self.state.display.curves.cursor == before.cursor
     }
 
-    /// Carries out a command without drawing a frame.
+    /// Carries out a command without requesting a repaint.
     pub(super) fn carry_out_command(&mut self, command: Command) {
         match command {
             Command::Study(command) => self.carry_out_study(command),

@@ -15,7 +15,8 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
 use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
 
-/// Returns the jobs needed by the visible views, the overlay and the assessed couplings.
+/// Returns the jobs needed by the visible views, by the overlaid variant, and to assess the
+/// couplings.
 pub(super) fn needs(state: &State) -> Vec<Need> {
     let mut needs = Vec::new();
     for view in View::ALL {
@@ -39,15 +40,15 @@ pub(super) fn curves_job(state: &State) -> CurvesJob {
     }
 }
 
-/// Returns the job that computes the trade-off over α in the displayed condition; `None` while the
-/// settings are closed.
+/// Returns the job that computes the trade-off over α in the displayed condition; `None` without an
+/// analysis, and while the settings are closed.
 pub(super) fn trade_off_job(state: &State) -> Option<TradeOffJob> {
     state.settings_session.as_ref()?;
     TradeOffJob::new(state.analysis()?, state.condition().id())
 }
 
-/// Returns the job that computes what constraining or releasing each entry would cost, in the
-/// displayed condition.
+/// Returns the job that computes what constraining or releasing each response would cost, in the
+/// displayed condition; `None` without a result, and while a setting is dragged.
 pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
     if state.is_setting_dragged() {
         return None;
@@ -56,7 +57,8 @@ pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
     Some(TogglesJob { condition })
 }
 
-/// Returns the jobs that prove the unproven problems, the displayed condition first.
+/// Returns the jobs that prove the unproven problems, the displayed condition first; none while a
+/// setting is dragged.
 pub(super) fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();

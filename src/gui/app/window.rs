@@ -66,8 +66,8 @@ impl GdcmApp {
         Self::with_setup(ctx, opened, Setup::default())
     }
 
-    /// Creates the window with a dataset or a study; starts the compute threads and the thread that
-    /// watches the disk.
+    /// Creates the window with a dataset or a study; starts the threads that compute, keep unsaved
+    /// decisions and watch the disk.
     pub fn with_setup(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
         ctx.add_plugin(KeyOrder::default());
@@ -152,7 +152,7 @@ impl GdcmApp {
     ///
     /// 1. while models are imported, everything is added to the import;
     /// 2. else a single dataset or study is opened;
-    /// 3. else, while a condition's records are shown, the files are added to them;
+    /// 3. else, while the Records view is shown, the files are added as records;
     /// 4. else several files, a folder, and files from other programs are imported as models.
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());

@@ -20,8 +20,8 @@ const HEIGHT: f32 = 340.0;
 /// Maximum number of drawn rows; typing further letters shortens a longer list.
 const MOST_ROWS: usize = 60;
 
-/// Draws the search field and the matching commands. Up and Down select a command, Enter carries it
-/// out.
+/// Draws the search field and the matching commands; `opens` clears the search. Up and Down select
+/// a command; Enter or a click carries it out and closes the palette, unless it is disabled.
 pub fn command_palette_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -28,7 +28,8 @@ use crate::gui::state::panel_tables::TableKind;
 use crate::gui::state::view::{View, views_with_figure};
 use crate::gui::state::window_state::State;
 
-/// Returns the commands for menus and keys, in menu order.
+/// Returns the commands for menus, keys and the palette; the entries of each menu are in menu
+/// order.
 pub fn command_table(state: &State) -> Vec<Entry> {
     let mut entries = file_entries(state);
     entries.extend(edit_entries(state));
@@ -127,7 +128,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Returns an entry for every choice and every field in the settings.
+/// Returns an entry for every choice and every numeric field in the settings; flags have none.
 fn setting_entries(state: &State) -> Vec<Entry> {
     let mut entries = Vec::new();
     for setting in SETTINGS {
@@ -207,7 +208,8 @@ fn help_entries() -> impl Iterator<Item = Entry> {
     group(Menu::Help, 0, help).chain(group(Menu::Help, 1, about))
 }
 
-/// Returns the command table, and an entry for each condition, response, model and recent file.
+/// Returns the entries in the palette: the command table without the palette itself, and entries
+/// for each set of net gains, condition, response, model and recent file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let palette = Command::show_form(FormKind::Palette);
     let mut entries = command_table(state);

@@ -115,7 +115,7 @@ fn look_entries(looks: PlotStyle) -> Vec<Entry> {
             curve_colors,
             ..looks
         });
-        let meaning = "For all eyes: colours that are distinct with any colour vision";
+        let meaning = "Standard colours, or colours that are distinct with any colour vision";
         entries.push(Entry::new(curve_colors.name(), meaning, command).within(Menu::Curves, 1));
     }
     for line_width in PlotStyle::LINE_WIDTHS {
@@ -153,8 +153,8 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         SelectionCommand::EndIsolation,
     );
     vec![
-        // An entry takes its key from fields and menus even while it is disabled, so Escape is
-        // bound only while a model is isolated.
+        // Escape is listed with this entry only while models are isolated or selected; otherwise
+        // the key only closes forms, menus and sheets.
         if is_isolated {
             isolation.free_key(Key::Escape)
         } else {

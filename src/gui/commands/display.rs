@@ -21,7 +21,7 @@ pub enum DisplayCommand {
     MapCost(MappedCost),
     /// Selects the responses in the net-gain plots.
     ShowNetGains(PairSet),
-    /// Adds a response to the net-gain plots, or removes it.
+    /// Adds a response to the picked responses, or removes it; the net-gain plots then show these.
     PickPair(Pair),
     /// Selects channel gains or delays, over airspeed or over conditions.
     ShowChannels(Measure, Across),

@@ -66,7 +66,7 @@ fn history_entries(state: &State) -> [Entry; 2] {
     ]
 }
 
-/// "Undo reject physics model 7".
+/// Names an entry of the history: "Undo reject physics model 7"; the verb alone without a step.
 fn step_command(verb: &str, step: Option<&UndoStep>) -> String {
     match step {
         Some(step) => format!("{verb} {}", step_name(step)),

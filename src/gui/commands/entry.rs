@@ -10,7 +10,7 @@ pub enum Menu {
     /// Opening, saving, exporting.
     File,
     Edit,
-    /// Displayed content and its form.
+    /// Displayed content, steps through it, layout and theme.
     View,
     /// Curve style: a submenu in `View`.
     Curves,
@@ -44,7 +44,8 @@ pub struct Entry {
     /// Shortcuts; the first is displayed.
     pub shortcuts: Vec<KeyboardShortcut>,
     pub reach: Reach,
-    /// Menu and group within it; groups are separated by lines.
+    /// Menu and group within it; groups are separated by lines. `None` for entries in the palette
+    /// alone.
     pub menu: Option<(Menu, u8)>,
     pub enabled: bool,
     pub command: Command,
@@ -74,7 +75,8 @@ impl Entry {
         self
     }
 
-    /// Adds a key without modifiers that works only while nothing has the focus.
+    /// Adds a key without modifiers; all keys of the entry then work only while nothing has the
+    /// focus and no form is open.
     pub fn free_key(mut self, key: Key) -> Self {
         self.reach = Reach::WithoutFocus;
         self.keys(Modifiers::NONE, key)

@@ -17,7 +17,7 @@ pub enum FileCommand {
     ReadRequirementTable(RequirementTable, PathBuf),
     /// Writes the study's tolerances to a file.
     WriteTolerances(PathBuf),
-    /// Opens the desktop's dialog for a file.
+    /// Opens the desktop's dialog for a dataset or a study to open.
     AskOpen,
     /// Opens a dataset or a study.
     Open(PathBuf),
@@ -37,9 +37,9 @@ pub enum FileCommand {
     Reload,
     /// Keeps the open dataset although its file has changed.
     KeepOpen,
-    /// Opens decisions from a recovery file; the argument is the index of the offer.
+    /// Opens decisions from a recovery file; the argument is the number of the offer.
     RestoreRecovery(usize),
-    /// Removes a recovery file; the argument is the index of the offer.
+    /// Removes a recovery file; the argument is the number of the offer.
     DiscardRecovery(usize),
     /// Checks which recent files exist.
     LookForRecent,

@@ -42,7 +42,7 @@ fn message_entries(state: &State) -> Vec<Entry> {
                     FileCommand::Reload,
                 ));
                 entries.push(Entry::new(
-                    format!("Keep {name} as it is open"),
+                    format!("Keep the open version of {name}"),
                     "Its file has changed",
                     FileCommand::KeepOpen,
                 ));
@@ -59,7 +59,8 @@ fn message_entries(state: &State) -> Vec<Entry> {
                     FileCommand::DiscardRecovery(offer.number),
                 ));
             }
-            // Its answers are commands of their own.
+            // These bars have buttons that copy, close or compute again, which the palette does not
+            // list.
             MessageBar::Fault(_) | MessageBar::Differences { .. } => {}
         }
     }

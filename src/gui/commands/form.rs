@@ -30,6 +30,6 @@ pub enum FormCommand {
     DismissToast(u64),
     /// Opens or closes the toast list.
     ListToasts(bool),
-    /// Pauses the toasts' timers in this frame, because the pointer is on a toast.
+    /// Pauses the toasts' timers in this frame, because the pointer is on a message.
     HoldToasts,
 }

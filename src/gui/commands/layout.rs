@@ -41,7 +41,7 @@ pub enum LayoutCommand {
     ShowStart(bool),
     /// Sets what the program opens at the next start.
     BeginWith(OpensWith),
-    /// Focuses the field with this accessible name.
+    /// Opens the settings with the advanced ones, and focuses the field with this accessible name.
     FocusField(&'static str),
     /// Shows the variants, with the focus in the field for the name of a new one.
     NameVariant,

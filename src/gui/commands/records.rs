@@ -29,7 +29,7 @@ pub enum RecordsCommand {
     Discard(usize),
     /// Unfold a section below the records, or fold it.
     ShowFold(Option<RecordsFold>),
-    /// Ask for the channels in a dataset to be made from the displayed records.
+    /// Ask for the channels in a dataset to be made from the added records.
     AskDataset,
     /// Make a dataset with the requested channels, and open it.
     MakeDataset,
@@ -40,7 +40,8 @@ pub enum RecordsCommand {
     SetHeldOut(usize, bool),
     /// Set a record's manoeuvre.
     SetKind(usize, RecordKind),
-    /// Assign columns to channels, for this record and for all records with the same column names.
+    /// Assign columns to channels, for this record and, as far as they have the same columns, for
+    /// all other records.
     SetLayout(usize, RecordLayout),
     /// Set the delay in a channel's log \[s\].
     SetDelay(Signal, f64),
@@ -80,8 +81,9 @@ pub enum RecordsCommand {
     Show(RecordsPage),
     /// Identify models for the displayed condition.
     Identify,
-    /// Identify models for every condition with records, the displayed one first. If some have a
-    /// current fit, only for the others.
+    /// Identify models for every condition with used records, the displayed one first. Conditions
+    /// with a current fit, or whose identification waits or runs, are left out, unless no others
+    /// remain.
     IdentifyAll,
     /// Stop the identification.
     Stop,

@@ -15,8 +15,8 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 
-/// Returns the entries in the View menu, by its groups, which lines separate; and those that show a
-/// view, which are in the palette only.
+/// Returns the entries in the View menu, and those that show a certain view, which are in the
+/// palette only.
 pub(super) fn view_entries(state: &State) -> Vec<Entry> {
     let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
@@ -103,7 +103,7 @@ fn theme_entries() -> [Entry; 3] {
     ]
 }
 
-/// Returns the entries that show a view group or the neighbouring view, or fold a part of the
+/// Returns the entries for view groups, the neighbouring views and pages, and the parts of the
 /// window.
 fn layout_entries(state: &State) -> impl Iterator<Item = Entry> {
     view_group_entries()

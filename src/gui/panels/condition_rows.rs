@@ -62,8 +62,8 @@ impl RowLayout {
     }
 }
 
-/// Returns the airspeed \[kt\], rounded to whole knots if it does not fit into `room` \[pt\] and would
-/// touch the number of the condition.
+/// Returns the airspeed \[kt\], rounded to whole knots if it does not fit into `room` \[pt\], where
+/// it would touch the condition number.
 fn airspeed_text(ui: &Ui, airspeed_kt: f64, room: f32) -> String {
     let exact = airspeed_kt.to_string();
     if text_width(ui, &exact, body()) <= room {
@@ -95,7 +95,7 @@ const MOST_PITCH: f32 = 26.0;
 pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
 /// Minimum gap between two cells \[pt\].
 const LEAST_GAP: f32 = 3.0;
-/// Distance of the airspeed from the centre of a mark of the flight state \[pt\].
+/// Minimum distance between the centre of a flight-state mark and the airspeed \[pt\].
 const MARK_RADIUS: f32 = 6.5;
 /// Minimum gap between the number and the airspeed of a condition \[pt\].
 const AIRSPEED_GAP: f32 = 6.0;
@@ -341,7 +341,7 @@ impl<'a> ConditionRows<'a> {
                 ]);
             }
         }
-        // The frame lies above the cells on both sides.
+        // Painted after all cells, so that the frame lies above its neighbours.
         if let Some(cell) = focused {
             let stroke = Stroke::new(FOCUS_WIDTH, palette.accent);
             let frame = self.focus_frame(cell);

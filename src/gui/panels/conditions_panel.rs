@@ -1,4 +1,4 @@
-//! List of flight conditions with a map of the remaining costs, and the map's key.
+//! List of flight conditions with the cost map, and the map's key.
 
 use egui::{Align2, Mesh, Rect, Sense, Ui, pos2, vec2};
 
@@ -12,8 +12,8 @@ use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{HEAT_COSTS, Palette, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws every condition with its airspeed and its constrained responses' remaining cost; a click
-/// shows the condition.
+/// Draws every condition with its airspeed and, for its constrained responses, the mapped costs; a
+/// click shows the condition.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Conditions, |ui| {
         let older = if state.others_are_older() {

@@ -79,7 +79,8 @@ fn constrained_columns(state: &State) -> Vec<CostColumn> {
     columns
 }
 
-/// Returns a response's J in a condition, for the mapped correction; `None` without a result.
+/// Returns a response's J in a condition, for the mapped correction; `None` without a result, or if
+/// this J is undefined.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     match state.display.judging.mapped_cost {
@@ -105,7 +106,7 @@ pub struct ColumnCost {
     pub cost: Cost,
 }
 
-/// Returns a column's cost in a condition; `None` without a result.
+/// Returns a column's cost in a condition; responses without J are omitted, `None` if all are.
 pub fn cost_of_column(
     state: &State,
     condition: ConditionId,

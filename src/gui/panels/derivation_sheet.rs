@@ -81,7 +81,8 @@ fn terms_table(found: &Derivation) -> Table {
     table
 }
 
-/// Draws how constraining or releasing the response would change the objective.
+/// Draws how constraining or releasing the response would change the objective; nothing for values
+/// other than G and D, or in another than the displayed condition.
 fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
     let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) =
         asked
@@ -142,7 +143,7 @@ pub fn question_menu_ui(
 }
 
 /// Describes how constraining or releasing a response would change the objective; empty until
-/// computed for this result.
+/// computed for the displayed result.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();

@@ -1,4 +1,5 @@
-//! Dock below the views: net gains and leads. It can be folded to its bar, and enlarged.
+//! Dock below the views: net gains, schedule cost, and leads. It can be folded to its bar, and
+//! enlarged.
 
 use egui::containers::panel::PanelState;
 use egui::{Align, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Ui, vec2};
@@ -17,8 +18,8 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws the dock with its page; in a low window, the dock is folded to its bar. A double click on
-/// the bar doubles its height.
+/// Draws the dock with its page; in a low window, the dock is folded to its bar by default. A
+/// double click on the bar doubles the dock's height, or restores it.
 pub(super) fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -69,7 +70,7 @@ pub(super) fn dock_ui(
 const FOLDED: f32 = 34.0;
 /// Minimum window height at which the dock is unfolded by default \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
-/// Dock height, as a share of the window height.
+/// Default dock height, as a share of the window height.
 const DOCK_PART: f32 = 0.252;
 /// Maximum height of the enlarged dock, as a share of the window height.
 const MOST_PART: f32 = 0.66;
@@ -95,7 +96,7 @@ fn default_height(window: f32) -> f32 {
         .round()
 }
 
-/// Returns the page, or the first page if the study has no content for it.
+/// Returns the page, or the net gains if the study has no content for it.
 fn present_page(state: &State, page: View) -> View {
     let mut pages = View::docked(state.study.settings.phase);
     if pages.any(|present| present == page) {

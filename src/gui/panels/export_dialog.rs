@@ -160,7 +160,7 @@ fn head_ui(
     });
 }
 
-/// Draws why the last attempt failed, with its remedy.
+/// Draws why the last attempt failed, with a button that saves the study if that is the remedy.
 fn error_ui(
     ui: &mut Ui,
     place: Rect,
@@ -239,7 +239,8 @@ fn foot_ui(
     });
 }
 
-/// Draws a line `width` wide, with a dim label at the left and a control at the right.
+/// Draws a line over the available width, `height` \[pt\] high, with a dim label at the left and a
+/// control at the right.
 fn labelled_ui(
     ui: &mut Ui,
     label: &str,

@@ -75,7 +75,8 @@ impl Form<'_, '_> {
         is_entered(self.ui, &response)
     }
 
-    /// Draws the submit button, which Enter also presses; further buttons follow on the same line.
+    /// Draws the submit button; Enter in a field of the form (`entered`) also presses it, if it is
+    /// enabled (`is_ready`).
     pub(super) fn submit_ui(
         &mut self,
         text: &str,

@@ -1,6 +1,6 @@
 //! Forms in front of the window: draws the requested form. Short forms, such as questions, are
 //! here; the others are in `path_forms.rs`, `record_dataset_form.rs`, `export_dialog.rs`,
-//! `messages_page.rs`, `keys_page.rs` and the command palette.
+//! `messages_page.rs`, `keys_page.rs`, `licences_page.rs` and the command palette.
 
 use egui::{Context, Id, Modal, RichText, ScrollArea};
 

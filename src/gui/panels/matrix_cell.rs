@@ -35,7 +35,7 @@ const HOLD_BOX_SIZE: f32 = 13.0;
 /// Margin around the box that also reacts to the pointer \[pt\].
 const HOLD_BOX_MARGIN: f32 = 2.0;
 
-/// J at which an underline spans its cell.
+/// Part of J (magnitude or phase) at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
 
 /// The matrix's area in the panel.
@@ -135,7 +135,7 @@ impl<'a> Cell<'a> {
     }
 
     /// Draws the box that constrains or releases the response, at the end of the G line; it is
-    /// visible while the pointer is on the cell.
+    /// visible while the cell has the pointer or the focus.
     fn hold_box_ui(
         &self,
         ui: &mut Ui,
@@ -190,8 +190,8 @@ impl<'a> Cell<'a> {
         response.on_hover_text(hint)
     }
 
-    /// Paints background and outline: of the outlines, the focus comes before a conflict, and a
-    /// conflict before a constraint, which has none because its background shows it.
+    /// Paints background, outline and values. The outline shows the focus, or else a conflict; a
+    /// constrained response needs none, because its background shows the constraint.
     fn paint(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let painter = ui.painter();
         let fill = if self.constrained {
@@ -215,7 +215,7 @@ impl<'a> Cell<'a> {
     }
 
     /// Paints G above D \[ms\], each with the half-width of its error bar and its part of J as an
-    /// underline; for a response without G, only "no G", or "nothing" if it is numerically zero.
+    /// underline; for a response without G, only "no G", or "zero" if it is numerically zero.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
         let gain = shown.wanted_gain(self.pair);
@@ -335,7 +335,7 @@ impl<'a> Cell<'a> {
         sign_reversal_entry(self.state, channel, role)
     }
 
-    /// Draws four aligned rows. The submenu
+    /// Draws the rows of the response's card, or why G is undefined. The submenu
     /// [`QUESTION`](crate::gui::plot::derivation_menu::QUESTION) in the cell's menu leads to the
     /// derivation of every value.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
@@ -397,8 +397,8 @@ impl CellValue {
     }
 }
 
-/// Paints a part of J before the correction (pale) and after it (orange if a part above 1 has not
-/// decreased by at least 0.1).
+/// Paints a part of J before the correction (pale) and after it (orange if it remains above 1 and
+/// has decreased by less than 0.1).
 fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
     paint_cost_bar(ui, half, parts.before, palette.quiet_mark);
     let after_color = if is_not_reduced(parts.before, parts.after) {

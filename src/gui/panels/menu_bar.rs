@@ -25,7 +25,8 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Draws the menus, undo and redo, the document title, and the search field for commands.
+/// Draws the menus, undo and redo, the newest message or, without messages, the document title, the
+/// search field for commands, and the theme switch.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let bar = ui.available_rect_before_wrap();
     let left = in_line_ui(ui, bar, false, |ui| {

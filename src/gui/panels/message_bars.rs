@@ -1,5 +1,5 @@
-//! Message bars: each states a fact about the program or its files, and offers what can be done. They
-//! are shown in the place of the toasts, so that they cover no plot and move nothing.
+//! Message bars: each states a fact about the program or its files, and offers remedies. They are
+//! shown in the place of the toasts, so that they cover no plot and move nothing.
 
 use egui::Ui;
 
@@ -50,8 +50,8 @@ pub(super) fn bar_sentence(bar: &MessageBar) -> String {
     }
 }
 
-/// Returns the sentence on a line of `room` \[pt\]: the name of a file is elided in its middle, other
-/// sentences at their end.
+/// Returns the sentence, shortened to a line of `room` \[pt\]: if it begins with a file name, this
+/// is elided in its middle; other sentences are elided at their end.
 pub(super) fn bar_line(ui: &Ui, bar: &MessageBar, room: f32) -> String {
     match bar {
         MessageBar::Fault(_) | MessageBar::Recovery(_) => {
@@ -100,7 +100,8 @@ fn fault_sentence(report: &FaultReport) -> String {
     )
 }
 
-/// "Unsaved decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json)".
+/// Formats "Unsaved decisions of 14:32 on 21 Nov 2026 for data.json.gz (study
+/// mine.gdcm-study.json)".
 fn recovery_sentence(offer: &RecoveryOffer) -> String {
     let study = match &offer.study {
         Some(name) => format!(" (study {name})"),
@@ -112,7 +113,8 @@ fn recovery_sentence(offer: &RecoveryOffer) -> String {
     )
 }
 
-/// Returns the sentences that a list below the line adds to it.
+/// Returns the details of a message bar, a sentence each, which the list below its line shows; none
+/// if the line says everything.
 pub(super) fn bar_details(bar: &MessageBar) -> Vec<String> {
     match bar {
         MessageBar::Fault(report) => vec![fault_sentence(report)],

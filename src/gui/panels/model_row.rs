@@ -213,7 +213,9 @@ impl<'a> ModelRow<'a> {
         });
     }
 
-    /// Draws the star: a click makes the model the representative, or returns to the medoid.
+    /// Draws the star, visible at the representative and under the pointer: a click makes the model
+    /// the representative, or returns to the medoid. A dot marks a representative chosen by the
+    /// engineer.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(
             pos2(rect.left() + 24.0, rect.top()),
@@ -423,7 +425,7 @@ impl<'a> ModelRow<'a> {
     }
 }
 
-/// Returns the identification method; `None` for other models.
+/// Returns the identification method; `None` if it is not stated, and for physics models.
 pub(super) fn method(model: &Model) -> Option<&str> {
     match &model.origin {
         Origin::Identified { method, .. } => method.as_deref(),

@@ -91,9 +91,9 @@ fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     rows_ui(ui, state, palette, kind, commands);
 }
 
-/// Draws the actions on all models at once, above the list so that they do not scroll: *Restore
-/// all*, if a model is rejected, and *Reject* for suggested outliers (`open`), if the verdict
-/// recommends another step first.
+/// Draws the counts of suggested and rejected physics models, and the actions on all at once, above
+/// the list so that they do not scroll: *Restore all*, if a model in either bundle is rejected, and
+/// *Reject* for suggested outliers, if the verdict recommends another step first.
 fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);

@@ -1,5 +1,5 @@
-//! Card about the open study on the start page: name, picture of its results, and the button that
-//! returns to it.
+//! Card about the open study on the start page: name, picture of its results, the button that
+//! returns to it, and buttons for the examples.
 
 use egui::{Button, Frame, Margin, RichText, Sense, Stroke, Ui, vec2};
 
@@ -21,7 +21,8 @@ use crate::gui::widgets::palette::{Palette, TITLE_SIZE, medium, small};
 /// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
 
-/// Draws a picture of the open study, and the button that returns to it.
+/// Draws name and picture of the open study, the button that returns to it, and buttons for the
+/// other examples; while an example is open, also one for the guided tour.
 pub(super) fn open_study_card_ui(
     ui: &mut Ui,
     state: &mut State,

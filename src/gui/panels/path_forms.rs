@@ -114,8 +114,8 @@ const PATHS: [PathWords; 10] = [
     },
 ];
 
-/// Draws a form that asks for a path, and in some forms for a choice; draws nothing if the form
-/// only asks whether to overwrite.
+/// Draws a form that asks for a path, and in some forms for a choice; draws nothing for a form that
+/// is not in [`PATHS`], which only asks whether to overwrite.
 pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
     let Some(words) = PATHS.iter().find(|words| words.kind == kind) else {
         return;

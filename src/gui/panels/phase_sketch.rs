@@ -12,7 +12,7 @@ use crate::gui::widgets::palette::{Palette, small};
 const STEPS: usize = 60;
 
 /// Draws both phases \[deg\] over frequency \[rad/s\], with the gap between them; draws only the
-/// frame if a curve is missing or does not span the band.
+/// frame if a curve is missing or does not span the band, or if all phases are equal.
 pub(super) fn phase_sketch_ui(
     ui: &Ui,
     plot: Rect,

@@ -1,4 +1,5 @@
-//! Narrow form of the left panel: conditions, and buttons that open the bundles in sheets.
+//! Narrow form of the left panel: conditions, and buttons that open the bundles or the records in
+//! sheets.
 
 use egui::{Rect, Role, Sense, Stroke, StrokeKind, Ui, vec2};
 
@@ -18,8 +19,9 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws the list as a narrow strip: number, airspeed, constrained response with the highest cost;
-/// buttons open the physics and the identified models.
+/// Draws the conditions as a narrow strip: number, airspeed, highest cost among the constrained
+/// responses; buttons open the physics and the identified models. Beside the Records view, the
+/// strip shows the fits, and a button opens the records.
 pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     pin_ui(ui, palette, commands);

@@ -45,7 +45,7 @@ pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
 }
 
 /// Returns the benefit and cost of the couplings in use, or the reason for their absence; empty if
-/// none are requested.
+/// none are requested, and until the benefit is computed.
 pub fn coupling_remarks(state: &State) -> Vec<CouplingRemark> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
@@ -188,9 +188,9 @@ fn causes_ui(
     }
 }
 
-/// Returns entries such as "LON 66": an input or output, and the physics representative's median
-/// lag over the channel's responses, in whole milliseconds; channels without a defined lag are
-/// omitted.
+/// Returns entries such as "LON 66": an input or output, and the median over its responses of the
+/// physics representative's lag behind the identified one, in whole milliseconds; channels without
+/// a defined lag are omitted.
 fn channel_lags(state: &State, shown: &ConditionAnalysis, kind: ChannelKind) -> Vec<String> {
     let dataset = state.dataset();
     let channels = match kind {
@@ -314,7 +314,8 @@ fn objective_ui(
     });
 }
 
-/// Draws the lead in each constrained response and each filter's price.
+/// Describes the lead in each constrained response and each filter's price; draws nothing without
+/// leads.
 fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
     if shown.compensated.is_none() {
         return;
@@ -331,7 +332,8 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
         });
 }
 
-/// Draws the off-axis benefit from worthwhile couplings, and the button that uses them.
+/// Draws the off-axis benefit from worthwhile couplings, and the buttons that use and show them;
+/// nothing if none are offered.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((assessment, _)) = offered_couplings(state) else {
         return;

@@ -212,7 +212,7 @@ impl RecordsRow<'_> {
         painted_text(ui, upto, AT_RIGHT_END, words, body(), color);
     }
 
-    /// Paints record counts and costs; outdated numbers are dim.
+    /// Paints record counts and costs; costs are dim unless the fit is finished and up to date.
     fn paint_fit(&self, ui: &Ui, row: Rect, palette: &Palette) {
         let columns = self.columns;
         let counts = self.fit.counts;

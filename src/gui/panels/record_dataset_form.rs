@@ -1,4 +1,4 @@
-//! Form for a dataset made from the open flight records: channels, band, path.
+//! Form for a dataset to be made from flight records: channels, band, path.
 
 use egui::{Label, ScrollArea, Ui};
 
@@ -10,7 +10,7 @@ use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 /// Maximum count of listed record columns.
 const MOST_COLUMNS: usize = 60;
 
-/// Draws the form for a new dataset from the open records: channels, band, path.
+/// Draws the form, with the columns of the records and the problems found so far.
 pub(super) fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
     form.title("Dataset from these records");
     form.explain(

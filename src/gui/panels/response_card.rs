@@ -87,7 +87,7 @@ fn milliseconds(value: f64) -> String {
     format!("{} ms", decimals(value, 1))
 }
 
-/// Returns whether a part of J above 1 has not decreased by at least 0.1.
+/// Returns whether a part of J remains above 1 and has decreased by less than 0.1.
 pub(super) fn is_not_reduced(before: f64, after: f64) -> bool {
     after > 1.0 && after > before - 0.1
 }

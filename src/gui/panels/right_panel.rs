@@ -107,7 +107,7 @@ pub fn right_panel_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
 }
 
 /// Draws the settings in a single line, the changed ones in the text colour; a click opens and
-/// closes the settings at the left.
+/// closes the settings at the left, Escape closes them.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let is_open = state.display.layout.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
@@ -178,7 +178,8 @@ impl LinePart {
 }
 
 /// Returns the count of changed settings that have no part of their own, if there are any, and the
-/// parts "α 1", "0.5–12 rad/s", "delays", "representatives".
+/// parts "α 1", "0.5–12 rad/s", "delays", "representatives"; a narrow window omits the last part,
+/// unless gains are means over pairs.
 fn settings_parts(state: &State) -> Vec<LinePart> {
     let settings = &state.study.settings;
     let gains = number(settings.alpha_gain);

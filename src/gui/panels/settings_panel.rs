@@ -263,7 +263,8 @@ fn foot_ui(
 }
 
 /// Returns the settings that currently have an effect, line by line; a setting with the place
-/// `Beside` joins the line before it.
+/// `Beside` joins the line before it, and settings with the place `Elsewhere`, which a view shows,
+/// are omitted.
 fn lines_of(state: &State) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for setting in SETTINGS {

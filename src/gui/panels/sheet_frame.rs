@@ -10,7 +10,8 @@ use crate::gui::widgets::controls::named;
 use crate::gui::widgets::escape_key::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 
-/// Draws a sheet over `centre`; returns whether the engineer has closed it.
+/// Draws a sheet over `centre`; returns whether the engineer has closed it: with its button, with
+/// Escape, or by a press outside.
 pub fn sheet_ui(
     ui: &Ui,
     centre: Rect,

@@ -1,5 +1,5 @@
-//! Start page, shown without panels: three ways to begin, each named after the engineer's data, and
-//! the open study, if any.
+//! Start page, shown without panels: three ways to begin, each named after the engineer's data,
+//! and, in a wide window, the open study.
 
 use egui::{
     Align, Align2, Button, Color32, Layout, Rect, RichText, Role, ScrollArea, Sense, Shape, Stroke,
@@ -217,7 +217,7 @@ fn steps_ui(ui: &mut Ui, palette: &Palette) {
     });
 }
 
-/// Draws the recent files; missing files are disabled.
+/// Draws the newest recent files; missing files cannot be opened.
 fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     const SHOWN: usize = 5;
     ui.label(RichText::new("Open again").font(medium(BODY_SIZE)));

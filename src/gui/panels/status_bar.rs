@@ -1,4 +1,5 @@
-//! Status bar at the foot of the window: computation status, remarks on the data.
+//! Status bar at the foot of the window: computation status, description for the element under the
+//! pointer, remarks on the data.
 
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 
@@ -16,7 +17,8 @@ use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws the computation status on the left. On the right: the description for the element under
-/// the pointer, else a remark on the data. Messages are toasts in the top bar.
+/// the pointer, else, while a setting is dragged, a note about the error bars, else a remark on the
+/// data. Messages are toasts in the top bar.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);

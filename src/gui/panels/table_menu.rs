@@ -16,7 +16,7 @@ pub struct TableHeading<'a> {
 }
 
 impl TableHeading<'_> {
-    /// Draws the heading; a right-click copies or saves the table.
+    /// Draws the heading; a right-click opens the menu that copies or saves the table.
     pub fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         ui.add_space(4.0);
         let heading = ui.horizontal(|ui| {

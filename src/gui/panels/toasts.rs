@@ -47,7 +47,7 @@ pub(super) struct ToastBar<'a> {
     pub(super) palette: &'a Palette,
 }
 
-/// Older messages, counted and listed.
+/// Content for the list below the newest message.
 #[derive(Clone, Copy)]
 struct MoreMessages {
     /// Number of messages below the newest.
@@ -68,7 +68,8 @@ impl ToastBar<'_> {
         !self.notices.shown().is_empty()
     }
 
-    /// Draws the newest message in the middle of the bar.
+    /// Draws the newest message in the middle of the bar and, if it is open, the list below it;
+    /// while the pointer is on them, the timers pause.
     pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let shown = self.notices.shown();
         let Some((newest, older)) = shown.split_first() else {
@@ -173,7 +174,7 @@ impl ToastBar<'_> {
         sentence_ui(ui, text_place, id, &shown, &bar_sentence(bar), palette);
     }
 
-    /// Draws the button that opens the list of the other messages; returns its left edge.
+    /// Draws the button that opens or closes the list of the other messages; returns its left edge.
     fn more_ui(&self, ui: &mut Ui, more: MoreMessages, commands: &mut Vec<Command>) -> f32 {
         let (text, name) = if more.count > 0 {
             let count = counted(more.count, "message");
@@ -278,7 +279,7 @@ fn edge_color(kind: NoticeKind, palette: &Palette) -> Color32 {
     }
 }
 
-/// Draws the ground of a message with its edge.
+/// Draws the background of a message with its coloured edge.
 fn frame_ui(ui: &Ui, place: Rect, edge_color: Color32, palette: &Palette) {
     ui.painter().rect(
         place,

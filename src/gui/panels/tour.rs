@@ -137,7 +137,7 @@ fn note_ui(
 }
 
 /// Returns which corner of the note to align, and its position: right of the region, left of it, or
-/// over it if the region takes the whole width.
+/// over it if neither side has room.
 fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;

@@ -44,11 +44,12 @@ pub struct Verdict {
 pub struct VerdictRow {
     /// "Gain" or "Phase".
     pub name: &'static str,
-    /// Count in the displayed condition; `None` without a result.
+    /// Count in the displayed condition; `None` without a result, and for phases that are not
+    /// corrected.
     pub here: Option<MatchCount>,
-    /// Count over all conditions with a result.
+    /// Count over all conditions with a result; `None` if `here` is, and without an analysis.
     pub everywhere: Option<MatchCount>,
-    /// "matched", "lags by ≈ 66 ms".
+    /// Result in words: "matched", "lags by ≈ 66 ms".
     pub message: Message,
     /// Whether all constrained responses are matched.
     pub is_met: bool,

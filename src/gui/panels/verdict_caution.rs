@@ -83,8 +83,8 @@ pub(super) fn unstable_in_band(state: &State) -> usize {
     }
 }
 
-/// Returns the lead price: the maximum magnitude that a constrained response's filters add above
-/// the band (M15.6); `None` up to 0.05 dB.
+/// Returns the lead price: the maximum gain that a constrained response's filters add at ten times
+/// the band's upper end (M15.6); `None` without leads, and up to 0.05 dB.
 fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     let price = LeadPrice::new(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
@@ -100,8 +100,8 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     Some(Message::new("lead-price", text))
 }
 
-/// Returns a caution if J under the schedule is more than twice J under the condition's own
-/// correction (M12).
+/// Returns a caution if J under the schedule is above 1 and more than twice J under the condition's
+/// own correction (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     for caution in &schedule.cautions {

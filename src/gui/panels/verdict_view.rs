@@ -223,7 +223,7 @@ struct StepsLine<'a> {
     alternatives: Vec<&'a Step>,
     caution: Option<&'a str>,
     note: &'a str,
-    /// Opens the reasons, or lists the notes.
+    /// Step that opens the reasons; if the verdict has none, a link with the number of notes.
     reasons: Option<Step>,
     /// Whether the first step is the window's primary button.
     is_primary: bool,
@@ -373,7 +373,7 @@ fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
     }
 }
 
-/// Draws "of 19 models, as a first step", or only "of 19 models" in a narrow panel.
+/// Draws a note such as "of 19 models, as a first step"; in a narrow panel, only "of 19 models".
 fn note_ui(ui: &Ui, place: Rect, note: &str, palette: &Palette) {
     let subject = ui.max_rect();
     let words = leading_parts(ui, note, place.width(), SMALL_SIZE);

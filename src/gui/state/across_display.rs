@@ -9,7 +9,7 @@ pub struct AcrossDisplay {
     /// Models drawn for each condition, ordered as [`AcrossRole::ALL`].
     pub roles: Vec<AcrossRole>,
     pub conditions: AcrossConditions,
-    /// Shown page, where the window has no room for both.
+    /// Page shown while the window has no room for both pages.
     pub page: AcrossPage,
 }
 
@@ -46,7 +46,7 @@ pub enum AcrossConditions {
 impl AcrossConditions {
     pub const ALL: [Self; 2] = [Self::All, Self::InSchedule];
 
-    /// Returns the text in the list.
+    /// Returns the text in the list of choices.
     pub fn name(self) -> &'static str {
         match self {
             Self::All => "all",

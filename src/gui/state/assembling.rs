@@ -73,8 +73,8 @@ impl AssemblyState {
         &self.assembly
     }
 
-    /// Adds models; rules that the engineer has not changed are proposed again. A model that is
-    /// read again replaces its earlier version.
+    /// Adds models; rules that the engineer has not changed are proposed again, with `name` as the
+    /// dataset's name. A model that is read again replaces its earlier version.
     pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
         let known = self.assembly.parts().iter();
         let mut models: Vec<FoundModel> = known.map(|part| part.found.clone()).collect();

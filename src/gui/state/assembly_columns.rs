@@ -68,7 +68,7 @@ pub const COLUMNS: [Column; 9] = [
     },
 ];
 
-/// "roll_deg +5, airspeed_kt -10".
+/// Formats trim offsets: "roll_deg +5, airspeed_kt -10"; empty for a model without offsets.
 fn trim_text(part: &Part) -> String {
     let mut offsets = Vec::new();
     for (coordinate, offset) in &part.row.perturbation {
@@ -78,7 +78,8 @@ fn trim_text(part: &Part) -> String {
     offsets.join(", ")
 }
 
-/// Returns the role, or "not included" for a model that is left out.
+/// Returns the role, or "not included" for a model that is left out; `None` if the role is still to
+/// be entered.
 fn role_text(part: &Part) -> Option<String> {
     if part.row.left_out {
         return Some("not included".to_owned());

@@ -23,30 +23,31 @@ impl Steps {
 pub struct Background {
     /// Analysis with the current settings.
     pub analysis: Option<Steps>,
-    /// Problems whose optimality proof is running or waiting.
+    /// Problems whose optimality proof is running, waiting, or not yet part of the results.
     pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of constraining and releasing responses are being computed.
     pub toggles: bool,
-    /// Response curves, by model.
+    /// Response curves; a step for each model.
     pub curves: Option<Steps>,
-    /// Error bars. Each model contributes its response, and the analysis with this model as the
-    /// representative.
+    /// Error bars; a step for each model's response, and for each analysis with another model as
+    /// the representative.
     pub error_bars: Option<Steps>,
-    /// Responses to all records.
+    /// Simulated responses to the held-out records.
     pub time_histories: Option<Steps>,
     /// Couplings.
     pub couplings: Option<Steps>,
     /// Physics parameters.
     pub physics: Option<Steps>,
-    /// Jobs that the visible views wait for.
+    /// Number of running and waiting jobs of the visible views, apart from those with a field of
+    /// their own.
     pub views: usize,
-    /// Report, by condition.
+    /// Report that is being written; a step for each condition.
     pub report: Option<Steps>,
-    /// Progress of the report that the export dialog describes, by condition.
+    /// Report that the export dialog describes; a step for each condition.
     pub report_contents: Option<Steps>,
     /// Progress of the identification.
     pub identification: Option<Steps>,
-    /// Whether some work was stopped, by the engineer or by a fault.
+    /// Whether work that *Compute* resumes was stopped, by the engineer or by a fault.
     pub stopped: bool,
 }
 

@@ -21,6 +21,7 @@ pub struct ColumnGroup {
     /// Conditions to which these records belong; records without a condition add none.
     pub conditions: BTreeSet<ConditionId>,
     /// The first record to show: the first with a problem or an assumed unit, otherwise the first.
+    /// `None` if no record in the group has a condition.
     pub first: Option<RecordPlace>,
     /// Whether `first` has a problem or an assumed unit.
     is_first_doubtful: bool,

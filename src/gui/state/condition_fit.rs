@@ -161,7 +161,8 @@ impl State {
     }
 
     /// Returns the conditions that *Identify* runs, the displayed one first: those with used
-    /// records and without a current fit, or all with used records if every fit is current.
+    /// records, except where the fit is current or an identification waits or runs; if none remain,
+    /// all with used records.
     pub fn conditions_to_identify(&self) -> Vec<ConditionId> {
         let mut in_use = self.records.conditions_in_use();
         let shown = self.condition().id();
@@ -176,7 +177,8 @@ impl State {
         if open.is_empty() { in_use } else { open }
     }
 
-    /// Returns the conditions whose current fit is not in the study.
+    /// Returns the conditions whose current fit is not in the study; conditions whose
+    /// identification waits or runs are omitted.
     pub fn unused_fits(&self) -> Vec<ConditionId> {
         let mut unused = Vec::new();
         for (id, records) in &self.records.conditions {

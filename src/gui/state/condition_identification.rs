@@ -2,7 +2,8 @@
 //! models to adopt.
 //!
 //! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed` is
-//! set once the settings have changed; the cautions about the outcome are then no longer shown.
+//! set once records or settings have changed; the cautions about the outcome are then no longer
+//! shown.
 
 use std::sync::Arc;
 
@@ -30,7 +31,8 @@ impl ConditionRecords {
     /// of the dataset.
     ///
     /// # Errors
-    /// A message, if no record is used, if all are held out, or if a record lacks a reference.
+    /// A message, if no record is used, if all are held out, or if a record lacks a reference or
+    /// cannot be used with it.
     pub fn identification_job(
         &self,
         condition: ConditionId,
@@ -102,7 +104,7 @@ impl ConditionRecords {
     }
 
     /// Returns the cautions about the identification, each with the rows that it concerns, if any;
-    /// none once the settings have changed.
+    /// none once records or settings have changed.
     pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let cautions = match self.identification() {
             Some(found) if !self.changed => found.cautions.as_slice(),
@@ -121,7 +123,7 @@ impl ConditionRecords {
             .map(|(_, note)| format!("⚠ {}", note.mark()))
     }
 
-    /// Returns the rows with these names.
+    /// Returns the indices of the rows with these names; unknown names are skipped.
     fn rows_named(&self, names: &[String]) -> Vec<usize> {
         names
             .iter()
@@ -129,8 +131,8 @@ impl ConditionRecords {
             .collect()
     }
 
-    /// Returns the index of the row that the identification used as record `record`, counted from
-    /// 0.
+    /// Returns the index of the row that was record number `record`, from 0, in the identification;
+    /// valid while the use of the rows has not changed since.
     pub fn row_of_record(&self, record: usize) -> Option<usize> {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
@@ -172,7 +174,8 @@ impl ConditionRecords {
     }
 
     /// Returns these records from the history, to replace the records `now`. Models identified in
-    /// the meantime are kept, but marked as results from other settings.
+    /// the meantime are kept, but marked as results from other settings; the displayed row remains
+    /// too.
     pub(super) fn restored(mut self, now: Option<Self>) -> Self {
         let Some(now) = now else {
             return self;

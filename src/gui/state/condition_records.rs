@@ -66,7 +66,7 @@ pub struct ConditionRecords {
         IdentifyJob,
         Result<Arc<Identification>, IdentificationError>,
     )>,
-    /// Whether the settings have changed since the latest identification.
+    /// Whether records or settings have changed since the latest identification.
     pub changed: bool,
     /// Upper band limit \[rad/s\] that determines the common clock for resampled topics; `None` if
     /// unknown for some records.
@@ -114,7 +114,8 @@ impl ConditionRecords {
     /// no sample counts twice. A part cut from a part belongs to the whole record.
     ///
     /// # Errors
-    /// A message, if the record has no samples in that time span.
+    /// A message, if there is no such record, or if it has fewer than two samples in this time
+    /// span.
     pub fn add_part(
         &mut self,
         index: usize,
@@ -164,7 +165,8 @@ impl ConditionRecords {
     /// Moves the ends of the part in a row \[s\]; its use and manoeuvre are kept.
     ///
     /// # Errors
-    /// A message, if the row is no part, or if the record has no samples in that time span.
+    /// A message, if the row is no part, or if the record has fewer than two samples in that time
+    /// span.
     pub fn move_part(
         &mut self,
         index: usize,
@@ -234,8 +236,9 @@ impl ConditionRecords {
         AddedRecord::New
     }
 
-    /// Cuts the parts of the record `old` from `whole`, which has replaced it; a part whose time span
-    /// has no samples any more is removed.
+    /// Cuts the parts of the record `old` from `whole`, which has replaced it; a part whose time
+    /// span has no samples any more is removed. If the engineer left `old` out, `whole` counts as
+    /// left out too.
     fn cut_parts_anew(
         &mut self,
         old: &RecordSource,
@@ -304,7 +307,8 @@ impl ConditionRecords {
         true
     }
 
-    /// Returns the rows that are used and can be, with their indices.
+    /// Returns the rows that are marked as used and have no problem that prevents it, with their
+    /// indices.
     pub fn used_rows(&self) -> impl Iterator<Item = (usize, &LaidOutRecord)> {
         self.rows
             .iter()
@@ -312,7 +316,8 @@ impl ConditionRecords {
             .filter(|(_, row)| row.used_flight().is_some())
     }
 
-    /// Resamples topics to the common clock required by the identification band.
+    /// Resamples topics to the common clock required by the identification band; if there are any,
+    /// the latest identification is outdated.
     pub fn follow_band(&mut self, channels: &RecordChannels) {
         self.clock_band_end = channels.resampling.band_end;
         for row in &mut self.rows {
@@ -332,7 +337,7 @@ impl ConditionRecords {
 /// Cuts the part between two times \[s\] from a record.
 ///
 /// # Errors
-/// A message, if the record has no samples in that time span.
+/// A message, if the record has fewer than two samples in that time span.
 fn part_of(
     whole: &LaidOutRecord,
     part_s: [f64; 2],

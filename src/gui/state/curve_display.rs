@@ -139,7 +139,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Drops all display options that concern single models; called when another dataset is opened.
+    /// Drops all display options that concern single models; called when the dataset is replaced.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();

@@ -18,7 +18,7 @@ const EXCITED: f64 = 0.5;
 pub struct Excitation(Vec<f64>);
 
 impl Excitation {
-    /// Compares records.
+    /// Returns each record's excitation, compared with the other records:
     ///
     /// ```text
     /// s_ri   standard deviation of input i in record r
@@ -119,8 +119,8 @@ impl Candidate {
 }
 
 impl ConditionRecords {
-    /// Displays a used record that sweeps an input, or any other used record that excites it if
-    /// there is no sweep; does nothing if the engineer has chosen a record.
+    /// Displays the fitted record that shows an input best (`row_of_input`), if any. Does nothing
+    /// if the engineer has chosen a record, or if the same search was made before.
     pub fn open_on_input(&mut self, input: usize) {
         let opening = Opening {
             input,

@@ -112,7 +112,7 @@ impl ExportForm {
         proposed_name: &str,
     ) -> Self {
         let mut choices = choices.clone();
-        // Conditions chosen in an earlier dataset are forgotten.
+        // Drop conditions that the dataset lacks; if none remain, or all, choose every condition.
         if let Some(conditions) = &mut choices.conditions {
             conditions.retain(|id| dataset.condition(*id).is_some());
             if conditions.len() == dataset.conditions().len() || conditions.is_empty() {
@@ -138,7 +138,8 @@ impl ExportForm {
         }
     }
 
-    /// Returns the choices with the typed texts, to be stored in the study.
+    /// Returns the choices with the typed texts, to be stored in the study; breakpoints that cannot
+    /// be read are omitted.
     pub fn all_choices(&self) -> ExportChoices {
         ExportChoices {
             breakpoints_kt: self.breakpoints_kt().unwrap_or_default(),
@@ -181,7 +182,8 @@ impl ExportForm {
         }
     }
 
-    /// Returns the typed airspeeds \[kt\]; `None` for those in the scheduled conditions.
+    /// Returns the typed airspeeds \[kt\]; `None` if none are typed, or those of the scheduled
+    /// conditions.
     ///
     /// # Errors
     /// A message if they are not increasing numbers.
@@ -209,7 +211,8 @@ impl ExportForm {
         Ok(Some(airspeeds_kt))
     }
 
-    /// Adds an airspeed \[kt\] to the tables.
+    /// Adds an airspeed \[kt\] to the typed ones, or to the default ones if none are typed or the
+    /// typed text cannot be read.
     pub fn add_breakpoint(&mut self, airspeed_kt: f64) {
         let mut airspeeds_kt = match self.breakpoints_kt() {
             Ok(Some(airspeeds_kt)) => airspeeds_kt,
@@ -245,7 +248,7 @@ impl ExportForm {
         self.report = None;
     }
 
-    /// Returns the composed report of an analysis; `None` while it is being composed.
+    /// Returns the composed report of an analysis; `None` until it is composed.
     pub fn report_of(&self, analysis: &Arc<Analysis>) -> Option<&Arc<Report>> {
         let (job, report) = self.report.as_ref()?;
         let inputs = self.report_inputs.as_ref()?;

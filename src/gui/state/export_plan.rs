@@ -31,7 +31,8 @@ impl State {
         })
     }
 
-    /// Returns the outcome of the requested dry run; `None` while it is being computed.
+    /// Returns the outcome of the requested dry run; `None` until it is computed, and while none is
+    /// requested.
     pub fn current_export_plan(&self) -> Option<&ExportPlan> {
         let (job, plan) = self.forms.export.plan.as_ref()?;
         if self.export_plan_job().as_ref() == Some(job) {

@@ -35,7 +35,7 @@ pub enum FormKind {
     Reason,
     /// Path for a table to save.
     SaveTable,
-    /// Dataset to make from imported models.
+    /// Files of the import (rules or dataset) that exist; asks only whether to overwrite them.
     Models,
     /// Channels and path for a dataset made from records.
     RecordDataset,

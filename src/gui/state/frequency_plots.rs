@@ -25,7 +25,7 @@ pub struct FrequencyPlots {
     pub across: BodeView,
     /// Axis ranges and transforms in the plot that shows the schedule's error.
     pub across_error: BodeView,
-    /// Content to which the axes in both plots were last fitted.
+    /// Content to which the axes in both plots across conditions were last fitted.
     pub across_fitted: Option<AcrossFit>,
     /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
@@ -50,7 +50,8 @@ impl FrequencyPlots {
         }
     }
 
-    /// Requests that all axes be fitted to their curves in the next frame.
+    /// Requests that all axes, except those in the overview, be fitted to their curves in the next
+    /// frame.
     pub fn fit(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();
@@ -58,7 +59,8 @@ impl FrequencyPlots {
         self.across_error.request_fit();
     }
 
-    /// Requests that the value axes be fitted to other curves, except axes that have been zoomed.
+    /// Requests that the value axes in the Bode and error plots be fitted to other curves, except
+    /// axes that have been zoomed.
     pub fn refit(&mut self) {
         self.bode.request_refit();
         self.error.request_refit();

@@ -25,11 +25,13 @@ pub struct GainDisplay {
     pub channels: ChannelsView,
     /// Whether gain plots omit error bars and bands.
     pub hide_bars: bool,
-    /// Sort order for the evidence tables: differences, second variables, schedule forms.
+    /// Sort order for the tables in the Evidence view: differences, second variables, schedule
+    /// forms.
     pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule is shown beside the net gains.
     pub show_evidence: bool,
     /// Evidence for each schedule form, cached between frames.
     pub evidence: CachedEvidence,
+    /// Sort order for the evidence beside the net gains.
     pub evidence_sorting: Sorting,
 }

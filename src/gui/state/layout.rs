@@ -29,8 +29,8 @@ impl Layout {
         self.left_open.unwrap_or(self.is_wide)
     }
 
-    /// Opens a sheet, or closes the open one. A list closes the settings: beside the rail in a
-    /// narrow window, only one has room.
+    /// Opens a sheet, or closes the open one. A sheet on the left closes the settings: beside the
+    /// rail, only one of them has room.
     pub fn show_sheet(&mut self, sheet: Option<Sheet>) {
         self.sheet = sheet;
         if let Some(sheet) = sheet
@@ -40,7 +40,7 @@ impl Layout {
         }
     }
 
-    /// Opens the settings and closes a list, or closes the settings.
+    /// Opens the settings and closes a sheet on the left, or closes the settings.
     pub fn show_settings(&mut self, is_open: bool) {
         self.settings_open = is_open;
         if let Some(sheet) = self.sheet

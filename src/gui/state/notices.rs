@@ -38,7 +38,7 @@ pub struct FaultReport {
 /// Offer to restore decisions that were not saved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecoveryOffer {
-    /// Number by which the window knows the offer.
+    /// Index in the window's list of offers (`Recovery::offers`).
     pub number: usize,
     /// Origin of the dataset, such as a file.
     pub dataset: String,
@@ -120,7 +120,8 @@ const MOST_TOASTS: usize = 20;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toast {
     pub notice: Notice,
-    /// Time \[s\] for which it is still shown; `None` until it is dismissed or resolved.
+    /// Time \[s\] for which the toast is still shown; with `None`, it is shown until it is
+    /// dismissed or resolved.
     pub remaining_s: Option<f64>,
 }
 
@@ -141,15 +142,15 @@ pub enum TopMessage<'a> {
 /// Messages of the session, and those of them that the top bar shows.
 #[derive(Debug, Default)]
 pub struct Notices {
-    /// Oldest first.
+    /// All messages that are kept, oldest first.
     messages: Vec<Notice>,
-    /// Oldest first.
+    /// Toasts in the top bar, oldest first.
     toasts: Vec<Toast>,
-    /// Oldest first.
+    /// Message bars that are not answered yet, oldest first.
     bars: Vec<NumberedBar>,
-    /// Whether the list of messages is open below the newest.
+    /// Whether the list below the newest message is open.
     pub is_list_open: bool,
-    /// Whether the pointer is on a toast, which pauses the timers.
+    /// Whether the pointer is on the newest message or on the list, which pauses the timers.
     pub is_held: bool,
     /// When [`Self::pass_time`] was last called \[s, window clock\].
     seen_at_s: f64,
@@ -219,7 +220,7 @@ impl Notices {
         self.close_empty_list();
     }
 
-    /// Closes the list when nothing is left that it would show.
+    /// Closes the list if there is no message bar and at most one toast, which needs no list.
     fn close_empty_list(&mut self) {
         if self.bars.is_empty() && self.toasts.len() < 2 {
             self.is_list_open = false;
@@ -232,8 +233,9 @@ impl Notices {
         self.is_list_open = false;
     }
 
-    /// Advances the toasts' timers to `now_s` \[s, window clock\] unless the pointer is on a toast;
-    /// removes toasts whose time is over. Returns the time \[s\] until the next one disappears.
+    /// Advances the toasts' timers to `now_s` \[s, window clock\] unless the pointer is on a
+    /// message or the list is open; removes toasts whose time is over. Returns the time \[s\] until
+    /// the next one disappears; `None` if none has a timer.
     pub fn pass_time(&mut self, now_s: f64) -> Option<f64> {
         let passed_s = (now_s - self.seen_at_s).max(0.0);
         self.seen_at_s = now_s;

@@ -45,22 +45,22 @@ pub struct RecordsState {
     pub page: RecordsPage,
     /// Roles whose curves over time are hidden.
     pub hidden_roles: BTreeSet<TimeRole>,
-    /// Outputs drawn over time below the output in focus, by index; `None` selects the first two
-    /// others.
+    /// Outputs drawn over time below the output in focus, by index, as far as there is room; `None`
+    /// selects all others.
     pub more_outputs: Option<Vec<usize>>,
-    /// Index of the input shown by the spectrogram.
+    /// Index of the input shown by the spectrogram; `None` hides it.
     pub spectrogram: Option<usize>,
     /// Search setting whose field is to be focused.
     pub advanced_field: Option<&'static str>,
     /// Section that is unfolded below the records.
     pub open_fold: Option<RecordsFold>,
-    /// Added records whose names match no condition in the dataset.
+    /// Added records that could not be assigned to a condition in the dataset.
     pub unassigned: Vec<LaidOutRecord>,
     /// The added files and folders.
     pub sources: Vec<PathBuf>,
     /// Paths to the files read, by SHA-256, to recognise changed files.
     pub read_from: BTreeMap<String, PathBuf>,
-    /// Form for a dataset made from the displayed records.
+    /// Form for a dataset to be made from the added records.
     pub wanted: WantedDataset,
     /// Name under which the files being read are displayed.
     pub reading: Option<String>,

@@ -1,5 +1,5 @@
-//! What a report is made of, and the job that composes it without writing it: the export dialog shows
-//! its size and its notes.
+//! Inputs of a report, and the job that composes it without writing it: the export dialog shows its
+//! size and its notes.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub struct ReportInputs {
     pub shown: Arc<Analysis>,
     /// Analysis with the present requirements.
     pub analysis: Arc<Analysis>,
-    /// Open flight records for the time-history comparison.
+    /// Flight records in use, for the time-history comparison.
     pub records: Vec<HistoryRecords>,
     pub known: KnownPoles,
     pub source: ReportSource,
@@ -46,8 +46,8 @@ impl ReportInputs {
     }
 }
 
-/// Job that composes a report. Jobs with the same inputs, in the same place in memory, are equal:
-/// records may contain NaN, and would then differ from themselves.
+/// Job that composes a report. Jobs are equal if they share their inputs in memory: compared by
+/// value, records that contain NaN would differ from themselves.
 #[derive(Clone, Debug)]
 pub struct ReportContentsJob {
     pub inputs: Arc<ReportInputs>,

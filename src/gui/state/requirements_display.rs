@@ -57,7 +57,8 @@ pub struct RequirementsDisplay {
     pub judges_schedule: bool,
     pub order: GridOrder,
     pub is_reversed: bool,
-    /// Record chosen for the details; `None` or another condition: the first held-out record.
+    /// Record chosen for the details; `None`, or a record in another condition, selects the first
+    /// held-out record.
     pub record: Option<RecordChoice>,
     /// Row whose limit is being edited.
     pub edited_limit: Option<Requirement>,

@@ -25,7 +25,7 @@ impl State {
         self.history.begin_session();
     }
 
-    /// Ends the session; its changes to settings become one undo step.
+    /// Ends the session; its consecutive changes to settings become one undo step.
     pub fn end_settings_session(&mut self) {
         self.settings_session = None;
         self.history.end_session(&self.study);

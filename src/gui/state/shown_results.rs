@@ -205,8 +205,8 @@ impl State {
         Some(answers)
     }
 
-    /// Compares a job's record with the tolerances, or returns the reason why it cannot be
-    /// compared; until this is ready, returns the comparison from an older analysis.
+    /// Returns the comparison of a job's record with the tolerances, or the reason why it cannot be
+    /// compared; until it is ready, the comparison from an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
@@ -270,7 +270,8 @@ impl State {
         }
     }
 
-    /// Returns the selected parameter's index among those that are on.
+    /// Returns the selected parameter's index among those that are on; without a selection, the
+    /// index of the first in the ranking.
     pub fn selected_parameter(&self, findings: &PhysicsFindings) -> usize {
         let name = self.display.physics.selected.as_deref();
         findings.selected(name).unwrap_or(0)

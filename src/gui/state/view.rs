@@ -60,7 +60,7 @@ pub enum View {
     Physics,
     /// Input mixing and output feedback (M16).
     Couplings,
-    /// Channel gains over airspeed (Figures 3 and 4).
+    /// Channel gains or delays over airspeed (Figures 3 and 4).
     Channels,
     /// Benefit of the correction (Figures 8 to 19).
     Assessment,
@@ -68,12 +68,12 @@ pub enum View {
     Evidence,
     /// Variants, compared with the current decisions.
     Compare,
-    /// Qualification requirements: bandwidth, modes, summary (M17).
+    /// Qualification requirements: bandwidth, time histories, modes, summary (M17).
     Requirements,
     /// Net gains over airspeed (Figures 6 and 7).
     NetGain,
     /// Phase change by delay or lead in each channel, and the gain that leads add above the band,
-    /// up to ten times the band.
+    /// up to ten times the band's upper end.
     Leads,
     /// Net gain over airspeed for the response in focus, and its J before the correction, at each
     /// optimum and under the schedule.
@@ -146,8 +146,7 @@ pub struct ViewFacts {
     pub group: Option<ViewGroup>,
     /// Whether the dock is hidden while this view is in front.
     pub takes_dock: bool,
-    /// Kind of exported figure. The variants have none and are saved as tables; for records, the
-    /// identified models are saved.
+    /// Kind of exported figure; `None` for the Records and Compare views, which have none.
     pub figure: Option<FigureKind>,
 }
 

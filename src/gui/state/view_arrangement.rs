@@ -136,12 +136,13 @@ impl Arrangement {
         views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
     }
 
-    /// Returns whether a view is visible: in front, beside, or in the dock.
+    /// Returns whether a view is in front, beside the view in front, or in the dock, whether or not
+    /// the dock is unfolded.
     pub fn is_shown(&self, view: View) -> bool {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement, which an older version of the program may have written:
+    /// Adapts a stored arrangement, which an older version of the program may have written:
     ///
     /// 1. a view beside that is now a dock page is shown in the dock;
     /// 2. a group that shows what is now a dock page shows its first view; if it was in front, the

@@ -28,15 +28,15 @@ pub struct WantedDataset {
     /// Lower and upper band limit \[rad/s\].
     pub band: [String; 2],
     pub path: String,
-    /// Descriptions of the record columns.
+    /// Record columns, each as "topic.column \[unit\]".
     pub columns: Vec<String>,
     /// Reasons why the dataset could not be made.
     pub problems: Vec<Message>,
 }
 
 impl WantedDataset {
-    /// Creates a proposal from records. It contains the channels whose role the logging system's
-    /// documentation states; others must be typed.
+    /// Creates a proposal from records. It contains the channels that the file, or else the logging
+    /// system's documentation, states to be inputs or outputs; others must be typed.
     pub fn proposed<'r>(
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
         band: Band,
@@ -68,7 +68,7 @@ impl WantedDataset {
     /// Parses the requested channels and the band.
     ///
     /// # Errors
-    /// Messages about invalid channels or an invalid band.
+    /// A message about the first invalid list of channels, or about an invalid band.
     pub fn channels(&self) -> Result<(RecordChannels, Band), Message> {
         let inputs = parse_rules("inputs", &self.inputs)?;
         let outputs = parse_rules("outputs", &self.outputs)?;
@@ -88,8 +88,9 @@ impl WantedDataset {
     }
 }
 
-/// Returns whether a column is an input or an output: as stated in the file; else by its meaning, a
-/// control, a reference (`None`) or else an output; `None` without either.
+/// Returns whether a column is an input or an output: as stated in the file; otherwise, by its
+/// meaning, an input for a pilot control and an output for anything but a reference. `None` for a
+/// reference, or if neither is stated.
 fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     if column.side.is_some() {
         return column.side;

@@ -42,7 +42,7 @@ pub type UndoStep = Step<RecordsSnapshot, RecordChange>;
 /// Everything that the window keeps.
 #[derive(Debug)]
 pub struct State {
-    /// The study, the only saved part.
+    /// The study; preferences apart, the only part that is saved.
     pub study: Study,
     /// Embedded example, if the dataset is one.
     pub example: Option<Example>,
@@ -72,7 +72,7 @@ pub struct State {
     pub opening: Option<String>,
     /// Forms in front of the window.
     pub forms: Forms,
-    /// Current step in the guided tour.
+    /// Current step in the guided tour, from 0; `None` while no tour is shown.
     pub tour: Option<usize>,
     /// Flight records, and models identified from them.
     pub records: RecordsState,
@@ -118,7 +118,7 @@ impl State {
         }
     }
 
-    /// Returns whether a view is shown, in front or beside it.
+    /// Returns whether a view is in front, beside it or in the dock; false on the start page.
     pub fn shows_view(&self, view: View) -> bool {
         !self.on_start_page && self.display.layout.arrangement.is_shown(view)
     }
@@ -147,9 +147,10 @@ impl State {
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
-    /// Adapts the displayed selection to a replaced dataset; does nothing if the dataset is the
-    /// same. Keeps the response in focus if the dataset contains it; otherwise selects the first
-    /// on-axis response, or the first response if none is on-axis.
+    /// Adapts the displayed selection to a replaced dataset, and drops the display options that
+    /// concern single models; does nothing if the dataset is the same. Keeps the response in focus
+    /// if the dataset contains it; otherwise selects the first on-axis response, or the first
+    /// response if none is on-axis.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         if Arc::ptr_eq(dataset, &self.followed) {

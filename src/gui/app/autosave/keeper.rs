@@ -113,7 +113,8 @@ impl Keeper {
         });
     }
 
-    /// Deletes this window's recovery file, and those with restored decisions.
+    /// Drops the pending decisions; deletes this window's recovery file, and those with restored
+    /// decisions.
     fn clear(&mut self) -> Result<(), FileError> {
         self.pending = None;
         *locked(&self.kept) = None;
@@ -123,7 +124,7 @@ impl Keeper {
         self.remove_restored()
     }
 
-    /// Keeps the pending decisions now; returns the resulting state.
+    /// Writes the pending decisions now; returns the resulting state.
     fn flush(&mut self) -> Remains {
         let kept = self.keep();
         let trouble = match (&self.pending, &self.folder) {
@@ -134,7 +135,8 @@ impl Keeper {
         Remains::new(locked(&self.kept).clone(), trouble)
     }
 
-    /// Keeps the pending decisions; if they cannot be written, they remain pending for a retry.
+    /// Writes the pending decisions, if any, then deletes the old files of restored ones. Decisions
+    /// that cannot be written remain pending for a retry; without a folder, nothing happens.
     fn keep(&mut self) -> Result<(), KeepFailure> {
         let Some(folder) = &self.folder else {
             return Ok(());

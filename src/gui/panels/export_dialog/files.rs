@@ -70,7 +70,7 @@ pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
 /// Row of the list of files.
 struct Entry<'a> {
     name: &'a str,
-    /// What the file contains, or why it cannot be written.
+    /// Contents of the file, or why it cannot be written.
     words: String,
     /// Size, as far as it is known.
     size: String,
@@ -99,7 +99,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Describes the report, once it is composed.
+    /// Describes the report: its contents once it is composed, before that the progress.
     fn of_report(name: &'a str, report: Option<&'a Report>, state: &State) -> Self {
         let progress = state.results.background.report_contents;
         let (words, size, head) = match (report, progress) {
@@ -215,7 +215,7 @@ fn entry_ui(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, palette: &Palette
     is_clicked
 }
 
-/// Draws the first lines of a file.
+/// Draws the first lines of a file, or why it cannot be written.
 fn head_ui(ui: &mut Ui, entry: &Entry<'_>, palette: &Palette) {
     let frame = Frame::new()
         .fill(palette.background)

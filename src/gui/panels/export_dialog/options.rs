@@ -1,4 +1,4 @@
-//! Formats, and what is exported and where to.
+//! Columns at the left of the export dialog: formats; what is exported, and where to.
 
 use egui::{Button, DragValue, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
@@ -116,7 +116,7 @@ fn format_ui(ui: &mut Ui, form: &mut ExportForm, row: FormatRow, palette: &Palet
     );
 }
 
-/// Draws what is exported, and where to.
+/// Draws what is exported, and where to; Enter in a field exports.
 pub(super) fn options_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -215,7 +215,7 @@ fn conditions_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
 fn correction_ui(ui: &mut Ui, form: &mut ExportForm, palette: &Palette) {
     labelled_ui(ui, "Correction", ROW + 4.0, palette, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        // From right to left.
+        // The line is laid out from right to left.
         for (is_own, text) in [(true, "per condition"), (false, "schedule")] {
             let is_chosen = form.choices.per_condition == is_own;
             let button = Button::new(text).selected(is_chosen).corner_radius(6.0);
@@ -311,7 +311,8 @@ fn prefix_ui(ui: &mut Ui, state: &mut State, palette: &Palette) -> bool {
     is_submitted
 }
 
-/// Draws the choice of how existing files are treated, and how many exist.
+/// Draws the choice of how existing files are treated, how many exist, and the choice of whether
+/// the study remembers this form.
 fn existing_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let announced = existing_words(state);
     let choices = &mut state.forms.export.choices;
@@ -322,7 +323,7 @@ fn existing_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     ui.checkbox(remembers, "Remember for this study");
 }
 
-/// States how many files exist already, and what happens to them.
+/// States how many files exist already, and what happens to them; empty without a current dry run.
 fn existing_words(state: &State) -> String {
     let Some(plan) = state.current_export_plan() else {
         return String::new();

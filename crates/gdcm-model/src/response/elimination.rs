@@ -1,27 +1,38 @@
 //! Computes a state-space model's frequency response by eliminating the states from the system
 //! matrix.
 //!
-//! The model is `dx/dt = A x + B u`, `y = C x + D u` with `n` states, and H its response at a
-//! frequency. Step 1 is in `hessenberg_form.rs`, which explains the matrices; the other steps are
-//! in `eliminate_group`.
+//! The model is `dx/dt = A x + B u`, `y = C x + D u` with `n` states, and `H(s)` its response at `s
+//! = j omega`. ^T denotes the transpose. Step 1 is in `hessenberg_form.rs`, which explains the
+//! matrices; the other steps are in `eliminate_group`.
 //!
 //! ```text
-//! 1  scale the model (A by 1 / alpha), transform and transpose it, once for all frequencies s = j omega / alpha:
-//!        [ G - s I  K  ]      G (n x n) from A', K from C', L from B'; ' denotes the transpose
-//!        [ L        D' ]      H' = D' - L (G - s I)^-1 K
+//! 1  once for all frequencies: scale A by 1 / alpha, transform the model and transpose it;
+//!    with sigma = s / alpha the system matrix is
+//!        [ G - sigma I  K   ]      G (n x n) from A^T, K from C^T, L from B^T
+//!        [ L            D^T ]      H^T = D^T - L (G - sigma I)^-1 K
 //!    G is real, and zero below its subdiagonal entries h_k, k = 1 ... n - 1;
 //!    the first row of L is zero except for its last entry
-//! 2  u <- first row of [G - s I, K], the active row; w <- each row of [L D'] but the first
-//! 3  for k = 1 ... n - 1, with the next row r = [G - s I, K]_(k+1) / h_k, which is real but for -s / h_k:
-//! 4     if |u_k| > tau |h_k| in any of eight neighbouring frequencies, then in those with |u_k| > |h_k| interchange:
-//!          w <- w - (w_k / u_k) u;   u <- h_k r - (h_k / u_k) u
-//! 5     else: w <- w - w_k r;   u <- u - u_k r
-//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] likewise; D' is now H'
+//! 2  u <- first row of [G - sigma I, K], the active row; w <- each row of [L D^T] but the first
+//! 3  for k = 1 ... n - 1, with r = row k + 1 of [G - sigma I, K], divided by h_k: the next row,
+//!    with 1 in column k and otherwise real but for -sigma / h_k in column k + 1;
+//!    u_k and w_k are the entries in column k:
+//! 4     if |u_k| > tau |h_k| in any of eight neighbouring frequencies,
+//!       then in those of the eight with |u_k| > |h_k|:
+//!          w <- w - (w_k / u_k) u;   u <- h_k r - (h_k / u_k) u        u clears the column
+//! 5     else, and in the other frequencies of the eight:
+//!          w <- w - w_k r;           u <- u - u_k r                    r clears the column
+//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D^T] likewise;
+//!    D^T is now H^T
 //! ```
 //!
-//! If the model has fewer outputs than inputs, its dual (A', C', B', D') takes its place, whose
-//! response is H'. A negligible h_k is replaced by zero, which forces the interchange in step 4
-//! (see `subdiagonal.rs`).
+//! Step 5 costs half as much as step 4, because r is real. It is therefore used unless `u_k`
+//! exceeds `h_k` by more than the pivot threshold `tau = 2^18 / n` (`subdiagonal.rs`). The
+//! multipliers within G are then at most tau, and since G's rows enter unchanged, entries grow at
+//! most by the factor `n tau`.
+//!
+//! If the model has fewer outputs than inputs, its dual (A^T, C^T, B^T, D^T) takes its place, whose
+//! response is H^T. A negligible h_k is replaced by zero, which forces step 4 with an interchange
+//! in every frequency (see `subdiagonal.rs`).
 //!
 //! Each frequency occupies a lane of a vector register. Hessenberg form: Laub, IEEE Trans.
 //! Automatic Control 26(2), 1981; tau is the pivot threshold in Duff, Erisman & Reid, "Direct
@@ -78,9 +89,9 @@ pub(super) struct Elimination<'a> {
 }
 
 /// Number of neighbouring frequencies that share their pivots, independent of the vector length.
-const GROUP: usize = 8;
+pub(super) const GROUP: usize = 8;
 
-/// Maximum `|s| / alpha`: beyond it, its square could overflow.
+/// Maximum `|sigma|`: beyond it, its square could overflow.
 const LARGEST_SHIFT: f64 = 1e150;
 
 impl WithSimd for Elimination<'_> {
@@ -91,25 +102,25 @@ impl WithSimd for Elimination<'_> {
         let form = self.form;
         let [outputs, inputs] = form.model_shape();
         let mut curves = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(self.s.len()));
-        // The rows for a frequency group: a register contains `S::F64_LANES` of its frequencies.
-        let mut vectors: Vec<ComplexRows<S>> = Vec::new();
+        // The rows for a frequency group, for `S::F64_LANES` of its frequencies each.
+        let mut registers: Vec<ComplexRows<S>> = Vec::new();
         for _ in 0..GROUP / S::F64_LANES {
-            vectors.push(ComplexRows {
+            registers.push(ComplexRows {
                 shift: ComplexLanes::real(simd, 0.0),
                 entries: Vec::new(),
             });
         }
         for group in self.s.chunks(GROUP) {
             let shifts = GroupShifts::new(group, form.frequency_scale);
-            let vectors = &mut vectors[..group.len().div_ceil(S::F64_LANES)];
-            eliminate_group(simd, form, vectors, &shifts);
-            append_group(form, vectors, group, &mut curves);
+            let registers = &mut registers[..group.len().div_ceil(S::F64_LANES)];
+            eliminate_group(simd, form, registers, &shifts);
+            append_group(form, registers, group, &mut curves);
         }
         FrequencyResponse::new(curves)
     }
 }
 
-/// The values `s / alpha` for a group, real and imaginary parts separate.
+/// The values `sigma = s / alpha` for a group, real and imaginary parts separate.
 struct GroupShifts {
     re: [f64; GROUP],
     im: [f64; GROUP],
@@ -137,35 +148,30 @@ impl GroupShifts {
     }
 }
 
-/// Eliminates the states for a group: steps 2 to 6. `vectors` contains the rows for the group's
+/// Eliminates the states for a group: steps 2 to 6. `registers` contains the rows for the group's
 /// frequencies, and afterwards their responses.
-///
-/// The next row is real, and costs half as much as the active row. It is therefore used to clear a
-/// column unless the active row's entry is more than tau times as large in some lane. Multipliers
-/// within G are then at most tau, and since G's rows enter unchanged, entries grow at most by the
-/// factor `n tau`.
 #[inline(always)]
 fn eliminate_group<S: Simd>(
     simd: S,
     form: &HessenbergForm,
-    vectors: &mut [ComplexRows<S>],
+    registers: &mut [ComplexRows<S>],
     shifts: &GroupShifts,
 ) {
     let re = S::as_simd_f64s(&shifts.re).0;
     let im = S::as_simd_f64s(&shifts.im).0;
-    for (rows, (re, im)) in vectors.iter_mut().zip(re.iter().zip(im)) {
+    for (rows, (re, im)) in registers.iter_mut().zip(re.iter().zip(im)) {
         rows.start(simd, form, ComplexLanes { re: *re, im: *im });
     }
     for column in 0..form.order.saturating_sub(1) {
         let mut interchange = false;
-        for rows in &*vectors {
+        for rows in &*registers {
             interchange |= rows.needs_interchange(simd, form, column);
         }
-        for rows in &mut *vectors {
+        for rows in &mut *registers {
             rows.clear_column(simd, form, column, interchange);
         }
     }
-    for rows in vectors {
+    for rows in registers {
         rows.finish(simd, form);
     }
 }
@@ -175,17 +181,17 @@ fn eliminate_group<S: Simd>(
 #[inline(always)]
 fn append_group<S: Simd>(
     form: &HessenbergForm,
-    vectors: &[ComplexRows<S>],
+    registers: &[ComplexRows<S>],
     group: &[Complex<f64>],
     curves: &mut PairTable<Vec<Complex<f64>>>,
 ) {
     for output in 0..form.outputs {
         for input in 0..form.inputs {
             let curve = &mut curves[form.pair(input, output)];
-            // Row `input` of [L D'], past the state columns.
+            // Row `input` of [L D^T], past the state columns.
             let place = input * form.width() + form.order + output;
             for (lane, s) in group.iter().enumerate() {
-                let value = &vectors[lane / S::F64_LANES].entries[place];
+                let value = &registers[lane / S::F64_LANES].entries[place];
                 curve.push(if s.is_nan() {
                     *s
                 } else {
@@ -199,11 +205,11 @@ fn append_group<S: Simd>(
 /// A system matrix's complex rows during elimination, for a vector of frequencies.
 ///
 /// These are the *active* row `u`, initially the first row of `[G K]`, and the rows `w`, which are
-/// all rows of `[L D']` except the first. The first row of `[L D']` is zero in G's columns except
+/// all rows of `[L D^T]` except the first. The first row of `[L D^T]` is zero in G's columns except
 /// for the last, and is not needed until all other columns are clear: the active row occupies its
 /// place, so that rows and responses are numbered alike.
 struct ComplexRows<S: Simd> {
-    /// `s / alpha`, called s in the steps.
+    /// `sigma`.
     shift: ComplexLanes<S>,
     /// Entries, row by row: the active row, then the rows `w`; [`HessenbergForm::width`] entries
     /// each.
@@ -274,7 +280,7 @@ impl<S: Simd> ComplexRows<S> {
         subtract_next(simd, active, multiplier, next, shift);
     }
 
-    /// Clears the last column with the active row; the first row of `[L D']` then takes its place
+    /// Clears the last column with the active row; the first row of `[L D^T]` then takes its place
     /// (step 6).
     #[inline(always)]
     fn finish(&mut self, simd: S, form: &HessenbergForm) {
@@ -298,8 +304,8 @@ impl<S: Simd> ComplexRows<S> {
     }
 }
 
-/// Subtracts `multiplier (next row)` from a row, right of the cleared column; this takes most of
-/// the time. The first entry in the next row also contains `-shift`.
+/// Subtracts `multiplier r` from a row, right of the cleared column; this takes most of the time.
+/// `next` is the real part of r, and `-shift` is the rest of its first entry.
 #[inline(always)]
 fn subtract_next<S: Simd>(
     simd: S,
@@ -327,31 +333,28 @@ fn subtract_multiple<S: Simd>(
     }
 }
 
-/// An interchange: in some lanes, the active row clears a column and the next row becomes active.
-///
-/// With the entries in the column, `u` in the active row, `w` in another complex row and `h` in the
-/// next row, the rows become
+/// Step 4: in some lanes `u` clears the column and the next row becomes active, in the others as in
+/// step 5. With `u_k`, `w_k` and `h_k` as in the steps, the rows become in the former lanes
 ///
 /// ```text
-/// active row:  h (next row / h) - (h / u) (active row)
-/// other row:   (row) - (w / u) (active row)
+/// active row:  h_k r - (h_k / u_k) u
+/// other rows:  w - (w_k / u_k) u
 /// ```
 ///
-/// In the other lanes the next row clears the column, and `u` and `w` times (next row / h) are
-/// subtracted. Both take two steps: subtract a *quotient* times the active row (from zero for the
-/// active row itself), then a *multiplier* times (next row / h).
+/// Both kinds of lanes take the same two operations: subtract a *quotient* times `u` (from zero for
+/// the active row itself), then a *multiplier* times `r`.
 ///
-/// The new active row contains the next row itself, not (next row / h). Otherwise a chain of weak
-/// couplings would enlarge the pivots by `1 / h` at each interchange, until their squares overflow.
+/// The new active row contains `h_k r`, not `r`. Otherwise a chain of weak couplings would enlarge
+/// the pivots by `1 / h_k` at each interchange, until their squares overflow.
 struct Interchange<S: Simd> {
     /// Lanes in which the rows are interchanged.
     lanes: S::m64s,
-    /// `1 / u`.
+    /// `1 / u_k`.
     reciprocal: ComplexLanes<S>,
 }
 
 impl<S: Simd> Interchange<S> {
-    /// Selects the lanes in which the active row's entry `u` is larger than the next row's `h`.
+    /// Selects the lanes with `|u_k| > |h_k|`; `pivot` is `u_k`.
     #[inline(always)]
     fn new(simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
         let lanes = simd.greater_than_f64s(pivot.square(simd), simd.splat_f64s(subdiagonal.square));
@@ -361,8 +364,8 @@ impl<S: Simd> Interchange<S> {
         }
     }
 
-    /// Returns quotient and multiplier for a row with entry `w`: `w / u` and zero in the selected
-    /// lanes, zero and `w` in the others.
+    /// Returns quotient and multiplier for a row with `entry` `w_k`: `w_k / u_k` and zero in the
+    /// selected lanes, zero and `w_k` in the others.
     #[inline(always)]
     fn factors(&self, simd: S, entry: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
         let zero = ComplexLanes::real(simd, 0.0);
@@ -370,9 +373,9 @@ impl<S: Simd> Interchange<S> {
         [quotient, entry.replaced_where(simd, self.lanes, zero)]
     }
 
-    /// Returns quotient and multiplier for the active row: `h / u` and `-h` in the selected lanes,
-    /// -1 and `u` in the others. For a negligible `h` they are zero and -1 in the selected lanes:
-    /// the next row, which is then stored unscaled, becomes the active row.
+    /// Returns quotient and multiplier for the active row: `h_k / u_k` and `-h_k` in the selected
+    /// lanes, -1 and `u_k` in the others. For a negligible `h_k` they are zero and -1 in the
+    /// selected lanes: the next row, which is then stored undivided, becomes the active row.
     #[inline(always)]
     fn active_factors(
         &self,
@@ -380,8 +383,8 @@ impl<S: Simd> Interchange<S> {
         subdiagonal: &Subdiagonal,
         pivot: ComplexLanes<S>,
     ) -> [ComplexLanes<S>; 2] {
-        // If `h` is zero, set the quotient to zero without division by the pivot, which may be zero
-        // too.
+        // If `h_k` is zero, set the quotient to zero without division by the pivot, which may be
+        // zero too.
         let quotient = if subdiagonal.entry == 0.0 {
             ComplexLanes::real(simd, 0.0)
         } else {
@@ -393,379 +396,5 @@ impl<S: Simd> Interchange<S> {
             ComplexLanes::real(simd, -1.0).replaced_where(simd, self.lanes, quotient),
             pivot.replaced_where(simd, self.lanes, multiplier),
         ]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::{DMatrix, dmatrix};
-    use pulp::Scalar;
-
-    use super::*;
-    use crate::dataset::Pair;
-
-    fn siso(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: f64) -> StateSpace {
-        StateSpace::new(a, b, c, dmatrix![d]).unwrap()
-    }
-
-    fn oscillator() -> StateSpace {
-        siso(
-            dmatrix![0.0, 1.0; -4.0, 0.0],
-            dmatrix![0.0; 1.0],
-            dmatrix![1.0, 0.0],
-            0.0,
-        )
-    }
-
-    fn only(response: FrequencyResponse) -> Complex<f64> {
-        response.curve(Pair::new(0, 0))[0]
-    }
-
-    #[test]
-    fn a_first_order_lag_has_its_known_response() {
-        // 1 / (j omega + 2) at omega = 3: (2 - 3j) / 13.
-        let value = only(evaluate(
-            &siso(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], 0.0),
-            &[3.0],
-        ));
-        assert!((value - Complex::new(2.0 / 13.0, -3.0 / 13.0)).norm() < 1e-16);
-    }
-
-    #[test]
-    fn a_model_of_order_zero_is_its_feed_through() {
-        let empty = siso(
-            DMatrix::zeros(0, 0),
-            DMatrix::zeros(0, 1),
-            DMatrix::zeros(1, 0),
-            2.5,
-        );
-        assert_eq!(only(evaluate(&empty, &[1.0])), Complex::new(2.5, 0.0));
-    }
-
-    #[test]
-    fn an_undamped_oscillator_at_its_own_frequency_is_not_finite() {
-        assert!(!only(evaluate(&oscillator(), &[2.0])).is_finite());
-    }
-
-    #[test]
-    fn a_pole_on_the_grid_leaves_the_other_frequencies_alone() {
-        let omega: Vec<f64> = (0..19).map(|k| f64::from(k) * 0.25).collect();
-        let response = evaluate(&oscillator(), &omega);
-        for (omega, value) in omega.iter().zip(response.curve(Pair::new(0, 0))) {
-            // 1 / (4 - omega^2): the difference amplifies the rounding errors of a few operations
-            // up to 8 times.
-            let expected = 1.0 / (4.0 - omega * omega);
-            assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
-            assert!(
-                *omega == 2.0 || (value - expected).norm() < 1e-14 * expected.abs(),
-                "{omega}"
-            );
-        }
-    }
-
-    #[test]
-    fn units_of_inputs_and_outputs_only_scale_the_response() {
-        let a = dmatrix![-1.0, 2.0; -3.0, -0.5];
-        let plain = only(evaluate(
-            &siso(a.clone(), dmatrix![1.0; 0.5], dmatrix![1.0, -2.0], 0.0),
-            &[1.3],
-        ));
-        for exponent in [-800, 800] {
-            let unit = 2.0_f64.powi(exponent);
-            let scaled = only(evaluate(
-                &siso(
-                    a.clone(),
-                    dmatrix![unit; 0.5 * unit],
-                    dmatrix![1.0, -2.0],
-                    0.0,
-                ),
-                &[1.3],
-            ));
-            // The unit is a power of two, so that scaling causes no rounding.
-            assert_eq!(scaled, plain * unit);
-        }
-    }
-
-    #[test]
-    fn units_of_the_states_do_not_matter() {
-        let a = dmatrix![-1.0, 2.0; -3.0, -0.5];
-        let b = dmatrix![1.0; 0.5];
-        let c = dmatrix![1.0, -2.0];
-        let scale = DMatrix::from_diagonal(&nalgebra::dvector![1e-9, 1e9]);
-        let inverse = DMatrix::from_diagonal(&nalgebra::dvector![1e9, 1e-9]);
-        let plain = only(evaluate(
-            &siso(a.clone(), b.clone(), c.clone(), 0.1),
-            &[1.3],
-        ));
-        let scaled = only(evaluate(
-            &siso(&scale * a * &inverse, scale * b, c * inverse, 0.1),
-            &[1.3],
-        ));
-        // Tolerance: the scaling rounds each entry once.
-        assert!((plain - scaled).norm() < 1e-14 * plain.norm());
-    }
-
-    type Values = PairTable<Vec<Complex<f64>>>;
-
-    fn on<S: Simd>(simd: S, model: &StateSpace, omega: &[f64]) -> Values {
-        let form = &HessenbergForm::new(Arch::new(), model.a().clone(), model);
-        let s: Vec<_> = omega
-            .iter()
-            .map(|omega| Complex::new(0.0, *omega))
-            .collect();
-        simd.vectorize(Elimination { form, s: &s }).curves().clone()
-    }
-
-    /// Returns the values for every instruction set of this machine with fused multiply-adds; they
-    /// must agree bit for bit.
-    fn on_vectors(model: &StateSpace, omega: &[f64]) -> Vec<Values> {
-        let mut values = Vec::new();
-        #[cfg(target_arch = "x86_64")]
-        {
-            values.extend(pulp::x86::V3::try_new().map(|simd| on(simd, model, omega)));
-            values.extend(pulp::x86::V4::try_new().map(|simd| on(simd, model, omega)));
-        }
-        #[cfg(target_arch = "aarch64")]
-        values.extend(pulp::aarch64::Neon::try_new().map(|simd| on(simd, model, omega)));
-        values
-    }
-
-    /// Returns a matrix with reproducible irregular entries from a sine.
-    fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
-        DMatrix::from_fn(rows, columns, |row, column| {
-            (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
-        })
-    }
-
-    fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
-        let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
-        let b = matrix(order, inputs, 1.1);
-        let c = matrix(outputs, order, 2.3);
-        let d = matrix(outputs, inputs, 3.7);
-        StateSpace::new(a, b, c, d).unwrap()
-    }
-
-    /// Returns frequencies from far below the poles, where the real rows are the pivots, to far
-    /// above, where the active rows are; in between, the lanes of a vector differ.
-    fn wide(count: usize) -> Vec<f64> {
-        (0..count)
-            .map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64))
-            .collect()
-    }
-
-    /// Computes the response with a dense matrix decomposition.
-    fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
-        let [a, b, c, d] =
-            [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
-        let states = DMatrix::identity(a.nrows(), a.nrows()) * Complex::new(0.0, omega) - a;
-        c * states.lu().solve(&b).unwrap() + d
-    }
-
-    fn flattened(values: &Values) -> Vec<Complex<f64>> {
-        values
-            .iter()
-            .flat_map(|(_, values)| values.clone())
-            .collect()
-    }
-
-    /// Returns the maximum difference, relative to the largest expected value.
-    fn difference(found: &Values, expected: &Values) -> f64 {
-        let found = flattened(found);
-        let expected = flattened(expected);
-        let largest = expected
-            .iter()
-            .map(|value| value.norm())
-            .fold(0.0, f64::max);
-        let differences = found
-            .iter()
-            .zip(&expected)
-            .map(|(found, expected)| (found - expected).norm());
-        // `f64::max` would drop a NaN.
-        differences.fold(
-            0.0,
-            |worst: f64, next| if next <= worst { worst } else { next },
-        ) / largest
-    }
-
-    #[test]
-    fn vectors_of_every_length_agree_with_scalars_at_every_remainder_length() {
-        for count in 0..=17 {
-            let model = model(9, 3, 3);
-            let omega = wide(count);
-            let scalar = on(Scalar::new(), &model, &omega);
-            for vectors in on_vectors(&model, &omega) {
-                // Tolerance: two backward stable solutions of order 9, each with rounding errors of
-                // at most 9 tau times 1e-16.
-                assert!(
-                    count == 0 || difference(&vectors, &scalar) < 8e-12,
-                    "{count} frequencies"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn vectors_of_every_length_give_the_same_bits() {
-        for (order, outputs, inputs) in [
-            (0, 2, 1),
-            (1, 1, 1),
-            (2, 6, 4),
-            (12, 6, 4),
-            (30, 6, 4),
-            (17, 3, 5),
-            (8, 7, 6),
-            (7, 9, 9),
-        ] {
-            let model = model(order, outputs, inputs);
-            let omega = wide(61);
-            let results = on_vectors(&model, &omega);
-            assert!(
-                results.windows(2).all(|pair| pair[0] == pair[1]),
-                "order {order}"
-            );
-        }
-    }
-
-    #[test]
-    fn values_depend_on_the_frequencies_of_their_group_only() {
-        let model = model(14, 6, 4);
-        let omega = wide(45);
-        let together = on_vectors(&model, &omega);
-        for (k, omega) in omega.chunks(GROUP).enumerate() {
-            let alone = on_vectors(&model, omega);
-            for (alone, together) in alone.iter().zip(&together) {
-                let same =
-                    |(pair, values): (_, &Vec<_>)| together[pair][k * GROUP..].starts_with(values);
-                assert!(alone.iter().all(same), "group {k}");
-            }
-        }
-    }
-
-    #[test]
-    fn frequencies_of_a_group_may_need_different_pivots() {
-        // Both ends in one group: the real row must be the pivot at 1e-4 rad/s, the complex row at
-        // 1e4 rad/s.
-        let model = model(14, 6, 4);
-        let omega: Vec<f64> = (0..29)
-            .map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k)))
-            .collect();
-        let mut results = on_vectors(&model, &omega);
-        results.push(on(Scalar::new(), &model, &omega));
-        for values in results {
-            for (k, omega) in omega.iter().enumerate() {
-                let expected = dense(&model, *omega);
-                let largest = expected
-                    .iter()
-                    .map(|value| value.norm())
-                    .fold(0.0, f64::max);
-                for (pair, values) in values.iter() {
-                    let error = (values[k] - expected[(pair.output, pair.input)]).norm();
-                    // Tolerance: the bound of threshold pivoting, 3e-11, times the condition number
-                    // of a random matrix of order 14.
-                    assert!(error < 1e-9 * largest, "{omega}, {pair:?}: {error}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn poles_on_the_grid_leave_other_frequencies_finite() {
-        for order in 1..=9 {
-            let b = matrix(order, 2, 1.1);
-            let c = matrix(3, order, 2.3);
-            // All poles at zero; then pairs of poles at 2 rad/s and, for an odd order, a single
-            // pole at zero.
-            let turning = DMatrix::from_fn(order, order, |row, column| match (row % 2, column) {
-                (0, column) if column == row + 1 => 2.0,
-                (1, column) if column + 1 == row => -2.0,
-                _ => 0.0,
-            });
-            for (a, omega) in [(DMatrix::zeros(order, order), 0.0), (turning, 2.0)] {
-                let model = StateSpace::new(a, b.clone(), c.clone(), DMatrix::zeros(3, 2)).unwrap();
-                for frequencies in [vec![omega], vec![1.0, omega, 3.0]] {
-                    let mut results = on_vectors(&model, &frequencies);
-                    results.push(on(Scalar::new(), &model, &frequencies));
-                    let finite = |k: usize| {
-                        results
-                            .iter()
-                            .all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()))
-                    };
-                    assert!(
-                        frequencies.len() == 1 || (finite(0) && finite(2)),
-                        "{order} states"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_chain_coupled_by_1e_minus_55_neither_overflows_nor_loses_its_coupling() {
-        // The inverse coupling is 1e55 per step: without the factor `h` of an interchange, the
-        // square of a pivot would overflow in the fifth step.
-        let weak = 1e-55;
-        let a = DMatrix::from_fn(8, 8, |row, column| match row.abs_diff(column) {
-            0 => -1.0,
-            1 => weak,
-            _ => 0.0,
-        });
-        let model = StateSpace::new(
-            a,
-            DMatrix::identity(8, 8),
-            DMatrix::identity(8, 8),
-            DMatrix::zeros(8, 8),
-        )
-        .unwrap();
-        let mut results = on_vectors(&model, &[0.5, 1.0, 2.0]);
-        results.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
-        for values in results {
-            for (pair, values) in values.iter() {
-                let lag = Complex::new(0.5, -0.5);
-                let expected = match pair.output.abs_diff(pair.input) {
-                    0 => lag,
-                    1 => lag * lag * weak,
-                    _ => continue,
-                };
-                // Tolerance: about a dozen roundings.
-                assert!(
-                    (values[1] - expected).norm() < 1e-14 * expected.norm(),
-                    "{pair:?}: {}",
-                    values[1]
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn a_model_of_two_separate_parts_is_the_sum_of_both() {
-        let a = dmatrix![-1.0, 2.0, 0.0, 0.0; -3.0, -0.5, 0.0, 0.0; 0.0, 0.0, -0.2, 4.0; 0.0, 0.0, -5.0, -0.3];
-        let b = dmatrix![1.0; 0.5; -1.0; 2.0];
-        let c = dmatrix![1.0, -2.0, 0.5, 3.0];
-        let part = |at: usize| {
-            let a = a.view((at, at), (2, 2));
-            let b = b.rows(at, 2);
-            let c = c.columns(at, 2);
-            StateSpace::new(
-                a.into_owned(),
-                b.into_owned(),
-                c.into_owned(),
-                dmatrix![0.0],
-            )
-            .unwrap()
-        };
-        let whole = StateSpace::new(a.clone(), b.clone(), c.clone(), dmatrix![0.0]).unwrap();
-        let omega = wide(11);
-        let first = on(Scalar::new(), &part(0), &omega);
-        let second = on(Scalar::new(), &part(2), &omega);
-        let sum = first.map(|pair, values| {
-            values
-                .iter()
-                .zip(&second[pair])
-                .map(|(a, b)| a + b)
-                .collect()
-        });
-        for values in on_vectors(&whole, &omega) {
-            assert!(difference(&values, &sum) < 1e-14);
-        }
     }
 }

@@ -13,11 +13,11 @@ use crate::dataset::{Pair, StateSpace};
 /// use.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
-/// A model's system matrix, prepared for state elimination. A prime denotes the transpose.
+/// A model's system matrix, prepared for state elimination. ^T denotes the transpose.
 ///
 /// ```text
-/// [ G - (s / alpha) I   K  ]
-/// [ L                   D' ]     H(s)' = D' - L (G - (s / alpha) I)^-1 K
+/// [ G - (s / alpha) I   K   ]
+/// [ L                   D^T ]     H(s)^T = D^T - L (G - (s / alpha) I)^-1 K
 /// ```
 ///
 /// G (n x n) is zero below its first subdiagonal; L has a row per input, and its first row is zero
@@ -29,11 +29,11 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 ///    scale C to preserve the response; swap the input with the largest column in B to the front.
 /// 3. Householder reflections make A Hessenberg and the first column in B a multiple of the first
 ///    unit vector.
-/// 4. Transpose the system matrix and reverse the states, which restores the Hessenberg form: A'
-///    becomes G, B' becomes L, C' becomes K.
+/// 4. Transpose the system matrix and reverse the states, which restores the Hessenberg form: A^T
+///    becomes G, B^T becomes L, C^T becomes K.
 ///
 /// The cost per frequency grows with L's row count. A model with fewer outputs than inputs is
-/// therefore stored as its dual `(A', C', B', D')`, whose response is the transpose and whose
+/// therefore stored as its dual `(A^T, C^T, B^T, D^T)`, whose response is the transpose and whose
 /// inputs are the model's outputs.
 #[derive(Clone, Debug)]
 pub(super) struct HessenbergForm {
@@ -54,11 +54,11 @@ pub(super) struct HessenbergForm {
     pub gain: f64,
     /// G's subdiagonal entries, one for each column except the last.
     pub subdiagonals: Vec<Subdiagonal>,
-    /// First row of `[G K]`, then all rows of `[L D']` except the first.
+    /// First row of `[G K]`, then all rows of `[L D^T]` except the first.
     pub complex_rows: Vec<f64>,
     /// All rows of `[G K]` except the first, each divided by its subdiagonal entry.
     next_rows: Vec<f64>,
-    /// First row of `D'`.
+    /// First row of `D^T`.
     pub feed_through: Vec<f64>,
 }
 
@@ -229,7 +229,7 @@ impl ScaledSystem {
     }
 }
 
-/// The reduced system matrix `[G K; L D']`: transposed, with the states in reversed order.
+/// The reduced system matrix `[G K; L D^T]`: transposed, with the states in reversed order.
 struct ReversedSystem {
     /// The matrix before transposition and reversal, with each row stored as a column: the
     /// transposed matrix therefore already has the same index order.
@@ -259,7 +259,7 @@ impl ReversedSystem {
         (0..self.order + self.outputs).map(move |column| factor * self.entry(row, column))
     }
 
-    /// Returns the first row of `[G K]`, zero without states, then all rows of `[L D']` except the
+    /// Returns the first row of `[G K]`, zero without states, then all rows of `[L D^T]` except the
     /// first.
     fn complex_rows(&self) -> Vec<f64> {
         let mut rows = Vec::new();
@@ -283,7 +283,7 @@ impl ReversedSystem {
         }
     }
 
-    /// Returns the first row of `D'`; zero without inputs.
+    /// Returns the first row of `D^T`; zero without inputs.
     fn feed_through(&self) -> Vec<f64> {
         if self.inputs > 0 {
             self.scaled_row(self.order, 1.0).skip(self.order).collect()

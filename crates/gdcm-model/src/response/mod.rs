@@ -13,6 +13,8 @@ mod complex_lanes;
 pub mod connection;
 mod eigenvectors;
 pub mod elimination;
+#[cfg(test)]
+mod elimination_tests;
 pub mod frequency_grid;
 pub mod frequency_response;
 mod gain_delay;

@@ -1,6 +1,7 @@
 //! Evidence about the scheduled net gains, as printed: sources of their scatter, differences at
 //! equal airspeed, and the need for a second variable.
 
+use gdcm_method::schedule::SecondVariable;
 use gdcm_model::message_text::sanitized;
 use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::{Analysis, Study};
@@ -9,6 +10,10 @@ use gdcm_words::uncertainty::{
 };
 
 use super::printed_lines::{detail, indented_untitled, line};
+use super::terminal::keep_caution;
+
+/// Code for the caution about a second variable that no response needs.
+pub(super) const UNNEEDED_VARIABLE: &str = "second-variable-not-needed";
 
 /// Returns the sources of the scatter, the differences at equal airspeed, and the need for a second
 /// variable. Empty if the error bars were not computed.
@@ -49,22 +54,17 @@ fn difference_lines(study: &Study, uncertainty: &Uncertainty) -> String {
 /// Returns the responses that need a second variable, and a caution if the schedule has a variable
 /// that no response needs.
 fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
-    let needed: Vec<_> = uncertainty
-        .second_variables
-        .iter()
-        .filter(|test| test.needed)
-        .collect();
     let mut text = String::new();
-    if let Some(variable) = study.settings.schedule.second
-        && needed.iter().all(|test| test.variable != variable)
-    {
+    if let Some(variable) = unneeded_variable(study, uncertainty) {
         let words = format!(
             "the schedule depends on airspeed and {variable}, but no response depends \
             significantly on {variable}"
         );
+        keep_caution(UNNEEDED_VARIABLE, &[], &words);
         text += &line("Caution", &words);
     }
-    for test in needed {
+    let tests = &uncertainty.second_variables;
+    for test in tests.iter().filter(|test| test.needed) {
         let pair = sanitized(&study.dataset.pair_name(test.pair));
         text += &line(
             "Schedule",
@@ -72,4 +72,19 @@ fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
         );
     }
     text
+}
+
+/// Returns the schedule's second variable if no response needs it; `None` also without error bars.
+pub(super) fn unneeded_second_variable(analysis: &Analysis) -> Option<SecondVariable> {
+    unneeded_variable(&analysis.study, analysis.uncertainty.as_deref()?)
+}
+
+fn unneeded_variable(study: &Study, uncertainty: &Uncertainty) -> Option<SecondVariable> {
+    let variable = study.settings.schedule.second?;
+    for test in &uncertainty.second_variables {
+        if test.needed && test.variable == variable {
+            return None;
+        }
+    }
+    Some(variable)
 }

@@ -70,6 +70,8 @@ pub(super) enum Failure {
     NoThreads { reason: String },
     #[error("no model was identified: {reason}")]
     NoModels { reason: String },
+    #[error("no flight can be planned: {reason}")]
+    NoPlan { reason: String },
     #[error("no result: {reason}")]
     NoResult { reason: String },
     #[error(transparent)]
@@ -145,6 +147,7 @@ impl Failure {
             Failure::NotIdentified { .. } => "nothing-identified",
             Failure::NoThreads { .. } => "no-threads",
             Failure::NoModels { .. } => "no-models",
+            Failure::NoPlan { .. } => "no-plan",
             Failure::NoResult { .. } => "no-result",
             Failure::Cancelled(_) => "stopped",
             Failure::Deviating { .. } => "verification-failed",
@@ -158,6 +161,7 @@ impl Failure {
             Failure::File(FileError::Unwritable { .. })
             | Failure::NoResult { .. }
             | Failure::NoModels { .. }
+            | Failure::NoPlan { .. }
             | Failure::Unread { .. }
             | Failure::NotIdentified { .. }
             | Failure::NoThreads { .. }

@@ -14,6 +14,11 @@ use gdcm_words::physics::{
 use super::printed_lines::{detail, indented, line};
 use super::terminal::keep_caution;
 
+/// Code for the caution about a value set by hand for a parameter that the dataset lacks.
+const UNKNOWN_PARAMETER: &str = "unknown-parameter";
+/// Code for the cautions about the diagnosis.
+const DIAGNOSIS: &str = "physics-diagnosis";
+
 /// Returns the section on the physics parameters:
 ///
 /// - if the study applies none, a hint that the dataset has runs; empty without runs;
@@ -50,7 +55,7 @@ pub(super) fn physics_section(analysis: &Analysis) -> String {
         let words = format!(
             "the dataset has no physics model linearised with {name} changed; its value has no effect"
         );
-        keep_caution("unknown-parameter", &[], &words);
+        keep_caution(UNKNOWN_PARAMETER, &[], &words);
         text += &detail("caution", &sanitized(&words));
     }
     if let Some(assessment) = &analysis.physics_assessment {
@@ -72,13 +77,32 @@ pub(super) fn physics_section(analysis: &Analysis) -> String {
     text
 }
 
+/// Returns the codes of all cautions in the section on the physics parameters.
+pub(super) fn physics_caution_codes(analysis: &Analysis) -> Vec<&'static str> {
+    let applied = match &analysis.physics {
+        None => return Vec::new(),
+        Some(Err(failure)) => return vec![failure.code()],
+        Some(Ok(applied)) => applied,
+    };
+    let mut codes = Vec::new();
+    if let Some(findings) = &applied.findings
+        && !diagnosis_cautions(findings).is_empty()
+    {
+        codes.push(DIAGNOSIS);
+    }
+    if !applied.unknown.is_empty() {
+        codes.push(UNKNOWN_PARAMETER);
+    }
+    codes
+}
+
 /// Returns verdict, table, cautions, and a note on data that take no part in the fit.
 fn findings_section(analysis: &Analysis, findings: &PhysicsFindings) -> String {
     let level = analysis.study.settings.uncertainty.level;
     let mut text = line("Physics", &sanitized(&verdict_text(findings)));
     text += &indented(&sanitized_table(parameter_table(findings, level)), 2);
     for words in diagnosis_cautions(findings) {
-        keep_caution("physics-diagnosis", &[], &words);
+        keep_caution(DIAGNOSIS, &[], &words);
         text += &detail("caution", &sanitized(&words));
     }
     for words in left_out_lines(&findings.left_out) {

@@ -40,9 +40,9 @@ use crate::executor::Pool;
 /// 4. The file, if requested, and the tables.
 ///
 /// # Errors
-/// An option or a file is wrong; the only identification fails, or all do (otherwise a failed one
-/// is a caution); a plan cannot be computed; the work was stopped. After all is done: some records
-/// were not read.
+/// An option or a file is wrong; the only condition has no identification or no plan, or none has
+/// a plan (otherwise a condition without one is a caution); the work was stopped. After all is
+/// done: some records were not read.
 pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let source = &arguments.source;
     let read = source.records.iter().chain(&source.into);
@@ -62,11 +62,20 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let mut failures: Vec<ConditionMessage> = Vec::new();
     for task in &tasks {
         match task.run(ProgressReceiver::Terminal) {
-            Ok(found) => {
-                let plan = wanted.plan(task, &found)?;
-                text += &plan_text(&plan, &wanted.channels);
-                plans.push(plan);
-            }
+            Ok(found) => match wanted.plan(task, &found) {
+                Ok(plan) => {
+                    text += &plan_text(&plan, &wanted.channels);
+                    plans.push(plan);
+                }
+                Err(Failure::NoPlan { reason }) if tasks.len() > 1 => {
+                    failures.push(ConditionMessage::new(
+                        task.condition,
+                        "no-plan",
+                        format!("no flight can be planned: {reason}"),
+                    ));
+                }
+                Err(failure) => return Err(failure),
+            },
             Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
             Err(why) if tasks.len() == 1 => {
                 return Err(Failure::NoModels {
@@ -88,7 +97,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
         );
     }
     if plans.is_empty() {
-        return Err(Failure::NoModels {
+        return Err(Failure::NoPlan {
             reason: format!("all {} conditions failed", tasks.len()),
         });
     }
@@ -175,26 +184,21 @@ impl<'a> WantedFlights<'a> {
         task: &IdentificationTask,
         found: &Identification,
     ) -> Result<ConditionPlan, Failure> {
-        let information = found
-            .information
-            .as_ref()
-            .ok_or_else(|| no_information(task))?;
-        let planner = FlightPlanner::new(information, &Pool).ok_or_else(|| no_information(task))?;
+        let information = found.information.as_ref().ok_or_else(no_information)?;
+        let planner = FlightPlanner::new(information, &Pool).ok_or_else(no_information)?;
         let mut sweeps: Vec<SweepPlan> = Vec::new();
         for input in 0..information.inputs() {
-            let sweep = self
-                .sweep(information, input)
-                .ok_or_else(|| no_information(task))?;
+            let sweep = self.sweep(information, input).ok_or_else(no_information)?;
             let plan = planner.sweep_plan(sweep, &TABLE_REPEATS, planner.middle());
-            sweeps.push(plan.ok_or_else(|| self.no_plan(task))?);
+            sweeps.push(plan.ok_or_else(|| self.no_plan())?);
         }
         let mut targets: Vec<TargetPlan> = Vec::new();
         for target in &self.targets {
             let sweep = self
                 .sweep(information, target.pair.input)
-                .ok_or_else(|| no_information(task))?;
+                .ok_or_else(no_information)?;
             let plan = planner.target_plan(*target, sweep, self.arguments.repeats);
-            targets.push(plan.ok_or_else(|| self.no_plan(task))?);
+            targets.push(plan.ok_or_else(|| self.no_plan())?);
         }
         Ok(ConditionPlan {
             condition: task.condition,
@@ -205,14 +209,14 @@ impl<'a> WantedFlights<'a> {
 
     /// Returns the failure for sweeps about which nothing can be predicted. If the options give
     /// their length or band, the reason is that the sweeps have no spectral line in the band.
-    fn no_plan(&self, task: &IdentificationTask) -> Failure {
+    fn no_plan(&self) -> Failure {
         let reason = "the sweeps have no spectral line in the band";
         if self.arguments.length.is_some() {
             Failure::option("--length", reason)
         } else if self.arguments.sweep_band.is_some() {
             Failure::option("--sweep-band", reason)
         } else {
-            no_information(task)
+            no_information()
         }
     }
 
@@ -237,12 +241,9 @@ impl<'a> WantedFlights<'a> {
 }
 
 /// Returns the failure for records whose information cannot be computed.
-fn no_information(task: &IdentificationTask) -> Failure {
-    Failure::NoModels {
-        reason: format!(
-            "{}the Fisher information of the records cannot be computed",
-            prefix(task.condition)
-        ),
+fn no_information() -> Failure {
+    Failure::NoPlan {
+        reason: "the Fisher information of the records cannot be computed".to_owned(),
     }
 }
 

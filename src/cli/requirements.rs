@@ -269,15 +269,22 @@ const QUANTITY: usize = 2;
 const FIRST_SHARE: usize = 3;
 
 /// Returns a table with the shares of time within the tolerances, limited to quantities for which a
-/// model leaves them, and a table with the rms errors; without records, the reason.
+/// model leaves them, and a table with the rms errors; without records, the reasons.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
-        let why = match histories.missing.first() {
-            Some(finding) => missing_reason_text(&finding.why),
-            None => "no record was compared".to_owned(),
-        };
-        return line(HEADING, &sanitized(&why));
+        let messages = histories.missing.iter().map(|finding| {
+            let words = missing_reason_text(&finding.why);
+            ConditionMessage::new(finding.condition, finding.why.code(), words)
+        });
+        let mut text = String::new();
+        for shared in shared_messages(messages) {
+            text += &line(HEADING, &sanitized(&shared.words()));
+        }
+        if text.is_empty() {
+            text = line(HEADING, "no record was compared");
+        }
+        return text;
     }
     let mut table = share_table(histories);
     let count = table.rows.len();

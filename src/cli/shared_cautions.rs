@@ -18,6 +18,8 @@ use gdcm_words::leads::lead_limit_words;
 use gdcm_words::remark::{lead_ms_text, lead_offer_texts, raised_gain_text, remark_text};
 
 use super::condition_messages::{ConditionMessage, shared_messages};
+use super::evidence_summary::{UNNEEDED_VARIABLE, unneeded_second_variable};
+use super::physics_summary::physics_caution_codes;
 use super::printed_lines::{indented, line};
 use super::terminal::{keep_caution, keep_summary};
 
@@ -91,8 +93,9 @@ pub(super) struct CodedCaution {
     pub(super) conditions: Vec<ConditionId>,
 }
 
-/// Collects the codes of the doubts about signs and units, and of the cautions about conditions,
-/// couplings and the schedule.
+/// Collects all caution codes, in this order: doubts about signs and units, conditions, physics
+/// parameters, couplings, the schedule and its second variable. A coupling remark with good news is
+/// no caution.
 pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
     let mut coded = Vec::new();
     for doubt in &analysis.doubts {
@@ -109,6 +112,9 @@ pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
             add_code(&mut coded, "lead-limit", id);
         }
     }
+    for code in physics_caution_codes(analysis) {
+        add_code(&mut coded, code, None);
+    }
     for remark in analysis_coupling_remarks(analysis) {
         if remark.kind() != RemarkKind::Good {
             add_code(&mut coded, remark.code(), None);
@@ -118,6 +124,9 @@ pub(super) fn coded_cautions(analysis: &Analysis) -> Vec<CodedCaution> {
         for caution in &schedule.cautions {
             add_code(&mut coded, caution.code(), caution.condition());
         }
+    }
+    if unneeded_second_variable(analysis).is_some() {
+        add_code(&mut coded, UNNEEDED_VARIABLE, None);
     }
     coded
 }

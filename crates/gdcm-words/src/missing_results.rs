@@ -115,6 +115,7 @@ pub fn no_bandwidth_text(why: &NoBandwidth) -> String {
         NoBandwidth::NoAttitudeResponse(error) => error.to_string(),
         NoBandwidth::NoMetric(error) => error.to_string(),
         NoBandwidth::NoOtherModel => "no spread: the bundles contain no other models".to_owned(),
+        NoBandwidth::BarsNotComputed => "the error bars have not been computed".to_owned(),
         NoBandwidth::ScheduleNotRefitted => {
             "no error bar: the schedule is not refitted for each exchange of models".to_owned()
         }

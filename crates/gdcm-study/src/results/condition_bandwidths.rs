@@ -288,7 +288,11 @@ impl<'a> ConditionBandwidths<'a> {
         let why = match finding.role {
             RequirementRole::Physics | RequirementRole::Corrected => {
                 self.add_swap_intervals(finding, bandwidth, level);
-                NoBandwidth::NoOtherModel
+                if self.asked.analysis.uncertainty.is_some() {
+                    NoBandwidth::NoOtherModel
+                } else {
+                    NoBandwidth::BarsNotComputed
+                }
             }
             RequirementRole::Scheduled => NoBandwidth::ScheduleNotRefitted,
             RequirementRole::Identified => {

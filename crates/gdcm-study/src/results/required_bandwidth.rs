@@ -73,9 +73,10 @@ pub enum NoBandwidth {
     NotCoupled,
     NoAttitudeResponse(AttitudeResponseError),
     NoMetric(NoMetric),
-    /// No interval: no other model from which to compute a spread, or the error bars are not
-    /// computed.
+    /// No interval: no other model from which to compute a spread.
     NoOtherModel,
+    /// No interval: the error bars, whose model swaps it uses, have not been computed.
+    BarsNotComputed,
     /// No interval: the schedule is not refitted for each model swap.
     ScheduleNotRefitted,
     /// No interval: the identified model's standard deviations do not extend to this frequency.
@@ -95,6 +96,7 @@ impl NoBandwidth {
             Self::NoAttitudeResponse(_) => "no-attitude-response",
             Self::NoMetric(_) => "no-metric",
             Self::NoOtherModel => "no-other-model",
+            Self::BarsNotComputed => "bars-not-computed",
             Self::ScheduleNotRefitted => "schedule-not-refitted",
             Self::DeviationsTooNarrow => "deviations-too-narrow",
             Self::MeasuredWithoutDeviations => "measured-without-deviations",

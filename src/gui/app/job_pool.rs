@@ -111,7 +111,7 @@ impl JobPool {
         let pool = Self {
             schedule: Arc::default(),
         };
-        pool.spawn("live answer", Server::Live)?;
+        pool.spawn("live analysis", Server::Live)?;
         pool.spawn("short jobs", Server::Short)?;
         for number in 1..=shared {
             pool.spawn(&format!("jobs {number}"), Server::Shared)?;

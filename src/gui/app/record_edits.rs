@@ -8,7 +8,7 @@ use gdcm_sysid::records::{LaidOutRecord, RecordChannels, leave_out_copies};
 
 use super::GdcmApp;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::state::condition_records::ConditionRecords;
+use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::record_change::{ConditionRecordChange, RecordChange};
 use crate::gui::state::records::RecordsSnapshot;
 use crate::message::Message;
@@ -54,20 +54,25 @@ impl GdcmApp {
             }
         }
         self.state.records.unassigned = others;
-        let count = rows.len();
-        if count == 0 {
+        if rows.is_empty() {
             return;
         }
         let read_from = self.state.records.read_from.clone();
         let channels = self.record_channels(condition);
         let records = self.records_of(condition);
+        let count = rows.len();
+        let mut is_changed = false;
         for row in rows {
-            records.add_row(row, &read_from, &channels);
+            let outcome = records.add_row(row, &read_from, &channels);
+            is_changed |= outcome != AddedRecord::KnownAlready;
         }
-        leave_out_copies(&mut records.rows);
-        records.changed = true;
-        // The topics' common clock was chosen for another condition; `follow_band` chooses it anew.
-        records.clock_band_end = None;
+        if is_changed {
+            leave_out_copies(&mut records.rows);
+            records.changed = true;
+            // The topics' common clock was chosen for another condition; `follow_band` chooses it
+            // anew.
+            records.clock_band_end = None;
+        }
         let change = RecordChange::Assign {
             records: count,
             condition,
@@ -144,8 +149,7 @@ fn record_name(records: &ConditionRecords, index: usize) -> String {
 }
 
 /// Applies an edit to a condition's records; returns false if nothing was applied: the command is
-/// not an edit of records, it uses or leaves out a row that does not exist, or it removes a row
-/// that is no part.
+/// not an edit of records, its row or channel does not exist, or it removes a row that is no part.
 ///
 /// # Errors
 /// A message, if a part cannot be added or moved.
@@ -160,29 +164,34 @@ fn apply_edit(
         RecordsCommand::MovePart(index, part_s) => records.move_part(index, part_s, channels)?,
         RecordsCommand::RemovePart(index) => return Ok(records.remove_part(index)),
         RecordsCommand::SetKind(index, kind) => {
-            if let Some(row) = records.rows.get_mut(index) {
-                row.guess.kind = kind;
-            }
+            let Some(row) = records.rows.get_mut(index) else {
+                return Ok(false);
+            };
+            row.guess.kind = kind;
         }
         RecordsCommand::SetHeldOut(index, held_out) => {
-            if let Some(row) = records.rows.get_mut(index) {
-                row.guess.held_out = held_out;
-            }
+            let Some(row) = records.rows.get_mut(index) else {
+                return Ok(false);
+            };
+            row.guess.held_out = held_out;
         }
         RecordsCommand::SetDelay(signal, delay_s) => {
-            if let Some(channel) = records.channel_mut(&signal) {
-                channel.delay_s = delay_s;
-            }
+            let Some(channel) = records.channel_mut(&signal) else {
+                return Ok(false);
+            };
+            channel.delay_s = delay_s;
         }
         RecordsCommand::SetRemedies(index, remedies) => {
-            if let Some(row) = records.rows.get_mut(index) {
-                set_remedies(row, &remedies, channels);
-            }
+            let Some(row) = records.rows.get_mut(index) else {
+                return Ok(false);
+            };
+            set_remedies(row, &remedies, channels);
         }
         RecordsCommand::SetHold(signal, hold) => {
-            if let Some(channel) = records.channel_mut(&signal) {
-                channel.hold = hold;
-            }
+            let Some(channel) = records.channel_mut(&signal) else {
+                return Ok(false);
+            };
+            channel.hold = hold;
         }
         RecordsCommand::SetBand(band) => records.band = band,
         RecordsCommand::SetSearch(search) => records.search = search,

@@ -99,7 +99,8 @@ fn about_ui(form: &mut Form<'_, '_>) {
     });
 }
 
-/// Asks whether to overwrite files; Cancel returns to the form.
+/// Asks whether to overwrite files; Cancel returns to the form, except from
+/// [`FormKind::Models`], which has no other form.
 fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     form.title(if existing.len() == 1 {
         "This file exists already"
@@ -110,10 +111,15 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
         form.ui.label(path);
     }
     form.ui.add_space(4.0);
+    let before = if kind == FormKind::Models {
+        None
+    } else {
+        Some(kind)
+    };
     form.line(|form| {
         form.button_ui("Overwrite", false, FormCommand::Overwrite);
         // `true` focuses Cancel, so that Enter does not overwrite anything.
-        form.button_ui("Cancel", true, FormCommand::ShowForm(Some(kind)));
+        form.button_ui("Cancel", true, FormCommand::ShowForm(before));
     });
 }
 

@@ -148,17 +148,25 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 }
 
 fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let [undo_keys, redo_keys] = [
+        Modifiers::COMMAND,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+    ]
+    .map(|keys| {
+        ui.ctx()
+            .format_shortcut(&KeyboardShortcut::new(keys, Key::Z))
+    });
     let undo = HistoryButton {
         verb: "↶ Undo",
         name: state.history.undo_step().map(step_name),
-        hint: "Ctrl+Z",
+        hint: &undo_keys,
         command: StudyCommand::Undo,
     };
     undo.ui(ui, commands);
     let redo = HistoryButton {
         verb: "↷ Redo",
         name: state.history.redo_step().map(step_name),
-        hint: "Ctrl+Shift+Z",
+        hint: &redo_keys,
         command: StudyCommand::Redo,
     };
     redo.ui(ui, commands);

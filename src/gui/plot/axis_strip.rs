@@ -117,8 +117,13 @@ impl AxisStrip<'_> {
             }
             FormAnswer::Show => match self.axis.range(scene, form.texts()) {
                 Ok(range) => {
-                    view.axis_mut(self.axis).choose(range);
-                    is_open = false;
+                    let viewed = view.axis_mut(self.axis);
+                    if viewed.choose(range) {
+                        is_open = false;
+                    } else {
+                        let refusal = self.axis.beyond_ends(scene, viewed.ends());
+                        form.refuse(refusal.text);
+                    }
                 }
                 Err(refusal) => form.refuse(refusal.text),
             },

@@ -70,6 +70,14 @@ impl BodeAxis {
         }
     }
 
+    /// Returns the message about typed limits that are not within the values `ends` of the axis.
+    pub(super) fn beyond_ends(self, scene: &BodeScene<'_>, ends: Range) -> Message {
+        let [least, most] = self.texts(scene, ends);
+        let unit = self.unit(scene);
+        let words = format!("the axis{unit} shows nothing outside {least} to {most}");
+        Message::new("limits-beyond-axis", words)
+    }
+
     /// Converts a typed number, with an ASCII or a typographic minus sign, to an axis coordinate.
     fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, Message> {
         let text = text.trim();

@@ -28,7 +28,7 @@ use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT, TickSpacing, t
 use super::panel_painter::{Gestures, PanelPainter};
 use super::panel_text::caption_font;
 use super::ticks::Ticks;
-use super::viewed_range::bounds_of;
+use super::viewed_range::{bounds_of, ranges_of};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 
 /// Title height above the first panel \[pt\].
@@ -155,7 +155,10 @@ impl PlacedPanel<'_> {
         marks.paint(ui, &mut view.marks);
         self.describe_dots(ui, &transform);
         if self.scene.zooms {
-            if let Some(ranges) = navigated_ranges(panel, &response, &transform) {
+            // Without a gesture the ranges stay as they are: whole ranges follow the marks.
+            if let Some(ranges) = navigated_ranges(panel, &response, &transform)
+                && ranges != ranges_of(&bounds)
+            {
                 view.ranges = Some(ranges);
             }
             if response.double_clicked() && pointed.is_none() {

@@ -30,8 +30,6 @@ const UNIT_MARGIN: f32 = 14.0;
 #[derive(Clone, Debug, Default)]
 pub struct FigureView {
     hovered: Option<MarkId>,
-    /// Axis coordinates of the mark under the pointer; for a column, its index and 0.
-    pointed_at: Option<[f64; 2]>,
     /// Subject of the figure; if this changes, all plots are fitted.
     subject: String,
     plots: Vec<PlotView>,
@@ -120,12 +118,6 @@ impl FigureView {
         }
     }
 
-    /// Returns where the mark under the pointer lies, in axis coordinates; for a column, its index
-    /// and 0.
-    pub fn pointed_at(&self) -> Option<[f64; 2]> {
-        self.pointed_at
-    }
-
     /// Returns the ranges kept for a plot's first panel; `None` if it shows the whole ranges, as
     /// before it is drawn and after a fit.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
@@ -170,7 +162,6 @@ impl FigureView {
         events.extend(chosen.map(FigureEvent::ExplanationRequested));
         let Some(mark) = pointed else { return };
         self.hovered = Some(mark.id.clone());
-        self.pointed_at = Some(mark.at);
         events.push(FigureEvent::Pointed(mark.id.clone()));
         let text = scene.words.status_text(plot, &mark.id, mark.at);
         events.extend(text.map(FigureEvent::StatusText));
@@ -242,7 +233,6 @@ pub fn figure_within_ui(
             upright_label_ui(ui, rect, label, palette);
         }
         let hovered = view.hovered.take();
-        view.pointed_at = None;
         let painter = FigurePainter {
             scene,
             emphasized: hovered.as_ref().or(scene.highlighted.as_ref()),

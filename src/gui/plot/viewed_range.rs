@@ -105,15 +105,22 @@ impl ViewedRange {
         self.is_chosen
     }
 
-    /// Sets the range chosen by the engineer, with the nearest permitted width; a range that
-    /// exceeds the permitted values is ignored.
-    pub(super) fn choose(&mut self, range: Range) {
-        if let Some(range) = self.allowed(range)
-            && range != self.range
-        {
+    /// Sets the range chosen by the engineer, with the nearest permitted width. Returns whether all
+    /// of it is permitted; otherwise the visible range stays.
+    pub(super) fn choose(&mut self, range: Range) -> bool {
+        let Some(range) = self.allowed(range) else {
+            return false;
+        };
+        if range != self.range {
             self.range = range;
             self.is_chosen = true;
         }
+        true
+    }
+
+    /// Returns the values within which every range lies.
+    pub(super) fn ends(&self) -> Range {
+        self.ends
     }
 
     /// Sets the range that fits the data, unless the engineer chose a range; with the nearest
@@ -193,7 +200,7 @@ mod tests {
     #[test]
     fn a_range_beyond_the_ends_is_not_shown() {
         let mut viewed = viewed();
-        viewed.choose(Range::new(99.0, 101.0));
+        assert!(!viewed.choose(Range::new(99.0, 101.0)));
         viewed.choose(Range {
             min: f64::NAN,
             max: 1.0,

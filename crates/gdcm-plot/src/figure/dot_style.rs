@@ -71,7 +71,7 @@ impl DotStyle {
             // The line is centred on its path: its outer edge then coincides with a filled dot's
             // edge.
             DotPen {
-                radius: self.radius() - 0.5 * DOT_LINE,
+                radius: self.radius() - 0.5 * self.line().width_pt,
                 fill: Some(Color::WHITE),
                 stroke: Some(self.line()),
             }

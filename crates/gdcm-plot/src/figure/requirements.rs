@@ -86,7 +86,7 @@ pub fn requirements_figure(
     }
     let level = 100.0 * requirements.interval_level;
     let caption = format!(
-        "Bars: {level:.0} % intervals. Pale dots: the value depends on the model outside the band. \
+        "Bars: {level:.0} % intervals. Pale dots: the value depends on the model above the band. \
         Arrows: from the physics model to the corrected model of a condition. These values are not \
         a qualification."
     );

@@ -158,13 +158,16 @@ impl Keeper {
         }
     }
 
-    /// Removes the recovery files of restored decisions, which have been kept anew or saved; stops
-    /// at the first error.
+    /// Removes the recovery files of restored decisions, which have been kept anew or saved.
+    ///
+    /// # Errors
+    /// The first file that cannot be removed; the others are removed nevertheless.
     fn remove_restored(&mut self) -> Result<(), FileError> {
+        let mut removed = Ok(());
         for lost in self.restored.drain(..) {
-            lost.remove()?;
+            removed = removed.and(lost.remove());
         }
-        Ok(())
+        removed
     }
 
     fn report_deletion(&self, deleted: Result<(), FileError>) {

@@ -72,8 +72,6 @@ pub struct PlannedContents {
     pub summary: FileSummary,
     /// First lines of a text file, or a binary file's description.
     pub head: Vec<String>,
-    /// Remarks on the contents, as `gdcm export` prints them.
-    pub remarks: Vec<String>,
 }
 
 /// A note, with the indices of the files that it concerns; the report's index follows the last
@@ -272,7 +270,6 @@ fn computed(export: &Export<'_>) -> Result<(PlannedContents, Vec<ExportNote>), E
         bytes,
         summary: exported.summary,
         head,
-        remarks: exported.remarks,
     };
     Ok((contents, exported.notes))
 }
@@ -346,7 +343,6 @@ impl ExportPlan {
                 head: text_head(&bytes),
                 bytes,
                 summary: FileSummary::Checksums { files },
-                remarks: Vec::new(),
             }),
         });
     }

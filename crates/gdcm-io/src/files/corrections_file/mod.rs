@@ -63,7 +63,12 @@ pub fn write_results(
     mut outputs: OutputSet,
 ) -> Result<(), FileError> {
     let [json, channels, responses, checksums] = result_paths(directory);
-    outputs.check(&[&json, &channels, &responses, &checksums])?;
+    let parameters = directory.join(PHYSICS_FILE);
+    let mut paths = vec![json.as_path(), &channels, &responses, &checksums];
+    if analysis.applied_physics().is_some() {
+        paths.push(&parameters);
+    }
+    outputs.check(&paths)?;
     make_directory(directory)?;
     outputs.add(&json, |file| {
         write_corrections(analysis, sha256, chosen, file)
@@ -75,7 +80,6 @@ pub fn write_results(
         write_assessment_csv(analysis, chosen, file)
     })?;
     if let Some(applied) = analysis.applied_physics() {
-        let parameters = directory.join(PHYSICS_FILE);
         outputs.add(&parameters, |file| write_physics_csv(Some(applied), file))?;
     }
     outputs.add_checksums(&checksums)?;

@@ -28,13 +28,13 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::{DropDown, PageWords};
 use crate::gui::widgets::palette::Palette;
 
-/// Frequencies on each curve.
+/// Number of frequencies on each curve.
 const POINTS: usize = 300;
 /// Share of the width for the responses, beside the errors.
 const RESPONSE_PART: f32 = 0.62;
 /// Gap between responses and errors \[pt\].
 const GAP: f32 = 8.0;
-/// Gap between the magnitude plot and the read-out \[pt\].
+/// Gap between the read-out and the plots above and below it \[pt\].
 const READOUT_GAP: f32 = 6.0;
 
 /// Returns the pages; none if the window has room for both plots.
@@ -105,8 +105,8 @@ struct PlotAreas {
 }
 
 impl PlotAreas {
-    /// Divides an area: first, with room for both plots, side by side; else the shown page's plot
-    /// alone.
+    /// Divides an area between both plots, side by side if there is room; otherwise the shown
+    /// page's plot has it alone.
     fn new(area: Rect, state: &State) -> Self {
         if shows_both(state) {
             let middle = area.left() + RESPONSE_PART * area.width();
@@ -131,13 +131,15 @@ impl PlotAreas {
 /// Draws the response in focus and the schedule error in every condition; a click selects a
 /// condition.
 ///
-/// 1. Curves; for a newly selected response, role or condition, the value axes are fitted again.
+/// 1. Curves; for another response, condition, set of roles or of conditions, the value axes are
+///    fitted again.
 /// 2. Chips above the plots.
-/// 3. Both scenes. The cursor is where the pointer was in either plot in the last frame. The scene
-///    of the errors is that of the responses with other curves, and without names at their ends.
+/// 3. Both scenes. The cursor is where the pointer was in either plot in the last frame. The error
+///    scene is the response scene with other curves and optima, and without names at curve ends.
 /// 4. Plots that have an area; a plot that is not drawn forgets the pointer.
 /// 5. If both are drawn, the errors take over the frequency range of the responses.
-/// 6. Values at the cursor, in a strip below the magnitudes if there is room.
+/// 6. Values at the cursor, or without one at the largest error within the band, in a strip below
+///    the magnitudes if there is room.
 pub fn across_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -236,9 +238,9 @@ fn error_message(state: &State) -> String {
     }
 }
 
-/// Returns the read-out's area: `before`, the strip found below another plot's magnitudes, joined
-/// with the strip between this plot's magnitudes and phases if there is room; `None` if neither
-/// plot has room.
+/// Returns the read-out's area: the strip between this plot's magnitudes and phases, if it is high
+/// enough, united with `before`, the strip in another plot. `None` if neither exists, or if this
+/// plot has not been laid out.
 fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
     let magnitude = *view.transform(Pane::Magnitude)?.frame();
     let phase = *view.transform(Pane::Phase)?.frame();
@@ -343,8 +345,8 @@ fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
     names
 }
 
-/// Fits the value axes in each frame until the curves of a newly selected response, role or
-/// condition are available.
+/// Fits the value axes after another response, condition, set of roles or of conditions has been
+/// selected: in each frame, until its curves are available.
 fn fit_across(state: &mut State) {
     let display = &state.display.frequency.across_display;
     let wanted = AcrossFit {
@@ -373,8 +375,8 @@ pub fn across_job(state: &State) -> AcrossJob {
     AcrossJob::for_conditions(&state.study.dataset, state.analysis(), grid)
 }
 
-/// Returns the curves for the response in focus in each condition; empty until the responses are
-/// available.
+/// Returns the curves for the response in focus in each shown condition, those of the displayed
+/// condition and of the one under the pointer highlighted; empty until the responses are available.
 pub fn across_curves(state: &mut State) -> AirspeedCurves {
     let Some(responses) = state.across().cloned() else {
         return AirspeedCurves::default();
@@ -403,7 +405,8 @@ pub fn across_curves(state: &mut State) -> AirspeedCurves {
     drawn
 }
 
-/// Returns the text beside the title: "all 11 conditions".
+/// Returns the text beside the title: "all 11 conditions", or "9 of 11 conditions" if only those in
+/// the schedule are shown.
 pub fn across_context(state: &State) -> String {
     let count = state.dataset().conditions().len();
     let shown = state.display.frequency.across_display.conditions;

@@ -16,7 +16,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 const SAMPLE: f32 = 18.0;
 /// Airspeed whose colour the samples have: mid-range, on a scale from 0 to 255.
 const MIDDLE: u8 = 128;
-/// Colour steps in the key.
+/// Number of colour steps in the key.
 const KEY_STEPS: u8 = 24;
 /// Size of the colour key \[pt\].
 const KEY_WIDTH: f32 = 120.0;
@@ -26,8 +26,8 @@ const TEXT_GAP: f32 = 8.0;
 /// Width of the key with its texts \[pt\].
 const KEY_ROOM: f32 = 270.0;
 
-/// Draws the chips and the colour key at the top of `area`; returns the total height of the lines
-/// of chips \[pt\].
+/// Draws the chips and, if there is room beside them, the colour key at the top of `area`; returns
+/// the total height of the lines of chips \[pt\].
 pub(super) fn across_chips_ui(
     ui: &Ui,
     area: Rect,

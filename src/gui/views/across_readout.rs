@@ -44,8 +44,9 @@ impl ScheduleError {
 }
 
 impl AcrossReadout<'_> {
-    /// Returns the values at a frequency \[rad/s\], else at the largest error within the band;
-    /// `None` without curves.
+    /// Returns the values at the pointer's frequency `pointed` \[rad/s\], or without one at the
+    /// largest error within the band (mid-band if only responses are drawn). `None` without pointer
+    /// and curves.
     pub(super) fn readout(&self, pointed: Option<f64>) -> Option<Readout> {
         let (heading, omega) = match pointed {
             Some(omega) => ("ω at the pointer", omega),

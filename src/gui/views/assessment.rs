@@ -148,7 +148,8 @@ fn key_ui(ui: &mut Ui, palette: &Palette) {
     );
 }
 
-/// Draws the table, with a warning if J rises. A click selects the response and the condition.
+/// Draws the table; where the displayed part of J rises, a cell has the warning colour. A click
+/// selects the response and the condition.
 fn change_table_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -94,7 +94,8 @@ impl PlacedChange {
 }
 
 impl AssessmentPlots<'_> {
-    /// Returns the change in a condition; `None` if the assessment omits this condition.
+    /// Returns a response's change in a condition; `None` if the assessment omits the condition or
+    /// has no J for the response.
     pub(super) fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.table.change(condition, pair)
     }
@@ -214,7 +215,7 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
     Curve::through("ΔJ", Stroke::solid(Color::INK, 1.1), points)
 }
 
-/// Shades the places of the conditions that the assessment omits, over the whole height.
+/// Shades the places of the conditions without a change in J, over the whole height.
 fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
     // The visible range may exceed the data range.
     let range = range.with_margin(1.0, 0.0);

@@ -29,8 +29,8 @@ impl SettingControls<'_, '_> {
     /// Draws a number that the program determines unless it is set by hand, with its "auto" check
     /// box. Before there is a result, a value that the program determines is "…".
     ///
-    /// First a typed number; else a click on the box: "auto" on removes the value, off keeps the
-    /// displayed value as set by hand.
+    /// A typed number takes precedence over a click on the box. Switching "auto" on removes the
+    /// value set by hand; switching it off keeps the displayed value as set by hand.
     pub(super) fn automatic_number_ui(
         &mut self,
         setting: &'static Setting,
@@ -66,8 +66,9 @@ impl SettingControls<'_, '_> {
     /// Draws both range ends. The program determines an optional range (`nothing` is then
     /// `Some`) unless it is set by hand.
     ///
-    /// First a typed or dragged end, if both ends are then valid; else a click on "auto", as in
-    /// [`Self::automatic_number_ui`].
+    /// A typed or dragged end takes precedence over a click on "auto", which acts as in
+    /// [`Self::automatic_number_ui`]. An invalid range is refused with a message if an end was
+    /// typed, and ignored if it was dragged.
     pub(super) fn range_ui(&mut self, setting: &'static Setting, value: Value) {
         let Kind::Range {
             range: [least, most],

@@ -28,7 +28,7 @@ use crate::gui::widgets::palette::Palette;
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(120.0, 80.0);
 
-/// Draws phase delay over bandwidth for the response in focus.
+/// Draws phase delay over bandwidth for the response in focus, or why it has no bandwidth.
 pub(super) fn bandwidth_detail_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -99,7 +99,8 @@ fn absence_text(state: &State, requirements: &Requirements, pair: Pair) -> Strin
     }
 }
 
-/// Draws every model's bandwidth and phase delay in the displayed condition.
+/// Draws every model's bandwidth, phase delay and, if boundaries exist for the axis, level in the
+/// displayed condition.
 pub(super) fn bandwidth_numbers_ui(
     ui: &mut Ui,
     state: &State,
@@ -135,8 +136,9 @@ pub(super) fn bandwidth_numbers_ui(
         });
 }
 
-/// Returns the commands that show a response in the Bode view, with marks at the frequencies that
-/// define bandwidth and phase delay for the model in a role.
+/// Returns the commands that show a response in a condition in the Bode view; marks at the
+/// frequencies that define bandwidth and phase delay for the model in a role replace pinned
+/// cursors.
 pub(super) fn bode_commands(
     requirements: &Requirements,
     condition: ConditionId,

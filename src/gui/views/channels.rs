@@ -90,7 +90,7 @@ pub fn channels_header_ui(
 /// 2. Copies for the inputs and for the outputs, after step 1, because both have common axes.
 /// 3. Over airspeed, condition numbers only at the displayed condition; over conditions the axis
 ///    has them.
-/// 4. Without plots, the message why.
+/// 4. Without plots, the message that says why.
 /// 5. The area divided in proportion to the rows of both halves, and both drawn.
 pub fn channels_view_ui(
     ui: &mut Ui,

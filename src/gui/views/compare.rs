@@ -1,4 +1,4 @@
-//! Compare view: variants (named decision sets), with buttons that keep, take, overlay and remove
+//! Compare view: variants (named decision sets), with buttons that keep, use, overlay and remove
 //! them, and differences from the current decisions.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
@@ -115,7 +115,7 @@ fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
         .clicked()
 }
 
-/// Tabulates all decisions in which a variant differs from the current decisions.
+/// Tabulates all decisions in which each variant differs from the current decisions.
 fn difference_table(state: &State) -> Table {
     let columns = ["variant", "decision", "in the variant", "now"];
     let mut table = Table::new("Different decisions", columns);

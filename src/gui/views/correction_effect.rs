@@ -15,10 +15,9 @@ const MATCHED_DB: f64 = 0.05;
 /// Remaining delay \[s\] below which the phases count as matched.
 const MATCHED_S: f64 = 0.5e-3;
 
-/// Returns the notes in the magnitude and phase panes: J before and after the correction, and what
-/// the correction leaves of the wanted gain G and of the wanted delay D with its net gain k and net
-/// delay τ. A constrained response that is not matched is a warning. `None` unless G, D and J
-/// exist.
+/// Returns the notes in the magnitude and phase panes: J before and after the correction, and the
+/// parts of the wanted gain G and delay D that its net gain k and net delay τ leave. A constrained
+/// response that is not matched is a warning. `None` unless G, D and J exist.
 ///
 /// ```text
 /// left gain   G / k, in dB
@@ -75,7 +74,7 @@ pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand
 }
 
 /// Returns the region above the band in which the corrected model is not valid and only shows the
-/// gain added by leads; `None` without leads (M15.6).
+/// gain added by leads (M15.6). `None` without lead filters, or if the corrected curve is hidden.
 ///
 /// The text is as in `lead_price::limit_text`, but shows the band currently being edited, in the
 /// displayed unit.
@@ -97,7 +96,8 @@ pub(super) fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<Inva
     })
 }
 
-/// Returns the corrected model's magnitudes \[dB\] with and without leads at `omega` \[rad/s\].
+/// Returns the corrected model's magnitudes \[dB\] with and without leads at `omega` \[rad/s\];
+/// `None` if the curve without leads is hidden.
 fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Option<[f64; 2]> {
     let without = drawn_curve(curves, Role::WithoutLeads)?;
     Some([

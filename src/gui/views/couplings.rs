@@ -236,7 +236,7 @@ impl CouplingsWords<'_> {
     }
 
     /// Draws the remarks in three steps of emphasis: good ones plain, the others as warnings,
-    /// troubles also in a stronger font; below them, why the displayed condition has no poles.
+    /// troubles also in a stronger font; below them, if the displayed condition has no poles, why.
     fn remarks_ui(&self, ui: &mut Ui) {
         ui.add_space(6.0);
         for remark in coupling_remarks(self.assessment, self.state.dataset()) {

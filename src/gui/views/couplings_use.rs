@@ -20,7 +20,7 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
 
 /// Returns whether the couplings are assessed even while their view is hidden.
 ///
-/// First, not without a current analysis; else, if they are in use, for their cost; else, if they
+/// Never without a current analysis. Couplings in use are assessed for their cost, others if they
 /// may be worthwhile: the phase is corrected (by delays that are matched in all conditions, or by
 /// leads), and at least [`LEAST_CONDITIONS`] conditions have results.
 pub fn are_couplings_judged(state: &State) -> bool {
@@ -48,8 +48,8 @@ pub fn are_couplings_judged(state: &State) -> bool {
     is_phase_corrected && results >= LEAST_CONDITIONS
 }
 
-/// Returns the assessment of unused couplings and their off-axis cost, if J in left-out conditions
-/// shows them to be worthwhile.
+/// Returns the assessment of unused couplings and J in left-out conditions without and with them,
+/// if this J shows them to be worthwhile.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CorrectionCost)> {
     if are_couplings_used(state) || !are_couplings_judged(state) {
         return None;
@@ -63,7 +63,8 @@ pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, Co
     }
 }
 
-/// Returns the assessment of the couplings in use, once available.
+/// Returns the assessment of the couplings in use; `None` if none are in use, until it is
+/// available, or if it has failed.
 pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
     if are_couplings_used(state) {
         state.couplings()?.as_ref().ok()

@@ -52,7 +52,8 @@ struct Difference {
 
 impl<'a> ReadoutSource<'a> {
     /// Returns the values at `cursor` \[rad/s\], else at the first mark, else where the integrand
-    /// of J is largest within the band. With exactly two marks, returns the changes between them.
+    /// of J is largest within the band. With exactly two marks, returns the changes between them
+    /// instead, even with a cursor. `None` without cursor and marks if the error is unknown.
     pub(super) fn readout(&self, cursor: Option<f64>, marks: &[f64]) -> Option<Readout> {
         if let [from, to] = *marks {
             return Some(self.changes(from, to));
@@ -104,7 +105,8 @@ impl<'a> ReadoutSource<'a> {
         }
     }
 
-    /// Lists the values at a frequency \[rad/s\], and for responses also the remaining difference.
+    /// Lists the values at a frequency \[rad/s\], and for responses also the difference between
+    /// corrected and identified model.
     fn values(&self, heading: &str, omega: f64) -> Readout {
         let mut cells = Vec::new();
         for ListedCurve { role, curve } in self.listed_curves() {

@@ -25,7 +25,8 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
 }
 
 /// Returns the uncertainty drawn in gain plots: until it is computed for the present settings, the
-/// one for earlier settings, which [`dim_older_bars`] dims.
+/// one for earlier settings, which [`dim_older_bars`] dims. `None` if error bars are hidden or have
+/// not been computed.
 pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         return None;

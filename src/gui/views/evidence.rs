@@ -1,6 +1,6 @@
 //! Evidence view: significant differences between net gains at equal airspeed, sources of their
 //! scatter, and the scheduling variables and schedule form that they require (M13). A difference is
-//! significant if it exceeds what the uncertainty of trim and identification lets expect.
+//! significant if it exceeds the one expected from the uncertainty of trim and identification.
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
@@ -135,7 +135,8 @@ impl EvidenceTables<'_> {
         ui.add_space(4.0);
     }
 
-    /// Draws all differences at equal airspeed; a click selects a condition and the response.
+    /// Draws all differences at equal airspeed, significant ratios in the warning colour; a click
+    /// selects the first condition and the response.
     fn difference_table_ui(
         &self,
         ui: &mut Ui,

@@ -13,7 +13,8 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named;
 
-/// Returns the tables that are saved as a view's values; `None` if its figure's values are saved.
+/// Returns the tables that are saved as a view's values; `None` if its figure's values are saved,
+/// or until the tables are available.
 pub fn tables_of_view(state: &State, view: View) -> Option<Vec<Table>> {
     match view {
         View::Requirements => requirement_tables(state),
@@ -21,7 +22,8 @@ pub fn tables_of_view(state: &State, view: View) -> Option<Vec<Table>> {
     }
 }
 
-/// Draws the button that copies or saves a view's content.
+/// Draws the menu that copies a view's values, or saves them or its figure; nothing for a view
+/// without a figure.
 pub fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
     if view.figure().is_none() {
         return;

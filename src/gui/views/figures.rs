@@ -16,8 +16,9 @@ use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 
-/// Returns a view's figure; `None` until its results are available. Error bars are included if the
-/// figure cannot do without them, or unless the engineer has hidden them.
+/// Returns a view's figure; `None` for a view without one, or until its results are available.
+/// Error bars are included if the figure cannot do without them, or unless the engineer has hidden
+/// them.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let needs_bars = match view.figure() {
         Some(kind) => kind.needs_bars(),
@@ -34,7 +35,8 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     figure_request(state, view)?.figure(analysis.as_ref(), source.as_ref())
 }
 
-/// Returns a file name for a view's figure: `bode-10-LON-Q`.
+/// Returns a file name without extension for a view's figure: `bode-10-LON-Q`. Characters other
+/// than letters, digits and hyphens become `_`.
 pub fn figure_name(state: &State, view: View) -> String {
     let mut parts = Vec::new();
     if let Some(kind) = view.figure() {
@@ -59,7 +61,8 @@ pub fn figure_name(state: &State, view: View) -> String {
     name
 }
 
-/// Returns the request for a view's figure, as the command `gdcm figure` makes it.
+/// Returns the request for a view's figure with the displayed options; `None` for a view without a
+/// figure. The command `gdcm figure` makes the same kind of request.
 pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
@@ -103,13 +106,13 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     })
 }
 
-/// Returns the assessed couplings, once available.
+/// Returns the assessed couplings; `None` until they are available, or if the assessment failed.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
 }
 
-/// Returns the physics parameters' diagnosis for a figure; `None` for other figures, or until it is
-/// available.
+/// Returns the physics parameters' diagnosis for their figure; `None` for other figures, until it
+/// is available, or if it failed.
 fn shown_physics(state: &State, kind: FigureKind) -> Option<Arc<PhysicsAssessment>> {
     if kind != FigureKind::Physics {
         return None;
@@ -117,7 +120,8 @@ fn shown_physics(state: &State, kind: FigureKind) -> Option<Arc<PhysicsAssessmen
     state.physics()?.as_ref()?.as_ref().ok().cloned()
 }
 
-/// Returns the requirements for a figure; `None` for other figures, or until they are available.
+/// Returns the requirements for their figure; `None` for other figures, or until they are
+/// available.
 pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
     if kind == FigureKind::Requirements {
         state.requirements().cloned()

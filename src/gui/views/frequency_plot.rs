@@ -34,8 +34,8 @@ pub(super) struct FrequencyPlot<'a> {
 }
 
 impl FrequencyPlot<'_> {
-    /// Draws the plot with cursors, values at the cursor and chips. Pushes the resulting commands,
-    /// and a description for the element under the pointer.
+    /// Draws the plot with cursors, chips and, if switched on, the listed values. Pushes the
+    /// resulting commands, and a description for the element under the pointer.
     pub(super) fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let Self {
             state,
@@ -96,7 +96,8 @@ impl FrequencyPlot<'_> {
     }
 }
 
-/// Returns the command for an event; `None` if the event changes neither study nor display.
+/// Returns the command for an event; `None` if it needs none or [`FrequencyPlot::ui`] handles it,
+/// and for a band limit dragged beyond the other limit.
 ///
 /// A double click isolates a model, but its first click has already rejected or restored that
 /// model. `ClickUndone` therefore forgets this edit: a model that is rejected now was rejected by
@@ -153,7 +154,7 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
 }
 
 /// Returns the command for an entry in a curve's menu; `None` if the entry concerns models but the
-/// curve is not a model.
+/// curve is not a model, and for *Copy values*, which [`FrequencyPlot::ui`] handles.
 pub(super) fn action_command(state: &State, id: CurveId, action: CurveAction) -> Option<Command> {
     match (action, id) {
         (CurveAction::Turn(turns), curve) => Some(
@@ -173,7 +174,8 @@ pub(super) fn action_command(state: &State, id: CurveId, action: CurveAction) ->
     }
 }
 
-/// Formats a curve's values as text: a heading, then a tab-separated line for each frequency.
+/// Formats a curve's values as text: its label, the column headings, and a tab-separated line for
+/// each frequency.
 fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
     let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);

@@ -163,7 +163,8 @@ impl PointedDot<'_> {
         Some(format!("scheduled {}", measure.text(scheduled)))
     }
 
-    /// Returns the search bounds; `None` for net gains, which have no bounds.
+    /// Returns the search bounds; `None` for net gains, which have no bounds, or if the condition
+    /// has no result.
     fn bounds_words(&self) -> Option<String> {
         let measure = self.quantity.measure();
         let result = self.analysis.condition(self.condition)?;
@@ -188,7 +189,8 @@ impl PointedDot<'_> {
     }
 }
 
-/// Returns the command for an event in a gain or delay plot.
+/// Returns the command for an event in a gain or delay plot: a click on a dot selects its
+/// condition, with Ctrl it adds the condition to the schedule or removes it.
 pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
     match event {
         FigureEvent::Clicked(_, MarkId::Condition(condition), keys) => {

@@ -87,7 +87,7 @@ fn figure(state: &State) -> Figure {
 
 /// Builds the channel table: delay or lead, phase at the upper band edge, replaced servo, and the
 /// gain added above the band. The title gives the highest frequency at which the corrected model is
-/// valid. `None` without leads.
+/// valid, or says that no channel has a lead filter. `None` unless the phase is corrected by leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::new(leads);

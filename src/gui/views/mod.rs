@@ -158,7 +158,7 @@ pub struct ViewContent {
 }
 
 impl ViewContent {
-    /// View without drawing, header controls and background jobs.
+    /// Empty view, on which the views' constants are based.
     const PLAIN: Self = Self {
         draw: |_, _, _, _| {},
         title: ViewTitle::None,
@@ -181,7 +181,7 @@ pub struct PageEntry {
 }
 
 impl PageEntry {
-    /// Creates the entry for a page that shares the view's columns and jobs.
+    /// Creates the entry for a page, with the command that shows it.
     fn of(page: ViewPage, is_shown: bool) -> Self {
         Self {
             words: page.words(),
@@ -375,7 +375,7 @@ fn modes_needs(state: &State) -> Vec<Need> {
     }
 }
 
-/// Returns the assessment of the current analysis; none while a setting is dragged.
+/// Returns the assessment of the newest analysis; none without one, or while a setting is dragged.
 fn assessment_needs(state: &State) -> Vec<Need> {
     if state.is_setting_dragged() {
         return Vec::new();

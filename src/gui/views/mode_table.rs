@@ -13,7 +13,7 @@ use super::mode_text::{mode_name, participation_words, shown_damping_ratio};
 use crate::gui::state::modes_cache::{CachedModes, ModesInputs};
 use crate::gui::state::window_state::State;
 
-/// States listed for each mode, those that participate most.
+/// Number of states listed for each mode: those that participate most.
 const LISTED_STATES: usize = 2;
 
 impl ModesInputs {

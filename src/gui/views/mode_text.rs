@@ -36,7 +36,8 @@ pub(super) fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
     }
 }
 
-/// Returns a mode's name; `None` unless the model names its states (M17.3).
+/// Returns a mode's name as determined by the participating states; `None` if the model does not
+/// name its states, or if they are inconclusive (M17.3).
 pub(super) fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     match ModeName::determine(mode, &model.states) {
         (Some(name), NamedBy::States) => Some(name.to_string()),
@@ -44,7 +45,7 @@ pub(super) fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     }
 }
 
-/// Describes how discrete-time poles are converted to `s`.
+/// Describes how discrete-time poles are converted to `s`; `None` for other models.
 fn discrete_time_words(model: &Model) -> Option<String> {
     let Dynamics::StateSpace(system) = &model.dynamics else {
         return None;
@@ -56,7 +57,8 @@ fn discrete_time_words(model: &Model) -> Option<String> {
     ))
 }
 
-/// Lists up to `most` states with the largest participation: "w 62 %, q 21 %".
+/// Lists up to `most` states with the largest participation: "w 62 %, q 21 %"; if the
+/// participations are unknown, returns the reason.
 pub(super) fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String> {
     let shares = match &mode.participation {
         Ok(shares) => shares,

@@ -18,7 +18,8 @@ use crate::gui::widgets::choices::PageOption;
 use crate::gui::widgets::palette::Palette;
 
 /// Draws magnitude ratio and phase difference to the identified model for every kept physics model
-/// and the corrected model, in the response in focus. The Bode view takes over the frequency range.
+/// and for the representative with each correction, in the response in focus. The Bode view takes
+/// over the frequency range.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -34,7 +34,8 @@ pub enum Need {
     TimeHistories(TimeHistoriesJob),
 }
 
-/// Returns the analysis with the current settings; `None` while it is being computed.
+/// Returns the newest analysis, which may be older than the settings; `None` before the first, or
+/// if it belongs to another dataset.
 pub fn current_analysis(state: &State) -> Option<Arc<Analysis>> {
     state.analysis()?;
     state.results.analysis.clone()

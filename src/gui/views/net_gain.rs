@@ -78,7 +78,8 @@ pub fn net_gain_view_ui(
     state.display.figures.insert(View::NetGain, view);
 }
 
-/// Draws the evidence for each schedule form; a click selects a form.
+/// Draws the error of each schedule form, a click on which selects the form; below it the errors of
+/// each degree of the leads, the residuals and the coefficients.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     // The tables borrow the state: take the cache out while they are drawn.
     let mut cached = std::mem::take(&mut state.display.gains.evidence);

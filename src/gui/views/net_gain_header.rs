@@ -19,9 +19,9 @@ use crate::gui::widgets::choices::{Toggle, choice_ui};
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::palette::Palette;
 
-/// Width of the area that explains the control under the pointer \[pt\].
+/// Width of the explanation of the control under the pointer \[pt\].
 const HELP_WIDTH: f32 = 300.0;
-/// Height of that area, two lines \[pt\].
+/// Height of the explanation, two lines \[pt\].
 const HELP_HEIGHT: f32 = 30.0;
 /// Width that the controls need in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
@@ -40,7 +40,8 @@ pub fn net_gain_words(state: &State) -> String {
     )
 }
 
-/// Draws the controls for responses and schedule, from right to left.
+/// Draws, from right to left: the switches for evidence and error bars, the overlaid variant, the
+/// menu with the schedule form, and the selector for the responses.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -83,7 +84,8 @@ pub fn net_gain_header_ui(
     pair_set_ui(ui, state, commands);
 }
 
-/// Draws the selector for displayed responses, from right to left.
+/// Draws the selector for the displayed responses; for picked responses, also the button that adds
+/// the response in focus or removes it.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.selection.pair;
     if state.display.gains.net_gain_pairs == PairSet::Picked {
@@ -108,7 +110,8 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the schedule settings that apply to the chosen form, line by line.
+/// Draws the schedule settings that apply to the chosen form, line by line, and below them the
+/// explanation of the one under the pointer.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let settings = [
         &setting_table::SCHEDULE,

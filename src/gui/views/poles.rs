@@ -67,7 +67,8 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// Draws every model's poles in the displayed condition; a click rejects or restores a model.
+/// Draws every model's poles in the displayed condition; a click rejects or restores a model, with
+/// Alt it isolates the model.
 ///
 /// 1. Modes, zeros and table from their cache.
 /// 2. On the page with the modes, only the table, or why there is none.
@@ -157,7 +158,7 @@ fn pole_command(state: &State, event: FigureEvent) -> Option<Command> {
 }
 
 /// Builds the figure with all models' poles in the displayed condition, optionally with zeros for
-/// the response in focus; `None` until the modes are available.
+/// the response in focus; `None` until the modes are available, or if no model has poles.
 pub fn poles(state: &State) -> Option<Figure> {
     let CachedModes { zeros, shifts, .. } = &state.display.poles.modes;
     let zeros_of_model = |id: &ModelId| match zeros.iter().find(|(model, _)| model == id) {

@@ -31,9 +31,9 @@ use crate::gui::widgets::drawer::{Drawer, drawer_ui};
 use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Default drawer height \[pt\], and the least unless the view is lower than twice that.
+/// Default drawer height \[pt\], also the minimum, which is half the view height in a low view.
 const HEIGHT: f32 = 250.0;
-/// Least distance between cards \[pt\].
+/// Distance between cards \[pt\].
 const CARD_GAP: f32 = 16.0;
 /// Widths of the cards in the order of [`RequirementDetail::ALL`], as shares of the drawer width
 /// without gaps.
@@ -94,7 +94,8 @@ pub(super) fn details_ui(
     }
 }
 
-/// Returns the display after Escape: an open limit editor is closed before the drawer.
+/// Returns the display after Escape or the drawer's button: an open limit editor is closed before
+/// the drawer.
 fn closed(display: RequirementsDisplay) -> RequirementsDisplay {
     if display.edited_limit.is_some() {
         return RequirementsDisplay {
@@ -114,7 +115,8 @@ fn title(state: &State, selected: &SelectedCell<'_>) -> String {
     format!("{name}, condition {}", selected.condition)
 }
 
-/// Returns "−12 %, outside ±10 %; physics −14 %".
+/// Returns "−12 %, outside ±10 %; physics −14 %"; if the corrected model has no value, only the
+/// verdict.
 fn verdict(selected: &SelectedCell<'_>) -> String {
     let row = selected.row;
     let Some(cell) = selected.cell else {
@@ -135,8 +137,8 @@ struct DetailsBar {
     display: RequirementsDisplay,
     /// Command for the link to couplings, if they are worthwhile.
     use_couplings: Option<Command>,
-    /// Commands for the link to the Bode view; empty unless a bandwidth or a phase delay is
-    /// selected.
+    /// Commands for the link to the Bode view; empty unless a bandwidth, a phase delay or a level
+    /// is selected.
     show_in_bode: Vec<Command>,
 }
 

@@ -41,9 +41,9 @@ const GROUP: f32 = 94.0;
 const NAME: f32 = 158.0;
 const UNIT: f32 = 28.0;
 const LIMIT: f32 = 58.0;
-/// Least width of a condition's column \[pt\].
+/// Minimum width of a condition's column \[pt\].
 const LEAST_CONDITION: f32 = 40.0;
-/// Largest width of a condition's column \[pt\].
+/// Maximum width of a condition's column \[pt\].
 const MOST_CONDITION: f32 = 72.0;
 /// Row height if all groups are open \[pt\].
 const ROW: f32 = 19.0;
@@ -98,7 +98,7 @@ pub(super) fn grid_ui(
         });
 }
 
-/// Column positions, from the grid's left edge \[pt\].
+/// Columns and row height of the grid; positions are from the grid's left edge \[pt\].
 #[derive(Clone, Copy)]
 struct GridLayout {
     is_folded: bool,
@@ -345,7 +345,7 @@ impl GridPainter<'_> {
     }
 
     /// Draws a group's heading with a description of its values if it is open, or with each
-    /// condition's count if it is folded.
+    /// condition's count if it is folded. A click on a folded group selects its first requirement.
     fn group_ui(
         &self,
         ui: &mut Ui,
@@ -388,7 +388,8 @@ impl GridPainter<'_> {
     }
 
     /// Draws a folded group's counts: for each condition, the requirements that are met and those
-    /// that have a verdict. A click selects the condition's first requirement that is not met.
+    /// that have a verdict. A click selects the condition's first requirement that is not met; if
+    /// all are met, the group's first.
     fn counts_ui(
         &self,
         ui: &mut Ui,
@@ -619,7 +620,7 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws a row's limit; a double click edits it.
+    /// Draws a row's limit; a double click or Enter opens its editor.
     fn limit_ui(&self, ui: &mut Ui, row: Rect, requirement: &GridRow, commands: &mut Vec<Command>) {
         let key = requirement.requirement;
         let left = row.left() + self.layout.limit();
@@ -691,7 +692,8 @@ fn neighbour<T: Copy>(entries: &[T], here: usize, by: isize) -> Option<T> {
     entries.get(there).copied()
 }
 
-/// Draws the legend for strip and background colours above the grid, from right to left.
+/// Draws the legend for strip and background colours above the grid, from right to left; if there
+/// is room, also for undetermined values.
 pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 6.0;
     if ui.available_width() > 560.0 {

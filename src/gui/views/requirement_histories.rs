@@ -86,7 +86,8 @@ pub(super) fn record_choice_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Co
     }
 }
 
-/// Returns the card's subject: the quantity with its unit, and the record.
+/// Returns the card's subject: the quantity with its unit and the record, or the response and the
+/// test input; empty without a result.
 pub(super) fn time_subject(state: &State, selected: Option<Requirement>) -> String {
     match over_time(state) {
         Some(Ok(OverTime::Record(history, _))) => {
@@ -250,7 +251,7 @@ fn rounded_down_percent(check: &RecordCheck) -> String {
 }
 
 /// Draws for every model the time share inside the tolerance, the peak error and its time; below
-/// them the tolerance.
+/// them the tolerance. Draws nothing unless a record is shown.
 pub(super) fn time_numbers_ui(
     ui: &mut Ui,
     state: &State,
@@ -289,8 +290,8 @@ pub(super) fn time_numbers_ui(
     ui.add(Label::new(palette.small(text)).wrap());
 }
 
-/// Draws the fields for the test input: shape, size and duration; above them, why no record is
-/// compared.
+/// Draws the fields for the test input: shape, size and duration; above them, the record being
+/// read, or that the condition has none.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     if let Some(reading) = &state.records.reading {
         ui.label(palette.small(format!("reading {reading} …")));

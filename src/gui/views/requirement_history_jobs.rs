@@ -35,8 +35,8 @@ pub(super) fn compared_record(state: &State) -> Option<usize> {
     first
 }
 
-/// Returns the job for the record in the requirement details; `None` without a record, or if the
-/// test input is shown instead.
+/// Returns the job for the record in the requirement details; `None` without an analysis or a
+/// record in use, or if the test input is shown instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current_analysis(state)?;
     let condition = state.condition().id();
@@ -59,7 +59,8 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     })
 }
 
-/// Returns the job for all models' responses to the held-out records; `None` without any.
+/// Returns the job for all models' responses to the held-out records; `None` without an analysis or
+/// a held-out record.
 pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current_analysis(state)?;
     let records = state.records.held_out_records();
@@ -113,7 +114,8 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     }
 }
 
-/// Returns the models' responses over time for a figure; `None` if the figure does not show them.
+/// Returns the models' responses over time for a figure; `None` if the figure does not show them,
+/// or if they are not available.
 pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
     let requirements = &state.display.judging.requirements;
     let is_shown =

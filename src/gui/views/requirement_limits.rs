@@ -52,8 +52,8 @@ pub(super) fn limit_editor_ui(
     }
 }
 
-/// Fields for the limit of one requirement. A field that several rows share (bandwidth, phase
-/// delay, J, MUAD) changes the limit of all of them.
+/// Fields for the limit of one requirement. The fields for bandwidth and phase delay change the
+/// limits for every axis.
 struct LimitEditor<'a> {
     state: &'a State,
     palette: &'a Palette,
@@ -313,8 +313,8 @@ fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command
     })
 }
 
-/// Returns the command that changes the limits for bandwidth and summary, or that refuses a limit
-/// that is not positive.
+/// Returns the command that changes the limits for bandwidth, phase delay and summary, or that
+/// refuses a limit that is not positive.
 fn set_limits(state: &State, limits: OverviewLimits) -> Command {
     match limits.checked() {
         Ok(limits) => requirement_edit(state, RequirementPart::OverviewLimits, |settings| {

@@ -34,7 +34,7 @@ pub fn requirements_words(_: &State) -> String {
     "corrected vs identified models, and vs held-out records; not a qualification".to_owned()
 }
 
-/// Draws the view's options, from right to left.
+/// Draws, from right to left, the limits menu and the choice between own and scheduled correction.
 pub fn requirements_tools_ui(
     ui: &mut Ui,
     state: &State,
@@ -93,8 +93,8 @@ pub fn requirements_needs(state: &State) -> Vec<Need> {
     needs
 }
 
-/// Draws the drawer with the details at the bottom, which must come first because the others take
-/// the rest; then the counts and the grid. Without results, only the reason.
+/// Draws the drawer with the details at the bottom, which must come first because counts and grid
+/// take the rest; then the counts and the grid. Without results, only the reason.
 pub fn requirements_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -1,6 +1,5 @@
-//! Dock page "Schedule cost", about the response in focus. Two plots over airspeed: the net gain
-//! with the schedule; and J before the correction, at each condition's optimum and under the
-//! schedule.
+//! Schedule-cost view of the response in focus, with two plots over airspeed: the net gain with the
+//! schedule; and J before the correction, at each condition's optimum and under the schedule.
 
 use egui::{Ui, vec2};
 
@@ -19,7 +18,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Index of the plot of the net gain; the other plot is that of J.
+/// Index of the net-gain plot; the other plot shows J.
 const NET_GAIN_PLOT: usize = 0;
 /// Whether significant differences are marked: not on this page, only in the net-gain view.
 const SHOWS_DIFFERENCES: bool = false;

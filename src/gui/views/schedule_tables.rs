@@ -2,8 +2,8 @@
 //! each polynomial degree in the signed delays, residuals, and coefficients; with a cache for the
 //! comparisons. The net-gain view and the evidence view draw them.
 //!
-//! *Fit* is the error in the conditions to which a form is fitted; *left out* that in each condition
-//! of the form fitted without it.
+//! **Fit* is a form's error in the conditions to which it is fitted, *left out* its error in each
+//! condition if it is fitted to the others.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub(super) struct ScheduleEvidence<'a> {
 }
 
 impl CachedEvidence {
-    /// Recomputes the evidence after the analysis has changed.
+    /// Recomputes the evidence after the analysis has changed; clears it without an analysis.
     pub(super) fn refresh(&mut self, state: &State) {
         let (Some(analysis), Some(_)) = (&state.results.analysis, state.analysis()) else {
             *self = Self::default();
@@ -120,7 +120,7 @@ fn kind_name(kind: ScheduleKind) -> String {
     }
 }
 
-/// Formats a root mean square error in `ln k` as a relative gain error \[%\].
+/// Formats a root mean square error in `ln k` as a relative gain error \[%\]; "–" for `None`.
 fn percent_text(rms_ln: Option<f64>) -> String {
     match rms_ln {
         Some(rms_ln) => format!("{:.2}", 100.0 * rms_ln),

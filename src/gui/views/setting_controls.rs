@@ -98,7 +98,7 @@ impl SettingControls<'_, '_> {
     }
 
     /// Draws the caption in its own row; if the setting has changed since the panel was opened,
-    /// also its former value, `end` points from the right.
+    /// also its former value, `end` points from the right. Returns the row's area.
     fn captioned_row_ui(&mut self, setting: &'static Setting, end: f32) -> Rect {
         let width = self.ui.available_width();
         let (row, response) = self
@@ -142,7 +142,8 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the note beside a setting's value.
+    /// Draws a grid row with a note if the setting has no effect at present: the gain source with
+    /// leads.
     pub fn note_ui(&mut self, setting: &Setting) {
         let is_idle = self.state.study.settings.is_gain_source_idle();
         if *setting == setting_table::GAIN_SOURCE && is_idle {
@@ -293,7 +294,8 @@ impl SettingControls<'_, '_> {
     }
 
     /// Draws a number in a row with its caption and the value from when the panel was opened, and
-    /// below a slider on which that value is marked; returns the slider rail's area.
+    /// below a slider on which that value is marked. Returns the slider rail's area; draws nothing
+    /// and returns `None` unless the setting is a number.
     pub fn slider_ui(&mut self, setting: &'static Setting) -> Option<Rect> {
         let Kind::Number { range, .. } = setting.kind else {
             return None;

@@ -39,7 +39,7 @@ pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
     Some((&variant.name, variant_analysis(state, variant)?))
 }
 
-/// Returns the job for the overlaid analysis.
+/// Returns the job that analyses the overlaid variant; `None` without one.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
     variant_job(state, state.display.judging.overlaid.as_deref()?)
 }

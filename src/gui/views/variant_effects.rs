@@ -46,8 +46,8 @@ enum Effect {
     Cost(Pair),
     /// Gain objective in the displayed condition.
     Objective,
-    /// Mean change in J with the schedule, over all conditions and the responses in the objective:
-    /// the on-axis responses, or all if none is on-axis.
+    /// Mean change in J with the schedule, over all assessed conditions and the responses in the
+    /// objective: the on-axis responses, or all if none is on-axis.
     MeanChange,
 }
 

@@ -65,7 +65,7 @@ impl SignScope {
     }
 }
 
-/// Shows the signs declared for a role, or for all files.
+/// Shows fields for the signs declared for all files and for each role.
 pub(super) fn signs_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -90,7 +90,8 @@ pub(super) fn signs_ui(
         });
 }
 
-/// Shows the units and factors declared for a role; a channel has either a unit or a factor.
+/// Shows fields for the units and factors declared for each role; a channel has either a unit or a
+/// factor.
 pub(super) fn units_and_factors_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

@@ -1,5 +1,6 @@
-//! Importing models from several files: sources above; on the left a table with a row per model,
-//! and the problem list; on the right the selected model and the channels.
+//! Importing models from several files: sources above, the dataset to be made below; on the left a
+//! table with a row per model, and the problem list; on the right the selected model, the channels
+//! and a preview of the model's response.
 
 mod channels;
 mod column_headings;

@@ -1,5 +1,5 @@
 //! Model table: a row per model, sortable by every column. A *part* is a model that was found in
-//! the files, with what the rules say about it.
+//! the files, with the settings that the rules give it.
 
 use egui::{Color32, Rect, Role, ScrollArea, Sense, Ui, vec2};
 

@@ -14,7 +14,8 @@ use crate::gui::state::assembling::{AssemblyState, DrawnPreview, Preview};
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Shows the selected response as a Bode plot, with a selector for all responses in the model.
+/// Shows the displayed model's selected response as a Bode plot, with a selector for all its
+/// responses; nothing without a model.
 pub(super) fn preview_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -60,7 +61,7 @@ fn response_choice_ui(ui: &mut Ui, names: &[String], shown: usize, commands: &mu
     }
 }
 
-/// Recomputes the curve if another model or response has been selected.
+/// Recomputes the curve if another model (by key) or response has been selected.
 fn update_curves(preview: &mut Preview, found: &FoundModel, response: usize, band: (f64, f64)) {
     let key = found.key();
     let mut is_same_model = false;

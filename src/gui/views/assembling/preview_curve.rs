@@ -11,7 +11,7 @@ use gdcm_model::response::{FrequencyGrid, PreparedModel};
 
 use crate::gui::plot::{BodeCurve, CurveId, Role};
 
-/// Points on a state-space model's curve.
+/// Number of points on a state-space model's curve.
 const POINTS: usize = 300;
 
 /// Factor by which the curve extends beyond the comparison band at either end.

@@ -11,7 +11,7 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Least correlation whose number is written into its cell.
+/// Minimum magnitude of a correlation or share that is written into its cell.
 const WRITTEN: f64 = 0.3;
 /// Cell side above which a number fits into the cell \[pt\].
 const WRITABLE_CELL: f32 = 18.0;
@@ -34,7 +34,7 @@ impl CorrelationMatrix<'_> {
     /// Rows and columns are the fitted parameters in ranking order, with their numbers at the left
     /// and at the top. Row `k` has the correlations with the parameters `1 … k − 1` (the lower
     /// triangle), and behind a gap the share of its effect that the channels can take. Cells are as
-    /// large as width and height allow.
+    /// large as width and height allow, up to [`LARGEST_CELL`].
     pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let ranked = self.fitted();
         let count = ranked.len();
@@ -74,7 +74,7 @@ impl CorrelationMatrix<'_> {
             room.top() + 8.0,
         );
         self.text(ui, channel_at, "channels");
-        // In the empty upper triangle.
+        // The title fits into the empty upper triangle.
         let title_at = pos2(corner.x + 0.62 * side * count as f32, corner.y + 6.0);
         ui.painter().text(
             title_at,
@@ -108,8 +108,8 @@ impl CorrelationMatrix<'_> {
         }
     }
 
-    /// Paints a cell with a correlation or a share: brighter for a larger magnitude, orange above
-    /// `limit`.
+    /// Paints a cell with a correlation or a share: stronger for a larger magnitude, in the warning
+    /// colour above `limit`; with the number if it is at least [`WRITTEN`] and fits.
     fn cell_ui(&self, ui: &Ui, place: Rect, value: f64, limit: f64) {
         let inner = place.shrink(1.0);
         let strength = value.abs().clamp(0.0, 1.0) as f32;
@@ -133,7 +133,7 @@ impl CorrelationMatrix<'_> {
     }
 
     /// Gives a cell an accessible name, explains it under the pointer, and selects its parameter on
-    /// a click. The cell is that of the correlation with `other`; `None` for the channels' share.
+    /// a click. `other` is the second parameter of a correlation; `None` for the channels' share.
     fn words_ui(
         &self,
         ui: &mut Ui,

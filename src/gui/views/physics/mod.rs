@@ -8,7 +8,7 @@
 //! | `fit_box` | box that takes a parameter into the fit or out of it |
 //! | `parameter_list` | parameters of the dataset, in the left panel |
 //! | `ranking` | a row for each parameter |
-//! | `correlation` | what cannot be told apart |
+//! | `correlation` | parameters that cannot be told apart |
 //! | `evidence` | the selected parameter, the effect on the correction, cautions |
 //! | `use_parameters` | the job, and the control that applies the parameters |
 
@@ -207,7 +207,7 @@ fn sentence_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
     });
 }
 
-/// Draws why there is no diagnosis, and how to supply what is missing.
+/// Draws why there is no diagnosis; without model runs, also how to supply them.
 fn failure_ui(ui: &mut Ui, failure: &PhysicsFailure, palette: &Palette) {
     ui.add_space(8.0);
     ui.add(Label::new(RichText::new(failure.to_string()).size(BODY_SIZE)).wrap());

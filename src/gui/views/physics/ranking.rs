@@ -23,7 +23,7 @@ pub(super) const ROW: f32 = 24.0;
 const HEADINGS: f32 = 20.0;
 /// Bar length for the parameter that explains most alone \[pt\].
 const FULL_BAR: f32 = 56.0;
-/// Least share that a full bar represents, so that bars for negligible shares stay short.
+/// Minimum share that a full bar represents, so that bars for negligible shares stay short.
 const LEAST_FULL: f32 = 0.1;
 /// Axis length on each side of the nominal value, in plausible standard deviations.
 const SHOWN_SD: f32 = GREATEST_VALUE as f32;
@@ -118,7 +118,8 @@ impl Ranking<'_> {
         HEADINGS + ROW * rows as f32
     }
 
-    /// Draws the headings and a row for each parameter; a click on a row selects the parameter.
+    /// Draws the headings and a row for each parameter; a click on the row of a parameter that is
+    /// switched on selects it.
     pub(super) fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         ui.spacing_mut().item_spacing.y = 0.0;
         let columns = Columns::new(ui.available_width());
@@ -216,8 +217,8 @@ impl Ranking<'_> {
         row_text_within(ui, row, columns.verdict, words, BODY_SIZE, color);
     }
 
-    /// Draws the axis in plausible standard deviations: shaded within one of them, and with the
-    /// value and its interval. A parameter that is named has a filled dot, another a ring.
+    /// Draws the axis in plausible standard deviations: shaded within ± 1, and with the value and
+    /// its interval. A parameter that is named has a filled dot, another a ring.
     fn axis_ui(&self, ui: &Ui, row: Rect, columns: Columns, diagnosed: &DiagnosedParameter<'_>) {
         let axis = SdAxis::new(row, columns);
         let plausible = Rect::from_x_y_ranges(
@@ -255,7 +256,8 @@ impl Ranking<'_> {
         }
     }
 
-    /// Returns the share that a full bar represents: the largest that a parameter explains alone.
+    /// Returns the share that a full bar represents: the largest that a parameter explains alone,
+    /// at least [`LEAST_FULL`].
     fn full_share(&self) -> f32 {
         let mut full = LEAST_FULL;
         for parameter in &self.findings.diagnosis.parameters {
@@ -305,8 +307,8 @@ impl Ranking<'_> {
     }
 }
 
-/// Returns the colour for a parameter's verdict: orange if the parameter would have to change
-/// implausibly.
+/// Returns the colour for a parameter's verdict: the warning colour if the parameter would have to
+/// change implausibly.
 fn verdict_color(diagnosed: &DiagnosedParameter<'_>, palette: &Palette) -> Color32 {
     match diagnosed.diagnosis.why_not_named {
         None => palette.text,

@@ -22,7 +22,8 @@ pub fn physics_job(state: &State) -> PhysicsJob {
     }
 }
 
-/// Counts the named parameters while none is applied.
+/// Counts the parameters that the diagnosis names; 0 if parameters are already applied, or without
+/// a diagnosis.
 pub fn unused_named(state: &State) -> usize {
     if state.study.settings.physics != PhysicsCorrection::Off {
         return 0;

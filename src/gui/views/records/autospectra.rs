@@ -6,7 +6,7 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_sysid::spectra::spectrum::spectra;
 
-/// Adjacent spectral lines averaged into one point.
+/// Number of adjacent spectral lines averaged into one point.
 const SMOOTHED: usize = 5;
 
 /// Autospectrum for each input: frequency \[rad/s\] and level \[dB, relative to the squared unit

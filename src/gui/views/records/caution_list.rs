@@ -29,7 +29,7 @@ const HEADING: f32 = 20.0;
 const ENTRY: f32 = 36.0;
 /// Width reserved for the caution sign \[pt\].
 const SIGN: f32 = 20.0;
-/// Width of the menu with further remedies \[pt\].
+/// Width of the button that opens the menu with further remedies \[pt\].
 const MENU: f32 = 20.0;
 const BUTTON_HEIGHT: f32 = 22.0;
 

@@ -72,7 +72,8 @@ pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option
     }
 }
 
-/// Returns the remedies for a caution; none if only another flight helps.
+/// Returns the remedies for a caution; empty if the program has none, for example if only another
+/// flight helps.
 pub(super) fn caution_remedies(
     ui: &Ui,
     records: &ConditionRecords,
@@ -271,7 +272,8 @@ fn use_band(band: [f64; 2]) -> Remedy {
 }
 
 /// Returns a remedy that raises the lower band edge so that the longest record contains [`PERIODS`]
-/// periods; at the frequency `once` \[rad/s\], it contains a single period.
+/// periods; at the frequency `once` \[rad/s\], it contains a single period. `None` if the raised
+/// edge would reach the upper one.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;
@@ -286,7 +288,8 @@ fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remed
     }
 }
 
-/// Returns a remedy that leaves a record out; `None` if no other record remains for the fit.
+/// Returns a remedy that leaves a record out; `None` if it is not in use, or if no other record
+/// remains for the fit.
 fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     let index = used_row(records, name)?;
     let another_is_fitted = records
@@ -303,7 +306,7 @@ fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     }
 }
 
-/// Returns a remedy that includes a held-out record in the fit.
+/// Returns a remedy that includes a held-out record in the fit; `None` if the record is not in use.
 fn fit_held_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
     let index = used_row(records, name)?;
     Some(Remedy::new(
@@ -336,8 +339,8 @@ fn choose_order() -> Remedy {
     )
 }
 
-/// Returns remedies that select a reference suggested by its column name, and one that lists all
-/// columns.
+/// Returns remedies that select a reference, for at most [`MOST_REFERENCES`] columns whose names
+/// suggest one, and a remedy that lists all possible columns. Empty if there are none.
 fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     let possible = possible_references(ui, records);
     let mut remedies = Vec::new();

@@ -15,7 +15,8 @@ use crate::gui::state::column_groups::ColumnGroup;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, named};
 
-/// Summarises the groups: "same for all 99 ✓".
+/// Summarises the groups: the count of records to assign; else the count of assumed units; else
+/// "same for all 99 ✓", or the count of groups.
 pub(super) fn columns_summary(state: &State) -> FoldSummary {
     let groups = state.records.column_groups();
     let mut records = 0;

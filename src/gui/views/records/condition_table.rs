@@ -9,8 +9,8 @@ use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 
 /// Tabulates the conditions with records: record counts, fit state, model order, χ²/dof for fitted
-/// and held-out records, model and caution counts, and computing time. Before an identification,
-/// cells are empty.
+/// and held-out records, model and caution counts, and computing time. Without a successful
+/// identification, the cells from the order on are empty.
 pub fn condition_table(state: &State) -> Table {
     let columns = [
         "condition",

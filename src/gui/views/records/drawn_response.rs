@@ -17,7 +17,7 @@ use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
 use crate::gui::plot::BodeCurve;
 
-/// Points on a model's curve.
+/// Number of points on a model's curve.
 const POINTS: usize = 200;
 /// Factor by which curves extend beyond the band.
 const BEYOND: f64 = 2.0;
@@ -244,7 +244,8 @@ fn phase_residual(measured: &MeasuredPoint, at_points: &[CurvePoint]) -> Option<
 }
 
 /// Returns a pair's measured points. A point is trusted if its partial coherence reaches
-/// [`TRUSTED_COHERENCE`] and its window is narrow.
+/// [`TRUSTED_COHERENCE`] and its window is narrow: at most [`NARROW_WINDOW`] times its frequency on
+/// either side.
 fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
     let at = (pair.output, pair.input);
     let omega = points.iter().map(|point| point.omega).collect();

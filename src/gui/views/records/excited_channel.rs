@@ -1,4 +1,4 @@
-//! Selection of the input drawn over time: the one that the displayed record excites most.
+//! Selection of the input drawn over time, from the displayed record's excitation.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use super::frame_cache::{Source, cached};
 use super::page::Page;
 use crate::gui::state::excited_input::Excitation;
 
-/// Returns the index of the input in focus if the displayed record excites it, otherwise the input
-/// that it excites most, compared with the other records.
+/// Returns the index of the input in focus if the displayed record excites it or moves no input,
+/// otherwise the input that it excites most, compared with the other records.
 pub(super) fn displayed_input(ui: &Ui, page: Page<'_>) -> usize {
     displayed_excited_input(ui, page).unwrap_or(page.state.display.selection.pair.input)
 }

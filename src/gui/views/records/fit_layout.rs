@@ -77,8 +77,9 @@ pub(super) struct CaptionedChart {
 }
 
 impl FitLayout {
-    /// Divides an area; `more_outputs` outputs are to be drawn below the output in focus, of which
-    /// a low area draws none. Charts keep at least 0.3 times their usual heights.
+    /// Divides an area. Of the `more_outputs` outputs that are to be drawn below the output in
+    /// focus, at most [`MORE_OUTPUTS`] have a chart, in a low area none. Charts keep at least 0.3
+    /// times their usual heights.
     pub(super) fn new(area: Rect, more_outputs: usize) -> Self {
         let is_full = area.height() >= LEAST_FULL;
         let more = if is_full {

@@ -226,8 +226,8 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     });
 }
 
-/// Shows the identification band; if it differs from the study's band, also a button that returns
-/// to that band.
+/// Shows the identification band; if the condition has a band of its own, also a button that
+/// returns to the study's band.
 fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -258,8 +258,8 @@ fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     }
 }
 
-/// Shows the completed share and the current step or, while waiting, which condition is identified
-/// first.
+/// Shows the completed share and the current step or, while waiting, the condition that is being
+/// identified.
 fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     let Page { state, palette, .. } = page;
     let news = job.news();

@@ -34,7 +34,7 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
     }
 }
 
-/// Draws the menu beside a button.
+/// Draws the menu with further commands beside a button; `name` is its accessible name.
 fn more_ui(ui: &mut Ui, name: &str, entries: Vec<(String, Command)>, commands: &mut Vec<Command>) {
     let (response, _) = MenuButton::from_button(Button::new("▾")).ui(ui, |ui| {
         entries_ui(ui, entries, commands);
@@ -42,8 +42,9 @@ fn more_ui(ui: &mut Ui, name: &str, entries: Vec<(String, Command)>, commands: &
     named(response, Role::Button, name);
 }
 
-/// Draws the command that uses all finished fits, and a menu with other models. (The right panel
-/// has the command that uses only the displayed condition's fit.)
+/// Draws the button that uses the refined models of `fits`, and a menu with other models of these
+/// fits; nothing without any. (The right panel has the command that uses only the displayed
+/// condition's fit.)
 fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut Vec<Command>) {
     if fits.is_empty() {
         return;

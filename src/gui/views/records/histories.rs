@@ -27,7 +27,7 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::records::TimeRole;
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Opacity of samples outside the parts in use.
+/// Opacity of samples outside the spans in [`RecordSpan::bright_s`].
 const OUTSIDE: f32 = 0.4;
 /// Share of the samples' range by which a model's response may extend the axis at either end; a
 /// diverging model is cut.

@@ -26,7 +26,7 @@ const SAMPLE: f32 = 10.0;
 const SAMPLE_GAP: f32 = 6.0;
 /// Length of the dashes in a sample \[pt\].
 const SAMPLE_DASH: f32 = 4.0;
-/// Limit of Theil's coefficient below which the fit of a model counts as good (M14, section 6).
+/// Theil's coefficient (M14.6) below which a model's fit counts as good.
 const GOOD_THEIL: f64 = 0.25;
 
 /// A role's value at the cursor.
@@ -115,7 +115,8 @@ impl ChannelReadout<'_> {
         )
     }
 
-    /// Shows every model's fit and Theil's coefficient, and the output's χ²/dof.
+    /// Shows the channel's cautions, every model's fit and Theil's coefficient, the reasons for
+    /// failed simulations, and the output's χ²/dof.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let Some(output) = self.output else { return };
         for mark in channel_caution_marks(self.page, &self.channel.name) {

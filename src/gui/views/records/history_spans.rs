@@ -20,7 +20,8 @@ pub(super) fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan
     spans
 }
 
-/// Returns the gaps in the displayed record that the identification bridged or cut out.
+/// Returns the gaps in the displayed record that the identification bridged, estimated or cut out;
+/// none without a current identification.
 pub(super) fn gap_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Page {
         records, palette, ..

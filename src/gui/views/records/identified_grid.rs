@@ -17,14 +17,15 @@ use crate::gui::widgets::elision::text_width;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Heights of the heading and of the row with input names \[pt\].
+/// Heading height \[pt\].
 const HEADING: f32 = 20.0;
+/// Height of the row with input names \[pt\].
 const INPUT_NAMES: f32 = 16.0;
 /// Width of the column with output names \[pt\].
 const OUTPUT_NAMES: f32 = 28.0;
-/// Greatest and least cell height \[pt\].
+/// Maximum and minimum cell height \[pt\].
 const CELL: [f32; 2] = [27.0, 19.0];
-/// Least cell width \[pt\].
+/// Minimum cell width \[pt\].
 const LEAST_WIDTH: f32 = 58.0;
 const GAP: f32 = 3.0;
 /// Notes that explain the cells; the first note that fits is shown.
@@ -32,8 +33,8 @@ const NOTES: [&str; 2] = ["± 1 σ, dB and deg; bar: coherence", "± 1 σ, dB an
 /// Thickness of the coherence bar \[pt\].
 const BAR: f32 = 2.5;
 
-/// Values for an identified response: mid-band standard deviations, which decide whether the
-/// response is identified, and median partial coherence.
+/// Values for an identified response: mid-band standard deviations (up to 3 dB the response counts
+/// as identified), and median partial coherence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct PairFigures {
     sd_db: Option<f64>,
@@ -239,7 +240,7 @@ impl Grid<'_> {
 }
 
 impl PairFigures {
-    /// Describes the values: "± 0.5 dB and ± 3° in the middle of the band, …".
+    /// Describes the values: "± 0.50 dB and ± 3.0° in the middle of the band, …".
     fn words(&self) -> String {
         let mut words = format!(
             "± {} dB and ± {}° in the middle of the band, median partial coherence {}",

@@ -61,7 +61,8 @@ fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palett
     }
 }
 
-/// Returns the chart with the poles in the s-plane, each with an error bar.
+/// Returns the chart with the poles in the s-plane; those that the records determine have error
+/// bars.
 pub(super) fn poles_chart<'a>(page: Page<'_>, found: &Identification) -> Chart<'a> {
     let Page {
         records, palette, ..
@@ -89,8 +90,8 @@ pub(super) fn add_poles(chart: &mut Chart<'_>, poles: &[PoleEstimate], palette: 
     }
 }
 
-/// Returns the poles with their intervals. Poles that the records do not determine have no
-/// interval, because it would hide other poles.
+/// Returns the poles that the records determine, with their intervals, or those that they do not
+/// determine, without intervals, which would hide other poles.
 fn pole_marks(poles: &[PoleEstimate], is_determined: bool, palette: &Palette) -> ChartMarks {
     let mut points = Vec::new();
     let mut sideways = Vec::new();

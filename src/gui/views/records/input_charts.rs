@@ -24,7 +24,7 @@ struct RecordSpectra {
 }
 
 impl RecordSpectra {
-    /// Returns an input's line: bright and thick for the displayed record.
+    /// Returns an input's line, thicker and in another colour for the displayed record.
     fn line(&self, input: usize, palette: &Palette) -> Option<ChartLine> {
         let points = Arc::clone(self.inputs.get(input)?);
         Some(if self.is_chosen {

@@ -8,7 +8,8 @@ use gdcm_words::flight_plan::{PlannedChannels, PlannedInput, sweep_plan_table};
 
 use super::page::Page;
 
-/// Shows a table for each input; nothing before an identification.
+/// Shows a table for each input, or why there is no prediction; nothing without a successful
+/// identification.
 pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,

@@ -14,7 +14,7 @@ const UPPER: f32 = 0.58;
 /// Gap between charts \[pt\].
 const GAP: f32 = 12.0;
 
-/// Draws the page; without an identification, a message that says why there is none.
+/// Draws the page; without an identification, a message instead.
 pub(super) fn order_ui(ui: &mut Ui, page: Page<'_>) {
     let Some(found) = page.identification_ui(ui) else {
         return;

@@ -94,7 +94,8 @@ pub(super) fn parts_lane_ui(
     painted_text(ui, right, 0.0, &text, small(), page.palette.text);
 }
 
-/// Draws the menu in which a part's ends are typed.
+/// Draws the menu with the field for a new part, the displayed row's time span and, for a part, the
+/// button that removes it.
 fn menu_ui(ui: &mut Ui, page: Page<'_>, place: Rect, commands: &mut Vec<Command>) {
     let builder = UiBuilder::new().max_rect(place);
     ui.scope_builder(builder, |ui| {
@@ -227,7 +228,8 @@ impl Lane<'_> {
     }
 
     /// Moves the dragged end to the pointer, and pushes the command when the drag ends: moves the
-    /// end of a part, or adds a part. A drag shorter than [`LEAST_PART_S`] changes nothing.
+    /// end of a part, or adds a part. Nothing changes if the part would be shorter than
+    /// [`LEAST_PART_S`].
     fn follow(&self, ui: &Ui, response: &egui::Response, commands: &mut Vec<Command>) {
         if !response.dragged() && !response.drag_stopped() {
             return;

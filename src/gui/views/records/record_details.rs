@@ -51,8 +51,8 @@ pub(super) fn record_details_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<
     }
 }
 
-/// Shows the manoeuvre, which can be changed, and what it excites: "[sweep] of LON, 0.3 to
-/// 13 rad/s".
+/// Shows the manoeuvre, which can be changed, and what it excites: "[sweep] of LON, 0.30 to 13.0
+/// rad/s".
 fn kind_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -75,7 +75,7 @@ fn kind_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &mut Vec<
     });
 }
 
-/// Formats "of LON, 0.3 to 13 rad/s".
+/// Formats "of LON, 0.30 to 13.0 rad/s"; empty if no input moves.
 fn excitation_words(ui: &Ui, page: Page<'_>, flight: &Arc<FlightRecord>) -> String {
     let mut parts = Vec::new();
     if let Some(input) = displayed_excited_input(ui, page) {
@@ -108,7 +108,7 @@ fn length_words(flight: &FlightRecord) -> Option<String> {
 }
 
 /// Returns the lowest and the highest frequency \[rad/s\] with a level within [`EXCITED_DB`] of the
-/// maximum; `None` without excitation.
+/// maximum; `None` without points.
 fn excited_band(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let most = points
         .iter()

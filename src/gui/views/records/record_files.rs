@@ -11,7 +11,8 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::controls::{button_ui, entries_ui};
 
-/// Shows the commands that add records, and cautions about the added records.
+/// Shows the menu that adds records, the reading progress, cautions about assumed units, and files
+/// that could not be read.
 pub(super) fn source_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page { state, palette, .. } = page;
     ui.horizontal(|ui| {

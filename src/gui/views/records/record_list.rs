@@ -137,7 +137,7 @@ struct RecordRow<'a> {
     page: Page<'a>,
     index: usize,
     row: &'a LaidOutRecord,
-    /// Name without the prefix that all records share.
+    /// Name without the prefix that all records share, or a part's time span.
     shown_name: String,
 }
 
@@ -198,7 +198,7 @@ impl RecordRow<'_> {
         }
     }
 
-    /// Draws the check box that takes the record into use.
+    /// Draws the check box that takes the record into use, disabled until its columns are assigned.
     fn use_ui(&self, ui: &mut Ui, rect: Rect, commands: &mut Vec<Command>) {
         let name = &self.row.table.name;
         let mut used = self.row.used && self.row.flight.is_some();

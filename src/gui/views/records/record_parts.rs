@@ -36,7 +36,7 @@ pub(super) fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) 
 }
 
 /// Parses a typed part \[s\]: two times on the record's time axis or, with `+` before both, two
-/// times from the start of the record.
+/// times from the start of the record. `None` for other texts.
 fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let [from, to] = numbers(text).ok()?[..] else {
         return None;

@@ -63,8 +63,8 @@ impl RecordSpan {
         })
     }
 
-    /// Returns the time spans \[s\] drawn at full opacity: the displayed part, or all used parts of
-    /// the displayed record; the whole record if it is used, or if none of its parts is.
+    /// Returns the time spans \[s\] drawn at full opacity: the displayed part. If the whole record
+    /// is displayed: all of it if it is used or none of its parts is, otherwise its used parts.
     pub(super) fn bright_s(&self) -> Vec<[f64; 2]> {
         if let Some(part) = self.parts.iter().find(|part| part.is_chosen) {
             return vec![part.ends_s];

@@ -1,4 +1,5 @@
-//! A channel's samples as lines, within the parts in use and outside them.
+//! A channel's samples as lines, within the time spans drawn at full opacity
+//! ([`RecordSpan::bright_s`]) and outside them.
 
 use std::sync::Arc;
 
@@ -12,13 +13,14 @@ use super::record_span::RecordSpan;
 /// A channel's samples as lines, interrupted where samples are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct RecordedLines {
-    /// Within the parts in use.
+    /// Within the time spans drawn at full opacity.
     pub(super) inside: Vec<Arc<[[f64; 2]]>>,
     pub(super) outside: Vec<Arc<[[f64; 2]]>>,
 }
 
 impl RecordedLines {
-    /// Returns time \[s\] and value of every sample, within the parts and outside them.
+    /// Returns time \[s\] and value of every finite sample, inside and outside. A sample at which
+    /// two lines join occurs twice.
     pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> {
         let lines = self.inside.iter().chain(&self.outside);
         lines.flat_map(|line| line.iter().copied())
@@ -50,8 +52,8 @@ fn samples(flight: &FlightRecord, index: usize) -> Vec<[f64; 2]> {
     points
 }
 
-/// Splits samples into lines at missing samples and at part ends. A line outside the parts begins
-/// and ends with a neighbouring part's sample, so that it joins the line inside.
+/// Splits samples into lines at missing samples and at the ends of `parts_s`. A line outside these
+/// parts begins and ends with a neighbouring part's sample, so that it joins the line inside.
 fn split_lines(points: &[[f64; 2]], parts_s: &[[f64; 2]]) -> RecordedLines {
     let is_inside = |time_s: f64| {
         parts_s

@@ -58,8 +58,8 @@ pub(super) fn references_ui(
     ui.end_row();
 }
 
-/// Lists the chosen references that are not columns in the first used record, then every possible
-/// column.
+/// Lists the chosen references that are no possible columns of the first used record, then every
+/// possible column.
 fn reference_list_ui(ui: &mut Ui, records: &ConditionRecords, commands: &mut Vec<Command>) {
     let possible = possible_references(ui, records);
     for name in &records.references {

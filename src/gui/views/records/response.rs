@@ -37,7 +37,7 @@ const BEYOND: [f64; 2] = [1.4, 1.7];
 const HIGHEST_COHERENCE: f64 = 1.08;
 /// Half-width of the shaded band in the phase-residual chart, in standard deviations.
 const RESIDUAL_BAND: f64 = 2.0;
-/// Least and greatest limit of the phase-residual axis, in standard deviations.
+/// Minimum and maximum limit of the phase-residual axis, in standard deviations.
 const RESIDUAL_LIMITS: [f64; 2] = [4.0, 10.0];
 /// Share of the curves' range within the band by which error bars may extend the axis.
 const MOST_EXTENSION: f64 = 0.3;
@@ -380,7 +380,7 @@ impl ResponseCharts<'_> {
         self.show(ui, place, ["Phase residual", "in σ, band ± 2"], &chart);
     }
 
-    /// Returns the frequency intervals to which cautions about all responses refer.
+    /// Returns the frequency intervals that cautions call doubtful: short records, a narrowed band.
     fn caution_spans(&self) -> Vec<ChartSpan> {
         let Page {
             records, palette, ..
@@ -402,9 +402,9 @@ impl ResponseCharts<'_> {
 
 /// Returns short marks for the cautions about the displayed response.
 ///
-/// First, a caution with a pair concerns that response; else one with a channel the responses to or
-/// of that channel, unless it is about single records; else only feedback and a narrowed band
-/// concern all responses.
+/// A caution with a pair concerns that response. A caution with a channel, unless it is about
+/// single records, concerns the responses to or of that channel. Of the others, only feedback and a
+/// narrowed band are marked; they concern all responses.
 fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
     let dataset = page.state.dataset();
     let pair = page.state.display.selection.pair;
@@ -427,7 +427,7 @@ fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
 }
 
 /// Returns the intervals \[rad/s\] to which a caution refers: the lower end of the band if the
-/// records are short, or the parts of `band` outside the narrowed band.
+/// records are short, or the parts of `band` outside the narrowed band; none for other cautions.
 fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     match (note.code, note.band_rad_s) {
         ("short", Some(ends)) => vec![ends],

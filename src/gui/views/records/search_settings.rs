@@ -76,7 +76,8 @@ impl SearchList {
     }
 }
 
-/// Names the kinds of settings that differ from the defaults: "own band, own search".
+/// Names the kinds of settings that differ from the defaults: "own band, own search"; "automatic"
+/// without any.
 pub(super) fn settings_summary(page: Page<'_>) -> FoldSummary {
     let records = page.records;
     let mut parts = Vec::new();

@@ -27,7 +27,7 @@ pub(super) struct Simulated<'a> {
 }
 
 impl Simulated<'_> {
-    /// Returns the response once it is computed.
+    /// Returns the response; `None` until it is computed, or if the simulation failed.
     fn validation(&self) -> Option<&Arc<Validation>> {
         match self.result {
             Some(Ok(validation)) => Some(validation),
@@ -49,7 +49,7 @@ impl Simulated<'_> {
         self.validation()?.theil.get(output).copied().flatten()
     }
 
-    /// Returns why the model cannot be compared with the record.
+    /// Returns why the simulation failed; `None` if it has not.
     pub(super) fn failure(&self) -> Option<String> {
         match self.result {
             Some(Err(why)) => Some(format!(
@@ -61,7 +61,8 @@ impl Simulated<'_> {
         }
     }
 
-    /// Returns an output's response, a line per window, each from its own initial state.
+    /// Returns an output's response, a line per window, each from its own initial state; empty
+    /// until it is computed.
     pub(super) fn lines(&self, ui: &Ui, output: usize) -> Arc<Lines> {
         let Some(validation) = self.validation() else {
             return Arc::default();
@@ -114,7 +115,8 @@ struct ModelJob {
     job: SimulationJob,
 }
 
-/// Returns the models that are available in continuous time.
+/// Returns a job for each model that is available as a continuous-time state space without delays;
+/// none until the displayed record's columns are assigned.
 fn model_jobs(state: &State) -> Vec<ModelJob> {
     let Some(records) = state.records.conditions.get(&state.condition().id()) else {
         return Vec::new();

@@ -28,7 +28,8 @@ const PLOT: f32 = 92.0;
 pub(super) const SMALL_PLOTS_HEIGHT: f32 = CAPTION + PLOT;
 /// Gap between the plots \[pt\].
 const GAP: f32 = 12.0;
-/// Share of the fastest determined pole's modulus by which the plot extends beyond that pole.
+/// Margin around the determined poles, relative to the larger of the real range's width and the
+/// largest imaginary part.
 const EDGE: f64 = 0.15;
 
 /// Draws both plots; without an identification, only their captions.

@@ -27,7 +27,7 @@ struct PaintedSpectrogram {
     spectrogram: Spectrogram,
 }
 
-/// Draws the selector for the input whose spectrogram is shown; "no input" is an option.
+/// Draws the selector for the input whose spectrogram is shown, or "off".
 pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let state = page.state;
     let wanted = state.records.spectrogram;
@@ -51,7 +51,7 @@ pub(super) fn spectrogram_choice_ui(ui: &mut Ui, page: Page<'_>, commands: &mut 
 }
 
 /// Shows the selected input's spectrogram up to twice the upper band limit, on the charts' time
-/// axis.
+/// axis, or why there is none.
 pub(super) fn spectrogram_ui(
     ui: &mut Ui,
     page: Page<'_>,

@@ -4,7 +4,7 @@
 use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::Range;
 
-/// Least count of steps within the data range.
+/// Minimum number of steps within the data range.
 const LEAST_STEPS: f64 = 6.0;
 
 /// Returns the smallest range around `data` that begins and ends at multiples of a round step, 1, 2
@@ -32,7 +32,7 @@ fn round_step(most: f64) -> f64 {
 }
 
 /// Returns how many decimals are needed to separate values in a range: to between a hundredth and a
-/// thousandth of its width.
+/// thousandth of its width, but at most six.
 pub(super) fn decimals_in(range: Range) -> usize {
     let digit = range.width().max(f64::MIN_POSITIVE).log10().floor();
     (2.0 - digit).clamp(0.0, 6.0) as usize

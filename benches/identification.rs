@@ -82,7 +82,7 @@ fn main() {
         .into_iter()
         .map(|table| LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0)
         .collect();
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let mut all_ms = 0.0;

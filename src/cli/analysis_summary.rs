@@ -130,7 +130,7 @@ fn doubts_section(analysis: &Analysis) -> String {
 pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let mut words = doubt_text(doubt, dataset);
     if let Some(channel) = doubt.turns() {
-        let (inputs, outputs) = dataset.names_of_channels();
+        let (inputs, outputs) = dataset.input_and_output_names();
         words += &format!(" (--sign {}=-1)", channel.name(&inputs, &outputs));
     }
     words

@@ -194,7 +194,7 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
     ];
     let price = LeadPrice::new(leads);
     let mut table = Table::new("", with_price_heading(&columns, price.as_ref()));
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     for (channel, delay_s) in correction.signed_delays_s().iter() {
         let filter = leads.filters()[channel];
         let mut cells = vec![

@@ -299,7 +299,7 @@ fn is_input(channel: &Channel) -> bool {
 }
 
 fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     all_channels(dataset)
         .into_iter()
         .find(|channel| channel.name(&inputs, &outputs) == name)

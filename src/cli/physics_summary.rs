@@ -60,7 +60,7 @@ pub(super) fn physics_section(analysis: &Analysis) -> String {
     }
     if let Some(assessment) = &analysis.physics_assessment {
         text += &indented(&physics_cost_table(assessment), 2);
-        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
         let delays = channel_delay_table(assessment, &inputs, &outputs);
         text += &indented(&sanitized_table(delays), 2);
         for check in &assessment.reruns {

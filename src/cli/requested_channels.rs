@@ -220,7 +220,7 @@ pub(super) fn requested_preparation(
     Ok(Preparation {
         inputs: without_delays(&channels.inputs, &delays),
         outputs: without_delays(&channels.outputs, &delays),
-        ..Preparation::of(&[], &[])
+        ..Preparation::new(&[], &[])
     })
 }
 

@@ -30,7 +30,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     let words = format!("{}; net gains:", schedule_words(schedule));
     let mut text = line("Schedule", &words);
     let dataset = &analysis.study.dataset;
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     for caution in &schedule.cautions {
         let words = schedule_caution_text(caution, &inputs, &outputs);
         let conditions: Vec<ConditionId> = caution.condition().into_iter().collect();

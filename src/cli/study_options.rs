@@ -119,7 +119,7 @@ pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Re
 /// that the dataset lacks are a caution only.
 fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     let mut settings = RequirementSettings::clone(&study.requirements);
-    let (_, outputs) = study.dataset.names_of_channels();
+    let (_, outputs) = study.dataset.input_and_output_names();
     for name in &arguments.attitude_command {
         if !outputs.contains(name) {
             let reason = sanitized(&format!(
@@ -210,7 +210,7 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
         value: role,
     } in signs
     {
-        let (inputs, outputs) = study.dataset.names_of_channels();
+        let (inputs, outputs) = study.dataset.input_and_output_names();
         let named: Vec<correction::Channel> =
             correction::Channel::inputs_then_outputs(inputs.len(), outputs.len())
                 .filter(|channel| channel.name(&inputs, &outputs) == *name)
@@ -223,7 +223,14 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
             ));
             return Err(Failure::coded_option(OPTION, "unknown-channel", reason));
         };
-        apply(study, OPTION, &Edit::SetSign { channel, of: *role })?;
+        apply(
+            study,
+            OPTION,
+            &Edit::SetSign {
+                channel,
+                role: *role,
+            },
+        )?;
     }
     Ok(())
 }

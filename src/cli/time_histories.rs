@@ -193,8 +193,8 @@ fn report_record(laid_out: &ConditionRecord) {
 
 /// Returns preparation settings that leave every channel unchanged.
 fn unchanged_channels(dataset: &Dataset) -> Preparation {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
     let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
-    Preparation::of(&inputs, &outputs)
+    Preparation::new(&inputs, &outputs)
 }

@@ -92,7 +92,7 @@ fn order_and_cost_of_condition_10(change: f64) -> (usize, f64) {
         }
         records.push(LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0);
     }
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
     let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
     let band = dataset.band();

@@ -257,7 +257,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         .take(1);
     let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0;
     let records: Vec<LaidOutRecord> = tables.map(proposed).collect();
-    let (inputs, outputs) = FEW.dataset.names_of_channels();
+    let (inputs, outputs) = FEW.dataset.input_and_output_names();
     let [inputs, outputs]: [Vec<&str>; 2] =
         [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let records = [HistoryRecords::from_used(

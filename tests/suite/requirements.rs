@@ -622,7 +622,7 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     let record =
         gdcm_sysid::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
     let flight = std::sync::Arc::clone(record.used_flight().unwrap());
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let [inputs, outputs]: [Vec<&str>; 2] =
         [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let job = RecordHistoryJob {

@@ -359,7 +359,7 @@ fn no_record_words(record: Option<&str>, count: usize) -> String {
     let held = match count {
         0 => "contains no records".to_owned(),
         1 => "contains only another record".to_owned(),
-        _ => format!("contains {held} records"),
+        _ => format!("contains {count} records"),
     };
     match record {
         Some(record) => format!(

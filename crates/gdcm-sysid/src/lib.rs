@@ -38,7 +38,7 @@
 //! }
 //! let record = FlightRecord { name: "sweep".to_owned(), time_s, inputs, outputs };
 //!
-//! let options = Options::new([1.0, 12.0], Preparation::of(&["LAT"], &["P"]));
+//! let options = Options::new([1.0, 12.0], Preparation::new(&["LAT"], &["P"]));
 //! let found = identify(&[record], &options, &Sequential, &Unobserved)?;
 //!
 //! let roll = &found.poles[0];

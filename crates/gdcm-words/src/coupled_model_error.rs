@@ -8,7 +8,7 @@ use gdcm_model::units::number;
 /// Returns why a model cannot be represented by matrices; a delayed channel is named instead of
 /// numbered.
 pub fn coupled_model_error_text(error: &CoupledModelError, dataset: &Dataset) -> String {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     named_error_text(error, &inputs, &outputs)
 }
 

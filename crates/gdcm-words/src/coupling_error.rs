@@ -6,7 +6,7 @@ use gdcm_model::units::{number, telling};
 
 /// Returns why couplings are unavailable; a reversed input is named instead of numbered.
 pub fn coupling_error_text(error: &CouplingError, dataset: &Dataset) -> String {
-    let (inputs, _) = dataset.names_of_channels();
+    let (inputs, _) = dataset.input_and_output_names();
     named_error_text(error, &inputs)
 }
 

@@ -252,7 +252,7 @@ fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> String {
 
 /// Lists the entries that the data do not determine.
 fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> String {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let names: Vec<String> = unknowns
         .iter()
         .map(|unknown| match *unknown {

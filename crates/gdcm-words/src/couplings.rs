@@ -73,7 +73,7 @@ fn cost_cells(name: &str, cost: CorrectionCost) -> [String; 5] {
 /// exceed its error bar is in brackets.
 pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Table> {
     let airspeed_kt = assessment.mean_airspeed_kt();
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let bars = if assessment.left_out_fits.is_empty() {
         String::new()
     } else {

@@ -49,7 +49,7 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
         Edit::Set(setting, _) => setting.name.to_owned(),
         Edit::SetSign {
             channel,
-            of: reversed,
+            role: reversed,
         } => {
             let name = channel.name_in(dataset);
             match reversed {

@@ -28,7 +28,7 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
             missed_targets_text(missed, dataset)
         }
         Remark::GainsRemedy(remedy) => {
-            let (inputs, outputs) = dataset.names_of_channels();
+            let (inputs, outputs) = dataset.input_and_output_names();
             remedy_text(remedy, &inputs, &outputs)
         }
         Remark::DelaysMatched { held, is_exact } => {
@@ -72,7 +72,7 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
             )
         }
         Remark::LoopAgrees(conflict) => {
-            let (inputs, outputs) = dataset.names_of_channels();
+            let (inputs, outputs) = dataset.input_and_output_names();
             agreement_text(conflict, &inputs, &outputs)
         }
         Remark::CoherenceUsed { responses } => {
@@ -88,7 +88,7 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
         }
         Remark::Caution(caution) => caution_text(caution, |pair| dataset.pair_name(pair)),
         Remark::Schedule(caution) => {
-            let (inputs, outputs) = dataset.names_of_channels();
+            let (inputs, outputs) = dataset.input_and_output_names();
             format!(
                 "Schedule: {}.",
                 schedule_caution_text(caution, &inputs, &outputs)
@@ -133,14 +133,14 @@ fn missed_targets_text(missed: &MissedTargets, dataset: &Dataset) -> String {
             texts.join(" ")
         }
         MissedTargets::Conflict(conflict) => {
-            let (inputs, outputs) = dataset.names_of_channels();
+            let (inputs, outputs) = dataset.input_and_output_names();
             conflict_text(conflict, &inputs, &outputs)
         }
     }
 }
 
 fn named_miss_text(miss: &Unmatched, band_top_rad_s: f64, dataset: &Dataset) -> String {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     miss_text(miss, band_top_rad_s, &inputs, &outputs)
 }
 

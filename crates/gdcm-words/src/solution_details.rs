@@ -14,7 +14,7 @@ use crate::sensitivity::sensitivity_text;
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     /// Sensitivities up to this value, relative to the objective, are not listed.
     const NOTABLE: f64 = 1e-3;
-    let (inputs, outputs) = study.dataset.names_of_channels();
+    let (inputs, outputs) = study.dataset.input_and_output_names();
     let mut details = vec![proof_text(result.gains.proof.outcome)];
     for minimum in result.gains.proof.local_minima.iter().skip(1) {
         let worse = 100.0 * (minimum.objective / result.gains.objective - 1.0);

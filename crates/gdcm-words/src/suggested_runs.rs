@@ -21,7 +21,7 @@ pub fn suggestion_text(suggestion: &SuggestedRuns, dataset: &Dataset) -> String 
 
 /// States the observed pattern, but not its cause.
 pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     match pattern {
         RunPattern::CrossedCyclic {
             inputs: [first, second],

@@ -190,7 +190,7 @@ fn held_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
     if trial.settings.constrained == study.settings.constrained {
         return Some(Vec::new());
     }
-    let (inputs, outputs) = study.dataset.names_of_channels();
+    let (inputs, outputs) = study.dataset.input_and_output_names();
     let mut names = Vec::new();
     for pair in study.dataset.on_axis().pairs() {
         let is_held = study.settings.constrained[pair];

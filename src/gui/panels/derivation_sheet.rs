@@ -148,7 +148,7 @@ pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();
     };
-    let (inputs, outputs) = state.dataset().names_of_channels();
+    let (inputs, outputs) = state.dataset().input_and_output_names();
     let (gain, delay) = toggles.of_pair(pair);
     let mut costs = Vec::new();
     if let Some(toggle) = gain {

@@ -14,12 +14,12 @@ pub fn sign_reversal_entry(
     channel: Channel,
     role: Option<SignRole>,
 ) -> (String, Command) {
-    let (inputs, outputs) = state.dataset().names_of_channels();
+    let (inputs, outputs) = state.dataset().input_and_output_names();
     let name = channel.name(&inputs, &outputs);
     let label = if role.is_some() {
         format!("Reverse sign of {name}")
     } else {
         format!("Undo sign reversal of {name}")
     };
-    (label, Edit::SetSign { channel, of: role }.into())
+    (label, Edit::SetSign { channel, role }.into())
 }

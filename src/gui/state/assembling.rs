@@ -176,12 +176,13 @@ pub struct Preview {
     pub drawn: Option<DrawnPreview>,
 }
 
-/// Curves in a preview, and the response to which they belong.
+/// Curves in a preview, and the data from which they were computed.
 #[derive(Debug)]
 pub struct DrawnPreview {
-    /// The model's key.
-    pub model: String,
+    pub model: FoundModel,
     /// Response index, as in [`Preview`].
     pub response: usize,
+    /// Band \[rad/s\].
+    pub band: (f64, f64),
     pub curves: Vec<BodeCurve>,
 }

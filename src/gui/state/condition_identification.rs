@@ -99,7 +99,7 @@ impl ConditionRecords {
         Preparation {
             inputs: self.inputs.clone(),
             outputs: self.outputs.clone(),
-            ..Preparation::of(&[], &[])
+            ..Preparation::new(&[], &[])
         }
     }
 

@@ -79,7 +79,7 @@ pub struct ConditionRecords {
 impl ConditionRecords {
     /// Creates a condition's records in `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
-        let (inputs, outputs) = dataset.names_of_channels();
+        let (inputs, outputs) = dataset.input_and_output_names();
         Self {
             rows,
             inputs: inputs.into_iter().map(ChannelPreparation::named).collect(),

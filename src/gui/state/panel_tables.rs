@@ -228,7 +228,7 @@ fn response_row(state: &State, pair: Pair) -> Row {
     let uncertainty = state.value_uncertainty();
     let shown = state.shown();
     let settings = &state.study.settings;
-    let (output, input) = state.dataset().channel_names(pair);
+    let (output, input) = state.dataset().output_and_input_name(pair);
     let cost = shown.and_then(|shown| shown.cost[pair]);
     let before = cost.map(|cost| cost.uncorrected);
     let after = cost.map(|cost| cost.corrected);
@@ -286,7 +286,7 @@ fn channels(state: &State) -> Table {
 fn channel_row(state: &State, channel: Channel) -> Row {
     let uncertainty = state.value_uncertainty();
     let correction = state.shown().map(|shown| &shown.correction);
-    let (inputs, outputs) = state.dataset().names_of_channels();
+    let (inputs, outputs) = state.dataset().input_and_output_names();
     let side = match channel {
         Channel::Input(_) => "input",
         Channel::Output(_) => "output",

@@ -4,7 +4,7 @@
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
 use gdcm_plot::figure::gains::{
-    Across, GainAxes, GainQuantity, Measure, add_previous, channels_figure, quieten,
+    Across, GainAxes, GainQuantity, Measure, add_previous, channels_figure, label_selected_only,
     reserve_room_for_bars,
 };
 use gdcm_plot::figure::marks::MarkId;
@@ -112,7 +112,7 @@ pub fn channels_view_ui(
     if plots.across == Across::Airspeed {
         let selected = MarkId::Condition(state.condition().id());
         for figure in [&mut inputs, &mut outputs] {
-            quieten(figure, &selected, SHOWS_DIFFERENCES);
+            label_selected_only(figure, &selected, SHOWS_DIFFERENCES);
         }
     }
     if plots.figure.plots.is_empty() {

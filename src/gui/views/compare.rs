@@ -52,7 +52,7 @@ pub fn compare_view_ui(
 
 pub fn compare_pages(state: &State) -> Vec<PageEntry> {
     [ComparePage::Decisions, ComparePage::Effects]
-        .map(|page| PageEntry::of(ViewPage::Compare(page), page == state.display.pages.compare))
+        .map(|page| PageEntry::new(ViewPage::Compare(page), page == state.display.pages.compare))
         .into()
 }
 

@@ -46,7 +46,7 @@ pub fn couplings_pages(state: &State) -> Vec<PageEntry> {
         CouplingsPage::Matrices,
         CouplingsPage::Loop,
     ]
-    .map(|page| PageEntry::of(ViewPage::Couplings(page), page == shown))
+    .map(|page| PageEntry::new(ViewPage::Couplings(page), page == shown))
     .into()
 }
 

@@ -30,7 +30,7 @@ pub fn evidence_pages(state: &State) -> Vec<PageEntry> {
         EvidencePage::Differences,
         EvidencePage::Forms,
     ]
-    .map(|page| PageEntry::of(ViewPage::Evidence(page), page == shown))
+    .map(|page| PageEntry::new(ViewPage::Evidence(page), page == shown))
     .into()
 }
 

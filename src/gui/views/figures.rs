@@ -49,7 +49,9 @@ pub fn figure_name(state: &State, view: View) -> String {
         view,
         View::Bode | View::Error | View::Across | View::Leads | View::ScheduleCost
     ) {
-        let (output, input) = state.dataset().channel_names(state.display.selection.pair);
+        let (output, input) = state
+            .dataset()
+            .output_and_input_name(state.display.selection.pair);
         parts.push(input);
         parts.push(output);
     }

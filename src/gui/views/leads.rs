@@ -91,7 +91,7 @@ fn figure(state: &State) -> Figure {
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::new(leads);
-    let (inputs, outputs) = state.dataset().names_of_channels();
+    let (inputs, outputs) = state.dataset().input_and_output_names();
     let band_top = leads.design.band_top_rad_s();
     let title = match &price {
         Some(price) => limit_text(price),

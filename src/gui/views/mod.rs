@@ -182,7 +182,7 @@ pub struct PageEntry {
 
 impl PageEntry {
     /// Creates the entry for a page, with the command that shows it.
-    fn of(page: ViewPage, is_shown: bool) -> Self {
+    fn new(page: ViewPage, is_shown: bool) -> Self {
         Self {
             words: page.words(),
             is_shown,

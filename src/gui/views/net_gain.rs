@@ -5,7 +5,7 @@ use egui::{Panel, RichText, ScrollArea, Ui};
 
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::gains::{
-    Across, GainQuantity, add_previous, add_variant, net_gain_figure, quieten,
+    Across, GainQuantity, add_previous, add_variant, label_selected_only, net_gain_figure,
     reserve_room_for_bars,
 };
 use gdcm_plot::figure::marks::MarkId;
@@ -58,7 +58,7 @@ pub fn net_gain_view_ui(
     let mut plots = net_gain_plots(state);
     view.hold_axes(&mut plots.figure, axis_update(ui, state));
     let selected = MarkId::Condition(state.condition().id());
-    quieten(
+    label_selected_only(
         &mut plots.figure,
         &selected,
         state.display.gains.show_evidence,

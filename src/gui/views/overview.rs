@@ -24,7 +24,7 @@ use crate::gui::widgets::palette::Palette;
 pub fn overview_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.frequency.overview.show_phase;
     [false, true]
-        .map(|has_phases| PageEntry::of(ViewPage::Overview(has_phases), has_phases == shown))
+        .map(|has_phases| PageEntry::new(ViewPage::Overview(has_phases), has_phases == shown))
         .into()
 }
 
@@ -53,7 +53,7 @@ pub fn overview_view_ui(
             note: cost_note(state, pair),
         })
         .collect();
-    let (inputs, outputs) = state.dataset().names_of_channels();
+    let (inputs, outputs) = state.dataset().input_and_output_names();
     let band = state.study.settings.band;
     let scene = OverviewScene {
         inputs: &inputs,

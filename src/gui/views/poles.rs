@@ -50,7 +50,7 @@ const LEAST_WITH_TABLE: f32 = 440.0;
 /// Returns the pages: the s-plane, and the modes.
 pub fn poles_pages(state: &State) -> Vec<PageEntry> {
     [PolesPage::Plane, PolesPage::Modes]
-        .map(|page| PageEntry::of(ViewPage::Poles(page), page == state.display.pages.poles))
+        .map(|page| PageEntry::new(ViewPage::Poles(page), page == state.display.pages.poles))
         .into()
 }
 

@@ -297,8 +297,12 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         ui.label(palette.small(format!("reading {reading} …")));
     } else if compared_record(state).is_none() {
         ui.add(
-            Label::new(palette.small("This condition has no flight record; add one in Records"))
-                .truncate(),
+            Label::new(
+                palette.small(
+                    "No flight record of this condition is in use; add or use one in Records",
+                ),
+            )
+            .truncate(),
         );
     }
     let test = state.study.requirements.test;

@@ -5,7 +5,7 @@ use egui::{Ui, vec2};
 
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::gains::{GainQuantity, add_previous, quieten};
+use gdcm_plot::figure::gains::{GainQuantity, add_previous, label_selected_only};
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::schedule_cost::schedule_cost_figure;
 
@@ -86,7 +86,7 @@ fn cost_figure(state: &State, pair: Pair) -> Figure {
         add_previous(&mut figure, &[GainQuantity::NetGain(pair)], previous);
     }
     let selected = MarkId::Condition(state.condition().id());
-    quieten(&mut figure, &selected, SHOWS_DIFFERENCES);
+    label_selected_only(&mut figure, &selected, SHOWS_DIFFERENCES);
     figure.with_ranges()
 }
 

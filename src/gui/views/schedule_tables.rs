@@ -202,7 +202,7 @@ pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> O
 /// Tabulates the schedule's coefficients, channel by channel; `None` without a schedule.
 pub(super) fn coefficient_table(state: &State) -> Option<Table> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
-    let (inputs, outputs) = state.dataset().names_of_channels();
+    let (inputs, outputs) = state.dataset().input_and_output_names();
     let coefficients = schedule.coefficients(&inputs, &outputs);
     let title = if coefficients.scale.is_empty() {
         "Schedule".to_owned()

@@ -61,7 +61,7 @@ fn assert_answered(window: &Window, view: View) {
     }
     // In Physics, the evidence takes the place of result and matrix.
     if view != View::Physics {
-        let (inputs, outputs) = state(window).dataset().names_of_channels();
+        let (inputs, outputs) = state(window).dataset().input_and_output_names();
         for (output, input) in outputs
             .iter()
             .flat_map(|output| inputs.iter().map(move |input| (output, input)))

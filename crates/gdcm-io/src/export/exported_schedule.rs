@@ -167,7 +167,7 @@ impl ExportedSchedule<'_> {
         if curve.is_finite() {
             return Ok(());
         }
-        let (inputs, outputs) = self.dataset.names_of_channels();
+        let (inputs, outputs) = self.dataset.input_and_output_names();
         Err(ExportFault::Curve {
             channel: channel.name(&inputs, &outputs),
             curve: quantity,

@@ -219,7 +219,7 @@ impl<'e> BreakpointTable<'e> {
 
     /// Adds the normalised mixing matrix's entries as columns, in row-major order.
     fn add_mixing(&mut self, couplings: &CouplingMatrices) {
-        let (inputs, _) = self.scheduled.dataset.names_of_channels();
+        let (inputs, _) = self.scheduled.dataset.input_and_output_names();
         for (to, receiver) in inputs.iter().enumerate() {
             for (from, sender) in inputs.iter().enumerate() {
                 let mut column = self.column(Channel::Input(to), &MIXING, &[None], |row| {
@@ -240,7 +240,7 @@ impl<'e> BreakpointTable<'e> {
         second_values: &[Option<f64>],
         value_at: impl Fn(Breakpoint) -> f64,
     ) -> Column {
-        let (inputs, outputs) = self.scheduled.dataset.names_of_channels();
+        let (inputs, outputs) = self.scheduled.dataset.input_and_output_names();
         let airspeeds = &self.scheduled.schedule.airspeeds;
         let range_kt = [airspeeds.min_kt, airspeeds.max_kt];
         let mut greatest: Option<TableDeviation> = None;

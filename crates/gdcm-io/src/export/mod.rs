@@ -228,7 +228,7 @@ impl<'e> Export<'e> {
         };
         match schedule.lead_price() {
             Some(price) => {
-                let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
+                let (inputs, outputs) = self.analysis.study.dataset.input_and_output_names();
                 vec![price_text(&price, &inputs, &outputs)]
             }
             None => Vec::new(),

@@ -249,7 +249,7 @@ impl Language {
         capital: &str,
         channels: &[Channel],
     ) -> Value {
-        let (inputs, outputs) = scheduled.dataset.names_of_channels();
+        let (inputs, outputs) = scheduled.dataset.input_and_output_names();
         let mut entries = Vec::with_capacity(channels.len());
         for (index, &channel) in channels.iter().enumerate() {
             let name = channel.name(&inputs, &outputs);

@@ -119,7 +119,7 @@ fn exported_model(
     condition: &Condition,
 ) -> Result<ExportedModel, ExportFault> {
     let id = condition.id();
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
     let model = model_of(analysis, &request.role, condition)?;
     let correction = correction_of(analysis, request.correction, condition)?;
     let Dynamics::StateSpace(dynamics) = &model.dynamics else {

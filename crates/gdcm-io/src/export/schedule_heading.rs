@@ -84,7 +84,7 @@ impl ExportedSchedule<'_> {
 
     /// Returns the remarks on the schedule: missing delays, lead costs, and cautions.
     pub(super) fn notes(&self) -> Vec<String> {
-        let (inputs, outputs) = self.dataset.names_of_channels();
+        let (inputs, outputs) = self.dataset.input_and_output_names();
         let mut notes = Vec::new();
         if !self.schedule.has_delays() {
             notes.push(DELAYS_NOT_SCHEDULED.to_owned());

@@ -89,7 +89,7 @@ pub(super) fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> 
         result.condition.id()
     );
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     for channel in all_channels(dataset) {
         let side = match channel {
             Channel::Input(_) => "input",

@@ -76,7 +76,7 @@ pub(super) fn add_physics(page: &mut Page, analysis: &Analysis) {
         return;
     };
     page.table(&physics_cost_table(assessment));
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
     page.table(&channel_delay_table(assessment, &inputs, &outputs));
     page.list(assessment.reruns.iter().map(rerun_text));
 }

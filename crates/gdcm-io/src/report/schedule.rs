@@ -154,7 +154,7 @@ fn schedule_words(settings: &ScheduleSettings) -> String {
 /// Adds the cost of leads, cautions about the schedule, and the delays that the schedule omits.
 fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let mut lines = Vec::new();
     if let Some(price) = schedule.lead_price() {
         lines.push(format!("Leads: {}.", price_text(&price, &inputs, &outputs)));
@@ -193,7 +193,7 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
 }
 
 fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
     let coefficients = schedule.coefficients(&inputs, &outputs);
     let quantity = quantity_symbol(schedule.settings.quantity);
     let title = if coefficients.scale.is_empty() {
@@ -251,7 +251,7 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
 }
 
 fn channel_name(dataset: &Dataset, channel: Channel) -> String {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     channel.name(&inputs, &outputs)
 }
 

@@ -51,7 +51,7 @@ impl Channel {
 
     /// Returns the channel's name in a dataset.
     pub fn name_in(self, dataset: &Dataset) -> String {
-        let (inputs, outputs) = dataset.names_of_channels();
+        let (inputs, outputs) = dataset.input_and_output_names();
         self.name(&inputs, &outputs)
     }
 }

@@ -242,8 +242,8 @@ impl Dataset {
     }
 
     /// Returns all channel names: inputs, then outputs. A single response's names come in the other
-    /// order ([`Self::channel_names`]).
-    pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
+    /// order ([`Self::output_and_input_name`]).
+    pub fn input_and_output_names(&self) -> (Vec<String>, Vec<String>) {
         (
             channel_names(&self.header.inputs),
             channel_names(&self.header.outputs),
@@ -251,7 +251,7 @@ impl Dataset {
     }
 
     /// Returns a response's channel names: output, then input.
-    pub fn channel_names(&self, pair: Pair) -> (String, String) {
+    pub fn output_and_input_name(&self, pair: Pair) -> (String, String) {
         (
             self.header.outputs[pair.output].name.clone(),
             self.header.inputs[pair.input].name.clone(),

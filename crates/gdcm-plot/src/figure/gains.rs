@@ -65,7 +65,7 @@ pub fn channels_figure(
     axes: GainAxes,
 ) -> Figure {
     let GainAxes { measure, across } = axes;
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
     let mut plots = Vec::new();
     for &channel in channels {
         let contents = GainPanel {
@@ -229,7 +229,7 @@ pub fn reserve_room_for_bars(figure: &mut Figure) {
 /// pointer. The label for the condition `selected`, whose dot has a ring, remains; if
 /// `shows_differences` is set, so do the brackets at significant differences with the labels on the
 /// dots at their ends.
-pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
+pub fn label_selected_only(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
         panel.marks.retain(|mark| match mark {
             Mark::Brackets(brackets) => shows_differences && brackets.name == SIGNIFICANT,

@@ -316,7 +316,7 @@ impl<'f> PlotTable<'f> {
                 frame: Area::new(frames.left, top, frames.width, height),
                 x: self.x_side(index, number, frames.width),
                 y: self.y_side(index, number, height),
-                letters_pt: SMALL_PT,
+                font_size_pt: SMALL_PT,
             });
             top += height + PANEL_GAP;
         }

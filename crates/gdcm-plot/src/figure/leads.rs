@@ -73,7 +73,7 @@ impl PairLeads {
     fn new(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pair) -> Self {
         let dataset = source.dataset();
         let band = source.study.settings.band;
-        let (inputs, outputs) = dataset.names_of_channels();
+        let (inputs, outputs) = dataset.input_and_output_names();
         let pair_name = dataset.pair_name(pair);
         let [output, input] = Channel::of_pair(pair);
         let mut curves = Vec::new();

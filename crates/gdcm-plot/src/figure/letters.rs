@@ -13,7 +13,7 @@ pub const FONTS: [(&str, &[u8]); 2] = [
 ];
 
 /// Distance from the middle of a text line down to its base line, relative to the font size.
-pub(super) const HALF_HEIGHT: f64 = 0.34;
+pub(super) const HALF_LETTER_HEIGHT: f64 = 0.34;
 
 /// A glyph in a font.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,11 +9,11 @@ use super::figure::{Figure, Panel};
 use super::figure_format::ColumnWidth;
 use super::layout::{LABEL_LINE, LABEL_PT, Layout, SMALL_LINE, SMALL_PT};
 use super::legend::{Entry, Sample};
-use super::letters::{HALF_HEIGHT, width, wrapped};
+use super::letters::{HALF_LETTER_HEIGHT, width, wrapped};
 use super::marks::Mark;
 use super::paint_axes::{grid, horizontal_axis, vertical_axis};
 use super::paint_dots::dots_and_labels;
-use super::paint_marks::{envelope_areas, grounds, mark_lines};
+use super::paint_marks::{backgrounds, envelope_areas, mark_lines};
 use super::paint_words::{mark_words, rule_label};
 use super::placed::{Placed, Side};
 
@@ -107,7 +107,7 @@ impl Page {
         for (line, words) in lines.into_iter().enumerate() {
             let middle = top + style.line_pt * (line as f64 + 0.5);
             // A text is placed at its base line.
-            let place = [MARGIN, middle + HALF_HEIGHT * style.size_pt];
+            let place = [MARGIN, middle + HALF_LETTER_HEIGHT * style.size_pt];
             let text = Text::new(place, words, style.size_pt).colored(style.color);
             self.shapes.push(Shape::Text(text));
         }
@@ -149,7 +149,7 @@ impl Page {
             self.shapes.extend(sample);
             let place = [
                 start + sample_width + SAMPLE_GAP,
-                y + HALF_HEIGHT * SMALL_PT,
+                y + HALF_LETTER_HEIGHT * SMALL_PT,
             ];
             let text = Text::new(place, &entry.text, SMALL_PT);
             self.shapes.push(Shape::Text(text));
@@ -201,7 +201,7 @@ pub struct PaintedPanel {
 fn paint_with_axes(placed: &Placed<'_>) -> PaintedPanel {
     let panel = placed.panel;
     let frame = placed.frame;
-    let mut clipped = grounds(placed);
+    let mut clipped = backgrounds(placed);
     clipped.extend(grid(placed));
     for mark in &panel.marks {
         clipped.extend(mark_lines(placed, mark));
@@ -240,22 +240,22 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 }
 
 impl Panel {
-    /// Paints the marks in `frame` \[pt\] with these x and y ranges; `letters_pt` is the font size
+    /// Paints the marks in `frame` \[pt\] with these x and y ranges; `font_size_pt` is the font size
     /// \[pt\].
     ///
     /// For a canvas that draws frame, axes, grid and title itself (the window). The other
     /// difference from a panel on paper: an envelope with edges is a shaded area instead of two
     /// lines.
-    pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> PaintedPanel {
+    pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], font_size_pt: f64) -> PaintedPanel {
         let placed = Placed {
             panel: self,
             title: "",
             frame,
             x: Side::bare(x),
             y: Side::bare(y),
-            letters_pt,
+            font_size_pt,
         };
-        let mut clipped = grounds(&placed);
+        let mut clipped = backgrounds(&placed);
         for mark in &self.marks {
             match mark {
                 Mark::Envelope(envelope) if envelope.edge.is_some() => {

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::drawing::{Anchor, Area, Color, Shape, Stroke, Text};
 use super::layout::{LABEL_PT, SMALL_PT, TICK};
-use super::letters::{HALF_HEIGHT, width};
+use super::letters::{HALF_LETTER_HEIGHT, width};
 use super::marks::Along;
 use super::placed::{Placed, Side};
 
@@ -80,7 +80,7 @@ pub(super) fn vertical_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape>
         if side.has_numbers
             && let Some(label) = &tick.label
         {
-            let place = [x - TICK - 1.5, y + HALF_HEIGHT * SMALL_PT];
+            let place = [x - TICK - 1.5, y + HALF_LETTER_HEIGHT * SMALL_PT];
             let text = Text::new(place, label, SMALL_PT);
             shapes.push(Shape::Text(text.anchored(Anchor::End)));
         }

@@ -54,7 +54,7 @@ pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
             leaders.push(Shape::line([label.dot.center, end], LEADER));
         }
         let at = [place.area.left, place.area.bottom()];
-        let text = Text::new(at, label.words, placed.letters_pt).colored(label.color);
+        let text = Text::new(at, label.words, placed.font_size_pt).colored(label.color);
         texts.push(Shape::Text(text));
     }
     PaintedDots {
@@ -111,8 +111,8 @@ fn labelled_dot(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str)
         center,
         radius,
         size: [
-            placed.letters_pt * width(label),
-            placed.letters_pt * DIGIT_HEIGHT,
+            placed.font_size_pt * width(label),
+            placed.font_size_pt * DIGIT_HEIGHT,
         ],
     }
 }

@@ -22,7 +22,7 @@ const BAR_EDGE: Stroke = Stroke::solid(Color::DIM, 0.3);
 
 /// Paints the backgrounds, which lie below the grid: bands first, then spans, then envelopes
 /// without edges.
-pub(super) fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
+pub(super) fn backgrounds(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = bands(placed);
     for mark in &placed.panel.marks {
         match mark {

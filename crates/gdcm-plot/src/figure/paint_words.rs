@@ -2,7 +2,7 @@
 
 use super::drawing::{Anchor, Area, Color, Shape, Text};
 use super::layout::{SMALL_LINE, SMALL_PT};
-use super::letters::{HALF_HEIGHT, width};
+use super::letters::{HALF_LETTER_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
@@ -61,14 +61,14 @@ fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
         .rev()
         .filter_map(|point| placed.at(*point))
         .find(|position| placed.shows(*position))?;
-    let size_pt = placed.letters_pt;
+    let size_pt = placed.font_size_pt;
     Some(Text::new([x + 1.5, y + size_pt], &guide.label, size_pt))
 }
 
 /// Returns a note's text; `None` at a value that an axis cannot show, or for a horizontal text that
 /// is wider than the distance between two names.
 fn note_text(placed: &Placed<'_>, note: &Note) -> Option<Text> {
-    let size_pt = placed.letters_pt;
+    let size_pt = placed.font_size_pt;
     match note.at {
         Place::Value { x, y, upright } => {
             let is_named = placed.panel.x.names.is_some();
@@ -79,9 +79,9 @@ fn note_text(placed: &Placed<'_>, note: &Note) -> Option<Text> {
             }
             let [x, y] = placed.at([x, y])?;
             let place = if upright {
-                [x + HALF_HEIGHT * size_pt, y]
+                [x + HALF_LETTER_HEIGHT * size_pt, y]
             } else {
-                [x, y + HALF_HEIGHT * size_pt]
+                [x, y + HALF_LETTER_HEIGHT * size_pt]
             };
             let text = Text::new(place, &note.text, size_pt);
             Some(text.anchored(Anchor::Middle).upright(upright))

@@ -25,7 +25,7 @@ pub(super) struct Placed<'f> {
     pub(super) x: Side,
     pub(super) y: Side,
     /// Font size for the texts in the panel \[pt\].
-    pub(super) letters_pt: f64,
+    pub(super) font_size_pt: f64,
 }
 
 /// An axis at its position: visible range, ticks and label.

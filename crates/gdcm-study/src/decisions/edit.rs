@@ -62,7 +62,7 @@ pub enum Edit {
     SetSign {
         channel: Channel,
         /// The models in which the sign is reversed; `None` restores the sign in all.
-        of: Option<SignRole>,
+        role: Option<SignRole>,
     },
     /// Adopts models identified from flight records instead of the conditions' identified bundles.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
@@ -161,7 +161,7 @@ impl Study {
             Edit::Hold(pair, held) => mark(&mut self.settings.constrained, *pair, *held)?,
             Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
             Edit::Set(setting, value) => setting.set(&mut self.settings, *value)?,
-            Edit::SetSign { channel, of } => self.set_sign(*channel, *of)?,
+            Edit::SetSign { channel, role } => self.set_sign(*channel, *role)?,
             Edit::TakeModels(taken) => self.take_models(taken)?,
             Edit::ReturnModels { condition } => self.return_models(*condition)?,
             Edit::SetRequirements(_, settings) => self.requirements = Arc::clone(settings),

@@ -145,7 +145,7 @@ impl CarriedDecisions {
         match turned.find(&self.study.dataset) {
             Some(channel) => self.apply(&Edit::SetSign {
                 channel,
-                of: Some(turned.of),
+                role: Some(turned.of),
             }),
             None => {
                 let channel = turned.channel.clone();

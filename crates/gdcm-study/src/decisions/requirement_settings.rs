@@ -107,7 +107,7 @@ impl RequirementSettings {
 
     /// Returns the settings for outputs that the dataset does not have.
     pub fn without_channel(&self, dataset: &Dataset) -> Vec<OutputRequirement> {
-        let (_, outputs) = dataset.names_of_channels();
+        let (_, outputs) = dataset.input_and_output_names();
         let mut unknown = Vec::new();
         for name in &self.attitude_command {
             if !outputs.contains(name) {

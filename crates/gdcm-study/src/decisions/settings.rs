@@ -288,7 +288,7 @@ impl Settings {
             ResponseNames(
                 table
                     .marked()
-                    .map(|pair| dataset.channel_names(pair))
+                    .map(|pair| dataset.output_and_input_name(pair))
                     .collect(),
             )
         })

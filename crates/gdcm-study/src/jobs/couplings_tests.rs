@@ -331,7 +331,7 @@ fn the_embedded_example_reads_as_what_was_put_in() {
     let mixing = fit
         .matrices
         .normalised_mixing(fit.matrices.airspeeds().mean_kt);
-    let (inputs, _) = example.dataset.names_of_channels();
+    let (inputs, _) = example.dataset.input_and_output_names();
     let at = |name: &str| inputs.iter().position(|of| of == name).unwrap();
     // True values: from LON to LAT, a swashplate phase of 1.8 degrees plus a coupling; 0.03 for the
     // other two entries.
@@ -377,7 +377,7 @@ fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
     let bars = CouplingBars::from_fits(&fits, airspeed_kt, 0.9).unwrap();
     let mixing = FEEDBACK.matrices.normalised_mixing(airspeed_kt);
     let is_told = |to: usize, from: usize| mixing[(to, from)].abs() > bars.mixing[(to, from)];
-    let (inputs, _) = EXAMPLE.dataset.names_of_channels();
+    let (inputs, _) = EXAMPLE.dataset.input_and_output_names();
     let input = |name: &str| inputs.iter().position(|of| of == name).unwrap();
     assert!(is_told(input("LAT"), input("LON")));
     let cyclic = cyclic_inputs(EXAMPLE.dataset.on_axis(), |output| {

@@ -50,7 +50,7 @@ fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRe
 }
 
 fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
     let [inputs, outputs]: [Vec<&str>; 2] =
         [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let record = HistoryRecord {
@@ -59,7 +59,7 @@ fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
     };
     let preparation = Preparation {
         keep_frozen: true,
-        ..Preparation::of(&inputs, &outputs)
+        ..Preparation::new(&inputs, &outputs)
     };
     vec![HistoryRecords {
         condition: CONDITION,

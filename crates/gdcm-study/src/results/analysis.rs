@@ -160,7 +160,7 @@ pub struct ConditionAnalysis {
     /// any; its model order applies to all results below.
     pub condition: Arc<Condition>,
     /// Distances within the bundles, and discontinuity ratios.
-    pub figures: Arc<BundleMetrics>,
+    pub bundle_metrics: Arc<BundleMetrics>,
     /// The condition and its comparison before its physics models are moved; `None` if they are not
     /// moved.
     pub moved: Option<MovedCondition>,
@@ -276,7 +276,7 @@ impl ConditionAnalysis {
     /// Names the physics models suggested as outliers, including rejected models.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
-            .figures
+            .bundle_metrics
             .discontinuity
             .as_ref()
             .map(Discontinuity::suggested)
@@ -311,7 +311,7 @@ impl ConditionAnalysis {
 
     /// Returns a physics model's discontinuity ratio, if defined.
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
-        let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
+        let ratios = &self.bundle_metrics.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
     }
 }

@@ -180,7 +180,12 @@ impl<'a> ConditionBandwidths<'a> {
     }
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
-        let (output, input) = self.asked.analysis.study.dataset.channel_names(pair);
+        let (output, input) = self
+            .asked
+            .analysis
+            .study
+            .dataset
+            .output_and_input_name(pair);
         let mut finding = BandwidthFinding {
             condition: self.asked.id(),
             airspeed_kt: self.asked.airspeed_kt(),

@@ -549,7 +549,7 @@ impl ComparedStages {
         } = optima;
         Ok(ConditionAnalysis {
             condition: Arc::clone(&measured.condition),
-            figures: Arc::clone(&measured.metrics),
+            bundle_metrics: Arc::clone(&measured.metrics),
             moved: None,
             coupled: None,
             comparison,

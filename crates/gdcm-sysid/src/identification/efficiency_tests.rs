@@ -143,7 +143,7 @@ fn fly(conduct: Conduct, inputs: usize, outputs: usize, seed: u64) -> KnownFligh
 fn options(inputs: usize, outputs: usize) -> Options {
     let input_names = ["u0", "u1", "u2", "u3"];
     let output_names = ["y0", "y1", "y2", "y3", "y4", "y5"];
-    let preparation = Preparation::of(&input_names[..inputs], &output_names[..outputs]);
+    let preparation = Preparation::new(&input_names[..inputs], &output_names[..outputs]);
     Options::new(BAND, preparation)
 }
 

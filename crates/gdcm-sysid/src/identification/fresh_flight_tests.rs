@@ -199,7 +199,7 @@ const TRAPS: [Trap; 11] = [
             }
             Flights {
                 records,
-                options: Options::new([1.0, 12.0], Preparation::of(&["LON", "LAT"], &["Q"])),
+                options: Options::new([1.0, 12.0], Preparation::new(&["LON", "LAT"], &["Q"])),
             }
         },
     },
@@ -385,7 +385,7 @@ fn assert_identified(inputs: usize, outputs: usize) {
     let mut random = Generator::new(7 + 100 * inputs as u64 + outputs as u64);
     let truth = aircraft(inputs, outputs, &mut random);
     let records = sweeps(&truth, &mut random);
-    let preparation = Preparation::of(
+    let preparation = Preparation::new(
         &["u0", "u1", "u2", "u3", "u4", "u5", "u6", "u7"][..inputs],
         &[
             "y0", "y1", "y2", "y3", "y4", "y5", "y6", "y7", "y8", "y9", "y10", "y11",

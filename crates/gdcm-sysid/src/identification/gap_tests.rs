@@ -337,7 +337,7 @@ fn cut(records: &[FlightRecord], seconds: f64) -> Vec<FlightRecord> {
 
 /// Returns the mean square error of the responses on axis \[dB^2\].
 fn mean_square_error(records: &[FlightRecord]) -> f64 {
-    let preparation = Preparation::of(&["LAT", "PED"], &["P", "R"]);
+    let preparation = Preparation::new(&["LAT", "PED"], &["P", "R"]);
     let options = Options::new(BAND, preparation);
     let found = identify(records, &options, &Sequential, &Unobserved).unwrap();
     let truth = lateral_aircraft();

@@ -261,7 +261,7 @@ fn fly(condition: i64, conduct: Conduct, seed: u64) -> KnownFlight {
         noise,
         step_s: STEP_S,
         records,
-        options: Options::new(BAND, Preparation::of(&INPUTS, &OUTPUTS)),
+        options: Options::new(BAND, Preparation::new(&INPUTS, &OUTPUTS)),
         main_pairs: ON_AXIS.to_vec(),
     }
 }

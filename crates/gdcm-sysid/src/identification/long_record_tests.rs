@@ -56,7 +56,7 @@ fn records(
 fn options(channels: [usize; 2]) -> Options {
     let inputs = &["LON", "LAT", "PED", "COL"][..channels[0]];
     let outputs = &["P", "Q", "R", "NX", "NY", "NZ"][..channels[1]];
-    Options::new([0.5, 12.0], Preparation::of(inputs, outputs))
+    Options::new([0.5, 12.0], Preparation::new(inputs, outputs))
 }
 
 #[test]

@@ -149,7 +149,7 @@ impl Flown {
 }
 
 pub(crate) fn options() -> Options {
-    Options::new([1.0, 12.0], Preparation::of(&["LON"], &["Q"]))
+    Options::new([1.0, 12.0], Preparation::new(&["LON"], &["Q"]))
 }
 
 /// Reads complex numbers from the lists of their real and imaginary parts.
@@ -548,7 +548,7 @@ fn a_reference_frees_the_response_from_feedback() {
             .into_iter()
             .map(with_reference)
             .collect();
-        let preparation = Preparation::of(&["LON", "CHIRP"], &["Q"]);
+        let preparation = Preparation::new(&["LON", "CHIRP"], &["Q"]);
         let options = Options {
             references: 1,
             ..Options::new([1.0, 12.0], preparation)
@@ -650,7 +650,7 @@ fn magnitudes_db(found: &Identification) -> Vec<f64> {
 
 #[test]
 fn the_quadrotor_is_identified_from_its_binary_sequence() {
-    let options = Options::new([2.0, 25.0], Preparation::of(&["M"], &["q"]));
+    let options = Options::new([2.0, 25.0], Preparation::new(&["M"], &["q"]));
     let found = identify(
         &[quadrotor(PRBS, false)],
         &options,
@@ -679,7 +679,7 @@ fn the_quadrotor_is_identified_from_its_binary_sequence() {
 
 #[test]
 fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
-    let options = Options::new([2.0, 25.0], Preparation::of(&["M"], &["q"]));
+    let options = Options::new([2.0, 25.0], Preparation::new(&["M"], &["q"]));
     let found = identify(
         &[quadrotor(SWEEP, false)],
         &options,
@@ -696,7 +696,7 @@ fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
     );
     let with_reference = Options {
         references: 1,
-        preparation: Preparation::of(&["M", "x0"], &["q"]),
+        preparation: Preparation::new(&["M", "x0"], &["q"]),
         ..options
     };
     let mended = identify(

@@ -89,7 +89,7 @@ pub(super) fn flight_records(known: &Value) -> Vec<FlightRecord> {
 
 pub(super) fn options(known: &Value) -> Options {
     let band = numbers(&known["band"]);
-    let preparation = Preparation::of(&texts(&known["inputs"]), &texts(&known["outputs"]));
+    let preparation = Preparation::new(&texts(&known["inputs"]), &texts(&known["outputs"]));
     Options::new([band[0], band[1]], preparation)
 }
 

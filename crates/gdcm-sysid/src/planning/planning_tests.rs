@@ -141,7 +141,7 @@ impl Aircraft {
     }
 
     fn preparation(&self) -> Preparation {
-        Preparation::of(
+        Preparation::new(
             &INPUTS[3 - self.inputs()..],
             &OUTPUTS[..self.model.outputs()],
         )

@@ -108,7 +108,7 @@ mod tests {
     }
 
     fn prepared(record: FlightRecord) -> Prepared {
-        let preparation = Preparation::of(&["LAT", "PED"], &["P", "R"]);
+        let preparation = Preparation::new(&["LAT", "PED"], &["P", "R"]);
         prepare_filled(&[record], &preparation, LINES, &Sequential).unwrap()
     }
 

@@ -91,7 +91,7 @@ impl Preparation {
     /// Creates the default settings: every channel as logged, gaps up to 3 samples bridged,
     /// segments at least 10 s long.
     #[must_use]
-    pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
+    pub fn new(inputs: &[&str], outputs: &[&str]) -> Self {
         Self {
             inputs: named_channels(inputs),
             outputs: named_channels(outputs),

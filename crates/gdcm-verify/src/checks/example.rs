@@ -70,7 +70,7 @@ pub(super) fn representatives(study: &mut ReferenceStudy) -> Result<Found, Check
             .flatten()
             .collect();
         found.all_scaled(&scores, &expected.numbers("scores")?, COST);
-        let Ok(discontinuity) = &result.figures.discontinuity else {
+        let Ok(discontinuity) = &result.bundle_metrics.discontinuity else {
             found.agree(false);
             return Ok(());
         };

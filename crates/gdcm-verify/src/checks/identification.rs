@@ -79,7 +79,7 @@ pub(super) fn known_model(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
         orders: Some(vec![4, 6, 8]),
         poles: vec![0.54],
         pasts: Some(vec![6]),
-        ..Options::new([0.6, 6.0], Preparation::of(&["LON", "LAT"], &["P", "Q"]))
+        ..Options::new([0.6, 6.0], Preparation::new(&["LON", "LAT"], &["P", "Q"]))
     };
     let identified =
         identify(&records, &options, &Sequential, &Unobserved).map_err(CheckFault::no_result)?;

@@ -67,7 +67,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     let scores = &result.representative(kind).scores;
     let distances: Vec<f64> = (0..scores.len())
         .filter(|&other| other != index && scores[other].is_some())
-        .filter_map(|other| result.figures.bundle(kind).between(index, other))
+        .filter_map(|other| result.bundle_metrics.bundle(kind).between(index, other))
         .collect();
     let step = if distances.is_empty() {
         "s = 0, because no other model is kept".to_owned()
@@ -110,7 +110,7 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         divided by its maximum, w_k ≥ 0 by least absolute deviations";
     let result = context.result;
     let value = result.discontinuity_ratio(&model.name)?;
-    let fit = result.figures.discontinuity.as_ref().ok()?;
+    let fit = result.bundle_metrics.discontinuity.as_ref().ok()?;
     let models = result.condition.bundle(BundleKind::Physics);
     let index = result
         .condition
@@ -120,7 +120,7 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     for (other, other_model) in models.iter().enumerate() {
         let (Some(other_perturbation), Some(distance)) = (
             other_model.perturbation(),
-            result.figures.physics.between(index, other),
+            result.bundle_metrics.physics.between(index, other),
         ) else {
             continue;
         };

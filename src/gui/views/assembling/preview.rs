@@ -61,20 +61,21 @@ fn response_choice_ui(ui: &mut Ui, names: &[String], shown: usize, commands: &mu
     }
 }
 
-/// Recomputes the curve if another model (by key) or response has been selected.
+/// Recomputes the curve if another model or response has been selected, or the model's reading or
+/// the band has changed.
 fn update_curves(preview: &mut Preview, found: &FoundModel, response: usize, band: (f64, f64)) {
-    let key = found.key();
     let mut is_same_model = false;
     if let Some(drawn) = &preview.drawn {
-        is_same_model = drawn.model == key;
-        if is_same_model && drawn.response == response {
+        is_same_model = drawn.model.key() == found.key();
+        if drawn.response == response && drawn.band == band && drawn.model == *found {
             return;
         }
     }
     let curves = curve(found, response, band).into_iter().collect();
     preview.drawn = Some(DrawnPreview {
-        model: key,
+        model: found.clone(),
         response,
+        band,
         curves,
     });
     // A different model may have other frequencies, so `request_fit` also fits the frequency axis.

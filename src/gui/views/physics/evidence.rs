@@ -146,7 +146,7 @@ impl Evidence<'_> {
         };
         self.table_ui(ui, &costs, commands);
         if self.has_delays() {
-            let (inputs, outputs) = self.state.dataset().names_of_channels();
+            let (inputs, outputs) = self.state.dataset().input_and_output_names();
             let delays = channel_delay_table(self.assessment, &inputs, &outputs);
             self.table_ui(ui, &delays, commands);
         }

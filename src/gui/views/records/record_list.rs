@@ -21,7 +21,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Tooltip on fit costs.
 pub(super) const CHI_SQUARED: &str =
-    "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
+    "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14.6)";
 
 /// Left edge of record names \[pt\].
 const NAME: f32 = 20.0;

@@ -524,7 +524,7 @@ fn measured_marks(
     for measured in &drawn.measured {
         if measured.is_trusted == is_trusted {
             let [omega, value] = measured.point.place(part);
-            points.push([omega, value, part.half_interval(measured.sd)]);
+            points.push([omega, value, part.drawn_half_interval(measured.sd)]);
         }
     }
     ChartMarks {

@@ -117,7 +117,11 @@ pub(super) fn spectrogram_ui(
     let lines = [
         (channel.name.clone(), medium(BODY_SIZE), palette.text),
         (unit.axis_label(), small(), palette.dim_text),
-        ("bright: more power".to_owned(), small(), palette.dim_text),
+        (
+            "stronger colour: more power".to_owned(),
+            small(),
+            palette.dim_text,
+        ),
     ];
     for (row, (text, font, color)) in lines.into_iter().enumerate() {
         let at = margin.min + vec2(0.0, 15.0 * row as f32);

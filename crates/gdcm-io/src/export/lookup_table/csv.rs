@@ -64,7 +64,7 @@ impl BreakpointTable<'_> {
 
     /// Returns a line for each input with the feedback gains from all outputs.
     fn feedback_lines(&self, couplings: &CouplingMatrices) -> Vec<String> {
-        let (inputs, outputs) = self.scheduled.dataset.names_of_channels();
+        let (inputs, outputs) = self.scheduled.dataset.input_and_output_names();
         let mut lines = Vec::with_capacity(inputs.len());
         for (to, input) in inputs.iter().enumerate() {
             let mut entries = Vec::with_capacity(outputs.len());

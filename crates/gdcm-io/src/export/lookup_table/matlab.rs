@@ -26,7 +26,7 @@ impl BreakpointTable<'_> {
             let name = format!("{}_{}", term.variable.name(), term.variable.unit());
             fields.add(&name, column(self.rows.iter().filter_map(|row| row.second)));
         }
-        let (inputs, outputs) = scheduled.dataset.names_of_channels();
+        let (inputs, outputs) = scheduled.dataset.input_and_output_names();
         self.add_side_fields(&mut fields, "input", inputs);
         self.add_side_fields(&mut fields, "output", outputs);
         if let Some(couplings) = scheduled.couplings {

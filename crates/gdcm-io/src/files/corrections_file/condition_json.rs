@@ -173,7 +173,7 @@ fn source(kind: BundleKind, model: &Model, provenance: &Provenance) -> Value {
 /// computed.
 fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
     let mut ratios = Map::new();
-    if let Ok(found) = &result.figures.discontinuity {
+    if let Ok(found) = &result.bundle_metrics.discontinuity {
         let models = condition.bundle(BundleKind::Physics).iter();
         for (model, ratio) in models.zip(&found.ratios) {
             ratios.insert(model.name.clone(), json!(ratio));

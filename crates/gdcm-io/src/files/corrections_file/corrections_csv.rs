@@ -112,7 +112,7 @@ pub fn write_corrections_csv(
         .map(|(name, _)| (*name).to_owned())
         .collect();
     if analysis.fitted_couplings().is_some() {
-        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
         for name in inputs {
             heading.push(format!("mixing_{name}"));
         }
@@ -140,7 +140,7 @@ impl ChannelRow<'_> {
     }
 
     fn name(&self) -> String {
-        let (inputs, outputs) = self.results.analysis.study.dataset.names_of_channels();
+        let (inputs, outputs) = self.results.analysis.study.dataset.input_and_output_names();
         self.channel.name(&inputs, &outputs)
     }
 

@@ -16,7 +16,7 @@ pub(super) struct LabelledAnalysis<'a> {
 
 impl<'a> LabelledAnalysis<'a> {
     pub(super) fn new(analysis: &'a Analysis) -> Self {
-        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
         Self {
             analysis,
             inputs,
@@ -26,7 +26,7 @@ impl<'a> LabelledAnalysis<'a> {
 
     /// Returns a response's channel names, output first.
     pub(super) fn pair(&self, pair: Pair) -> (String, String) {
-        self.analysis.study.dataset.channel_names(pair)
+        self.analysis.study.dataset.output_and_input_name(pair)
     }
 
     /// Returns each response's channel names, output first.

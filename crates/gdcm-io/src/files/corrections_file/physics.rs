@@ -220,7 +220,7 @@ fn parameter_json(found: DiagnosedParameter<'_>) -> Value {
 
 /// Returns the channel delays by name, inputs first.
 fn delays_json(delays_s: &Channels<f64>, dataset: &Dataset) -> Value {
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let mut members = Map::new();
     let values = delays_s.inputs.iter().chain(&delays_s.outputs);
     for (name, delay_s) in inputs.iter().chain(&outputs).zip(values) {

@@ -209,13 +209,13 @@ fn scores_and_discontinuity_ratios_are_told() {
 #[test]
 fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told() {
     let result = analysis().condition(ConditionId(10)).unwrap();
-    let fit = result.figures.discontinuity.as_ref().unwrap();
+    let fit = result.bundle_metrics.discontinuity.as_ref().unwrap();
     let models = result.condition.bundle(BundleKind::Physics);
     for (place, model) in models.iter().enumerate() {
         let ratio = |other: usize| {
             let fitted = fit.fitted_distance(model.perturbation()?, models[other].perturbation()?);
             (other != place && fitted > 0.0)
-                .then(|| result.figures.physics.between(place, other).unwrap() / fitted)
+                .then(|| result.bundle_metrics.physics.between(place, other).unwrap() / fitted)
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
         let median = gdcm_model::statistics::median(&mut ratios);

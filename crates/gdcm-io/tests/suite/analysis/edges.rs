@@ -170,19 +170,25 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
             .iter()
             .any(|caution| caution.is_set_aside(BundleKind::Physics, &name))
     );
-    let ratios = &found.figures.discontinuity.as_ref().unwrap().ratios;
+    let ratios = &found.bundle_metrics.discontinuity.as_ref().unwrap().ratios;
     assert!(ratios[3].is_none() && ratios[0].is_some());
     value["conditions"][0]["physics_models"]
         .as_array_mut()
         .unwrap()
         .remove(3);
-    let mut without = found.figures.discontinuity.as_ref().unwrap().ratios.clone();
+    let mut without = found
+        .bundle_metrics
+        .discontinuity
+        .as_ref()
+        .unwrap()
+        .ratios
+        .clone();
     without.remove(3);
     assert_eq!(
         only(&value, &[])
             .condition(ONLY)
             .unwrap()
-            .figures
+            .bundle_metrics
             .discontinuity
             .as_ref()
             .unwrap()

@@ -123,7 +123,7 @@ fn scores_and_discontinuity_ratios_of_the_example_agree() {
             &expected["scores"],
             scale::COST,
         );
-        let ratios = &found.figures.discontinuity.as_ref().unwrap().ratios;
+        let ratios = &found.bundle_metrics.discontinuity.as_ref().unwrap().ratios;
         let ratios: Vec<f64> = ratios.iter().map(|ratio| ratio.unwrap()).collect();
         assert_all_close(
             &format!("{at}, ratios"),

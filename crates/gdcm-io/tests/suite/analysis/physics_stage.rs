@@ -232,7 +232,7 @@ fn moved_models_reach_corrections_schedule_and_assessment() {
         for kind in BundleKind::BOTH {
             assert_eq!(before.representative(kind), after.representative(kind));
         }
-        assert_eq!(before.figures, after.figures);
+        assert_eq!(before.bundle_metrics, after.bundle_metrics);
         assert_eq!(&*before.comparison, after.file_comparison());
         assert_ne!(before.comparison.delta, after.comparison.delta);
         assert_ne!(before.correction, after.correction);

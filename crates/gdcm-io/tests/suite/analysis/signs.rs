@@ -72,8 +72,8 @@ fn scaled(bundle: BundleKind, channel: Channel, factor: f64) -> Study {
     })
 }
 
-fn turn(study: &mut Study, channel: Channel, of: Option<SignRole>) {
-    study.apply(&Edit::SetSign { channel, of }).unwrap();
+fn turn(study: &mut Study, channel: Channel, role: Option<SignRole>) {
+    study.apply(&Edit::SetSign { channel, role }).unwrap();
 }
 
 fn results(analysis: &Analysis) -> Value {
@@ -137,7 +137,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
         study
             .apply(&Edit::SetSign {
                 channel: Channel::Output(6),
-                of: None
+                role: None
             })
             .is_err()
     );

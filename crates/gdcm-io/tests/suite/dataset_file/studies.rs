@@ -249,7 +249,7 @@ proptest! {
             Edit::Pin(id(BundleKind::Identified, rejected)),
             Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
             Edit::SetHeldOut { condition: first.id(), held_out },
-            Edit::SetSign { channel: Channel::Output(1), of: Some(SignRole::Identified) },
+            Edit::SetSign { channel: Channel::Output(1), role: Some(SignRole::Identified) },
             Edit::KeepVariant { name: "first → α".to_owned() },
         ]);
         decided(&mut study, &others);

@@ -275,7 +275,7 @@ fn own_files() -> [NamedBytes; 4] {
         .clone();
     let sign = Edit::SetSign {
         channel: Channel::Output(0),
-        of: Some(SignRole::Identified),
+        role: Some(SignRole::Identified),
     };
     let pin = Edit::Pin(ModelId::new(condition, BundleKind::Physics, model));
     for edit in [

@@ -41,8 +41,8 @@ fn identified(id: ConditionId) -> Identification {
         .map(laid_out)
         .filter(is_of_condition)
         .collect();
-    let (inputs, outputs) = dataset.names_of_channels();
-    let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
+    let (inputs, outputs) = dataset.input_and_output_names();
+    let preparation = Preparation::new(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let request =
         IdentificationRequest::from_used(records.iter(), preparation, [band.min(), band.max()])
@@ -94,7 +94,7 @@ fn assert_models_come_again(id: i64) {
     let held_out = found
         .held_out_cost
         .expect("the validation record is held out");
-    // The held-out record is the decisive test of a model (M14, section 4).
+    // The held-out record is the decisive test of a model (M14.4).
     assert!(
         held_out <= 1.15 * found.cost,
         "held out {held_out}, fitted {}",

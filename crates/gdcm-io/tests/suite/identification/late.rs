@@ -23,7 +23,7 @@ fn measured(change: impl Fn(&mut FlightRecord)) -> ResponseEstimate {
     records.iter_mut().for_each(change);
     let prepared = prepare(
         &records,
-        &Preparation::of(&["LON", "LAT"], &["P", "Q"]),
+        &Preparation::new(&["LON", "LAT"], &["P", "Q"]),
         &Sequential,
     )
     .unwrap();

@@ -38,7 +38,7 @@ fn wandering(samples: usize) -> FlightRecord {
 }
 
 fn settings() -> Preparation {
-    Preparation::of(&["LON", "PED"], &["P", "Q"])
+    Preparation::new(&["LON", "PED"], &["P", "Q"])
 }
 
 fn prepared(record: &FlightRecord, settings: &Preparation) -> Prepared {
@@ -66,7 +66,7 @@ fn the_known_record_becomes_the_known_pieces() {
         inputs: matrix(&case["u"]),
         outputs: DMatrix::from_fn(rows.len(), 2, |n, o| rows[n][o]),
     };
-    let mut settings = Preparation::of(&["u"], &["y1", "y2"]);
+    let mut settings = Preparation::new(&["u"], &["y1", "y2"]);
     let delays = list(&case["delay_y"]);
     (0..2).for_each(|o| settings.outputs[o].delay_s = delays[o]);
     settings.least_segment_s = case["min_len_s"].as_f64().unwrap();
@@ -481,7 +481,7 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
     assert!(matches!(
         prepare(
             std::slice::from_ref(&good),
-            &Preparation::of(&[], &["P"]),
+            &Preparation::new(&[], &["P"]),
             &Sequential
         ),
         Err(PreparationError::NoChannels(_))

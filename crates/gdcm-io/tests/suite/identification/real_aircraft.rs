@@ -17,13 +17,13 @@ fn identified(dataset: &Dataset, id: ConditionId) -> Identification {
     for table in example_records(Example::RealAircraft, id.0).unwrap() {
         records.push(LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0);
     }
-    let (inputs, outputs) = dataset.names_of_channels();
+    let (inputs, outputs) = dataset.input_and_output_names();
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
     let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
     let band = dataset.band();
     let request = IdentificationRequest::from_used(
         records.iter(),
-        Preparation::of(&inputs, &outputs),
+        Preparation::new(&inputs, &outputs),
         [band.min(), band.max()],
     )
     .unwrap();

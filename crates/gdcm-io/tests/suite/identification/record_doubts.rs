@@ -66,7 +66,7 @@ fn doubts(channel: &LoggedChannel) -> Vec<RecordCaution> {
     let preparation = Preparation {
         resample: true,
         least_segment_s: 1.0,
-        ..Preparation::of(&[channel.name.as_str()], &["wave"])
+        ..Preparation::new(&[channel.name.as_str()], &["wave"])
     };
     let Ok(prepared) = prepare(&[record], &preparation, &Sequential) else {
         return Vec::new();

@@ -66,7 +66,7 @@ fn known_options(known: &Value) -> Options {
         pasts: Some(whole("pasts")),
         ..Options::new(
             [band[0], band[1]],
-            Preparation::of(&["U1", "U2"], &["Y1", "Y2"]),
+            Preparation::new(&["U1", "U2"], &["Y1", "Y2"]),
         )
     }
 }
@@ -172,7 +172,7 @@ pub fn quick(channels: (usize, usize)) -> Options {
         pasts: Some(vec![6]),
         ..Options::new(
             [0.6, 6.0],
-            Preparation::of(&INPUTS[..channels.0], &OUTPUTS[..channels.1]),
+            Preparation::new(&INPUTS[..channels.0], &OUTPUTS[..channels.1]),
         )
     }
 }
@@ -372,7 +372,7 @@ fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
 
 #[test]
 fn bands_hold_what_they_say() {
-    // The factor of M14, section 5, was determined for an aircraft of 39 states, for which bands
+    // The factor of M14.5 was determined for an aircraft of 39 states, for which bands
     // without the factor are too narrow. Here a model of four states is exact: nominal 95 % bands
     // contain the truth even without the factor, and almost always with it.
     let factor = std::f64::consts::SQRT_2;

@@ -154,7 +154,10 @@ fn settings_lines(analysis: &Analysis) -> String {
     }
     for turned in study.turned_channels() {
         let channel = sanitized(&turned.channel);
-        let words = format!("{channel} of {} is inverted", turned.of.models());
+        let words = format!(
+            "the sign of {channel} is reversed in the {}",
+            turned.of.models()
+        );
         text += &line("Sign", &words);
     }
     text += &line("Phase", &phase_words(analysis));

@@ -190,7 +190,7 @@ impl IdentificationTask {
             None => String::new(),
         };
         format!(
-            "{}{}: {}; order {}, J per degree of freedom {:.2}{held_out}\n",
+            "{}{}: {}; order {}, chi2/dof {:.2}{held_out}\n",
             prefix(self.condition),
             sanitized_path(file),
             counted(REFINED_AND_UNREFINED + found.bundle.len(), "model"),

@@ -150,10 +150,12 @@ pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) ->
     let times = part.words();
     let spans = listed_spans(part, wholes);
     let reason = if part.is_from_start {
-        format!("no record has samples in the part {times} (seconds from its start): {spans}")
+        format!(
+            "no record has samples in the part {times} (seconds from the start of the record): {spans}"
+        )
     } else {
         format!(
-            "no record has samples in the part {times} (seconds on its time axis): {spans}{}",
+            "no record has samples in the part {times} (seconds on the time axis of the record): {spans}{}",
             from_start_hint(part)
         )
     };

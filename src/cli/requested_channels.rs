@@ -137,7 +137,8 @@ fn set_column(
     let rule = &mut rules[index];
     if !unit.is_empty() && *unit != rule.unit {
         let reason = format!(
-            "{name} has the unit {} in the dataset, not {unit}",
+            "{name} is in {} in the dataset, not in {unit}; omit [{unit}] or, if the records are in \
+            {unit}, add --unit {name}={unit}",
             rule.unit
         );
         return Err(Failure::option(option, reason));

@@ -59,7 +59,7 @@ fn schedule_words(schedule: &Schedule) -> String {
     };
     let mut words = match schedule.degree() {
         Some(degree) => format!("polynomial of degree {degree} in airspeed, fitted to {quantity}"),
-        None => format!("lookup table in airspeed, of {quantity}"),
+        None => format!("lookup table of {quantity} over airspeed"),
     };
     let range = &schedule.airspeeds;
     words += &format!(", {} to {} kt", number(range.min_kt), number(range.max_kt));

@@ -44,7 +44,7 @@ const SECTIONS: [&str; 16] = [
     "8 Settings",
     "9 Provenance",
     "A Details of the conditions",
-    "B Channels over the conditions",
+    "B Gains and delays of the channels, by condition",
     "C Details of the assessment",
     "D Details of the uncertainty",
     "E Details of the requirements",

@@ -408,6 +408,10 @@ class Work(unittest.TestCase):
         self.assertEqual(len(gdcm.analyze(example(), points=20)), 11)
 
     def test_ctrl_c_stops_the_work(self) -> None:
+        # A process that a shell starts in the background inherits that Ctrl+C is ignored.
+        handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, handler)
+
         def interrupt(fraction: float, step: str) -> None:
             os.kill(os.getpid(), signal.SIGINT)
 

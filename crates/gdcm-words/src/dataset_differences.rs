@@ -32,7 +32,7 @@ pub fn dataset_difference_text(difference: &Difference) -> String {
                 name.push_str(&format!(" (variant \"{variant}\")"));
             }
             format!(
-                "a decision no longer applies: {name}: {}",
+                "a decision no longer applies: {name} ({})",
                 not_applied_text(why)
             )
         }

@@ -112,7 +112,7 @@ fn matched_gains_text(held: usize, tolerance_db: Option<f64>) -> String {
 
 fn matched_leads_text(held: usize) -> String {
     match held {
-        0 => "No delay or lead is held.".to_owned(),
+        0 => "No response is held, so no delay or lead is prescribed.".to_owned(),
         1 => "The held response gets the delay or lead that it needs.".to_owned(),
         count => format!("All {count} held responses get the delay or lead that they need."),
     }

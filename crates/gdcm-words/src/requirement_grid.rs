@@ -306,7 +306,11 @@ pub fn not_determined_text(why: &NotDetermined) -> String {
         NotDetermined::ModeNotPaired => {
             "unpaired: the model has no mode close to the identified one".to_owned()
         }
-        NotDetermined::ModeUncertain => "flight does not determine this mode".to_owned(),
+        NotDetermined::ModeUncertain => {
+            "the flight data do not determine this mode: it is below the band, or its uncertainty \
+            exceeds the tolerance"
+                .to_owned()
+        }
         NotDetermined::Summary(why) => no_summary_text(*why).to_owned(),
     }
 }

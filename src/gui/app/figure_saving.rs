@@ -82,15 +82,18 @@ impl GdcmApp {
         );
     }
 
-    /// Returns a view's figure; reports an error if the view has none yet.
+    /// Returns a view's figure; reports an error if the view has none.
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
-            let text = format!(
-                "{} has no figure yet: {}",
-                view.name(),
-                self.state.results.absence()
-            );
+            let why = if self.state.analysis().is_some() {
+                "the results contain nothing to plot in it"
+            } else if self.state.results.stopped {
+                "the computation was stopped; choose Compute to continue"
+            } else {
+                "the results are still being computed; try again in a moment"
+            };
+            let text = format!("{} has no figure: {why}", view.name());
             self.notify_error(Message::new("no-figure", text));
         }
         figure

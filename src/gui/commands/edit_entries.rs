@@ -182,7 +182,7 @@ fn kept_model_entries(id: ModelId, is_pinned: bool) -> [Entry; 3] {
     } else {
         Entry::new(
             format!("Use {name} as representative"),
-            "Replaces the medoid as representative of the bundle",
+            "Represents the bundle instead of the medoid, or of the model chosen before",
             Edit::Pin(id),
         )
     };

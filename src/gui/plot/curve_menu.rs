@@ -165,7 +165,7 @@ pub(super) fn model_actions_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveAc
         && entry_ui(
             ui,
             "Use as representative",
-            "Replaces the medoid as representative of the bundle",
+            "Represents the bundle instead of the medoid, or of the model chosen before",
         )
     {
         chosen = Some(CurveAction::Pin);

@@ -62,9 +62,9 @@ const EVERY_CONDITION_NAMES: PlotNames = PlotNames {
 };
 const FOUND_MODEL_NAMES: PlotNames = PlotNames {
     salt: "found model",
-    label_suffix: ", plot of a found model",
-    pane_suffix: " of a found model",
-    sentence_suffix: " plot of a found model",
+    label_suffix: ", plot of a model in the files",
+    pane_suffix: " of a model in the files",
+    sentence_suffix: " plot of a model in the files",
 };
 const SCHEDULE_ERROR_NAMES: PlotNames = PlotNames {
     salt: "schedule error",

@@ -70,7 +70,10 @@ impl ConditionRecords {
         for reference in &self.references {
             let Some(column) = row.table.find(reference) else {
                 let name = &row.table.name;
-                let text = format!("{name}: there is no column \"{reference}\"");
+                let text = format!(
+                    "{name}: no column \"{reference}\", which is chosen as a reference; remove the \
+                    reference, or leave the record out"
+                );
                 return Err(Message::new("no-such-column", text));
             };
             layout.inputs.push(Some(ColumnUse::as_it_is(column)));

@@ -104,7 +104,7 @@ impl ConditionRecordChange {
             Self::Remedies { record } => format!("correct {record}"),
             Self::SampleHold { channel } => format!("set the sample hold of {channel}"),
             Self::Band => "set the identification band".to_owned(),
-            Self::Search => "change the identification search".to_owned(),
+            Self::Search => "change orders, past windows or Laguerre poles".to_owned(),
             Self::References => "choose the references".to_owned(),
             Self::AddPart { record } => format!("add a part of {record}"),
             Self::MovePart { record } => format!("move the ends of {record}"),

@@ -48,11 +48,16 @@ impl AcrossReadout<'_> {
     /// largest error within the band (mid-band if only responses are drawn). `None` without pointer
     /// and curves.
     pub(super) fn readout(&self, pointed: Option<f64>) -> Option<Readout> {
-        let (heading, omega) = match pointed {
-            Some(omega) => ("ω at the pointer", omega),
-            None => ("ω of the largest error", self.omega_of_largest_error()?),
+        let omega = match pointed {
+            Some(omega) => omega,
+            None => self.omega_of_largest_error()?,
         };
         let largest = largest(self.errors_at(omega));
+        let heading = match (pointed, &largest) {
+            (Some(_), _) => "ω at the pointer",
+            (None, Some(_)) => "ω of the largest error",
+            (None, None) => "ω at mid-band",
+        };
         let mut largest_name = "largest error".to_owned();
         if let Some(error) = &largest {
             largest_name = format!("largest: condition {}", error.condition);

@@ -1412,7 +1412,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     wait_until(&mut window, "its two topics", |window| {
         rows_shown(window) == 2
     });
-    click(&mut window, "Make a dataset from them…");
+    click(&mut window, "Make a dataset from these records…");
     for (field, text) in [
         ("Lower end of the band to identify", "3"),
         ("Upper end of the band to identify", "25"),
@@ -1540,7 +1540,7 @@ fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
     show(&mut window, View::Records);
     give(&mut window, RecordsCommand::Add(vec![folder.to_owned()]));
     wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
-    click(&mut window, "Make a dataset from them…");
+    click(&mut window, "Make a dataset from these records…");
     fill_in(&mut window, "Inputs of the dataset", inputs);
     type_into(&mut window, "Outputs of the dataset", outputs);
     window

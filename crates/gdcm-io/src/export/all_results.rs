@@ -26,7 +26,7 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     stem: "corrections",
     group: FormatGroup::PerCondition,
     title: "All values",
-    words: "All values of each condition and the schedule, as in corrections.json",
+    words: "All values of each condition, and the schedule (JSON, the format of corrections.json)",
     options: OPTIONS,
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),

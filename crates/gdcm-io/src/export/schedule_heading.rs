@@ -21,6 +21,9 @@ impl ExportedSchedule<'_> {
         };
         let mut lines = vec![
             format!("{quantities} that correct a helicopter model, scheduled with airspeed."),
+            "Mi and Mo are diagonal matrices of the gains of inputs and outputs; tau_i and tau_o are \
+            their delays, one for each channel."
+                .to_owned(),
             "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
             "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
             format!(

@@ -144,7 +144,7 @@ pub enum ReadingNote {
         /// Total duration \[s\].
         lost_s: f64,
     },
-    #[error("{} omitted: no topic, or too short for their topic", counted(*count, "message"))]
+    #[error("{} omitted: no topic is subscribed for them, or they are shorter than their topic's format", counted(*count, "data message"))]
     MessagesOmitted { count: usize },
     #[error("the file is truncated: it was read up to the last complete message")]
     Truncated,

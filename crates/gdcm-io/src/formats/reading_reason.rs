@@ -5,7 +5,7 @@
 pub enum QuantityReason {
     #[error("its name is \"{0}\"")]
     Name(String),
-    #[error("its name contains {0}")]
+    #[error("its name contains \"{0}\"")]
     WordInName(String),
     #[error("its unit is {0}")]
     Unit(&'static str),

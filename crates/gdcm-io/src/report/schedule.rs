@@ -36,7 +36,7 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
 
 /// Adds the appendix on each condition's channel gains and delays.
 pub(super) fn add_channels_of_conditions(page: &mut Page, analysis: &Analysis) {
-    page.appendix("Channels over the conditions");
+    page.appendix("Gains and delays of the channels, by condition");
     let dataset = &analysis.study.dataset;
     let inputs: Vec<Channel> = (0..dataset.inputs().len()).map(Channel::Input).collect();
     let outputs: Vec<Channel> = (0..dataset.outputs().len()).map(Channel::Output).collect();

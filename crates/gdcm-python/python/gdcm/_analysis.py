@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from . import _gdcm
 from ._data import Dataset
 from ._error import Error
 from ._figure import Figure
-from ._frames import pandas
+from ._frames import frame_of, pandas
 from ._messages import Message, messages_of
 from ._models import Complexes, Floats, StateSpace, checked_omega, model_from_json, response_array
 from ._options import Pair, assigned, names, pair, pairs, path, repeated, settings
@@ -553,7 +552,7 @@ class Analysis:
         if table not in tables:
             raise ValueError(f"table: expected one of {tables}, found {table!r}")
         text = self._analysis.tables()[tables.index(table)]
-        return pandas().read_csv(io.BytesIO(text), float_precision="round_trip")
+        return frame_of(text)
 
     def figure(
         self,

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import os
 from typing import Any, Union
 
 from . import _gdcm
-from ._frames import pandas
+from ._frames import frame_of
 
 
 class Figure:
@@ -46,8 +45,7 @@ class Figure:
 
     def to_frame(self) -> Any:
         """Return the numbers of all curves as a pandas data frame, one row for each point."""
-        table = io.BytesIO(self._figure.bytes("csv"))
-        return pandas().read_csv(table, float_precision="round_trip")
+        return frame_of(self._figure.bytes("csv"))
 
     def __repr__(self) -> str:
         return f"<gdcm.Figure {self.title!r}>"

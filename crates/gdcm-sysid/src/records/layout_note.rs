@@ -120,7 +120,11 @@ pub enum ColumnConversion {
         factor_words(*factor)
     )]
     OnlyPlausibleUnit { unit: String, factor: f64 },
-    #[error(", not converted because the file gives no unit")]
+    /// The file gives no unit, and the samples do not tell which it is.
+    #[error(
+        ", taken in the channel's unit, because the file gives none and the samples fit no usual \
+        unit; if that is wrong, set the unit of the column"
+    )]
     NoUnitOfFile,
 }
 

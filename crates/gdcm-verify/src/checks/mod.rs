@@ -231,7 +231,7 @@ pub const CHECKS: &[Check] = &[
         code: "bandwidth-and-phase-delay",
         sections: "M17",
         what: "bandwidth, phase delay and margins of four attitude responses with delay",
-        source: "independent code on the closed forms",
+        source: "independent code that evaluates the closed forms",
         measure: "relative",
         tolerance: 1e-9,
         reason: "root search to 1e-10 of the frequency",

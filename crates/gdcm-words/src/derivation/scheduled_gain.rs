@@ -111,8 +111,8 @@ fn fit_steps(
             airspeeds_kt,
             values,
         } => {
-            let between = neighbours_words(airspeeds_kt, values, airspeed_kt);
-            vec![format!("{symbol} between {between} = {fitted}")]
+            let origin = table_origin_words(airspeeds_kt, values, airspeed_kt);
+            vec![format!("{symbol} = {fitted}, {origin}")]
         }
     }
 }
@@ -130,8 +130,9 @@ fn scaled_airspeed_words(schedule: &Schedule, airspeed_kt: f64) -> String {
     )
 }
 
-/// Describes the table points below and above an airspeed.
-fn neighbours_words(airspeeds_kt: &[f64], values: &[f64], airspeed_kt: f64) -> String {
+/// Describes how a value follows from the table: interpolated between the points below and above the
+/// airspeed, or taken from the first or last point, at its airspeed and beyond.
+fn table_origin_words(airspeeds_kt: &[f64], values: &[f64], airspeed_kt: f64) -> String {
     let point = |at: usize| {
         format!(
             "{} at {} kt",
@@ -139,12 +140,17 @@ fn neighbours_words(airspeeds_kt: &[f64], values: &[f64], airspeed_kt: f64) -> S
             five_digits(airspeeds_kt[at])
         )
     };
-    let after = airspeeds_kt
-        .partition_point(|&at| at < airspeed_kt)
-        .min(values.len() - 1);
+    let after = airspeeds_kt.partition_point(|&at| at < airspeed_kt);
+    let last = values.len() - 1;
     if after == 0 {
-        point(0)
+        format!("the first value of the table, {}", point(0))
+    } else if after > last {
+        format!("the last value of the table, {}", point(last))
     } else {
-        format!("{} and {}", point(after - 1), point(after))
+        format!(
+            "interpolated between {} and {}",
+            point(after - 1),
+            point(after)
+        )
     }
 }

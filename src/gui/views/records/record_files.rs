@@ -96,8 +96,8 @@ pub(super) fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<
     ui.add(Label::new(page.palette.small(text)).wrap());
     button_ui(
         ui,
-        Button::new("Make a dataset from them…"),
-        "Models can be identified from them before a physics model exists",
+        Button::new("Make a dataset from these records…"),
+        "Models can be identified from the records before a physics model exists",
         RecordsCommand::AskDataset,
         commands,
     );

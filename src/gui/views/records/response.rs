@@ -346,7 +346,7 @@ impl ResponseCharts<'_> {
             width: 1.3,
             dash: None,
         });
-        let caption = ["Partial coherence", "below 0.6 hollow, not used"];
+        let caption = ["Partial coherence", "below 0.6: points above are hollow"];
         self.show(ui, place, caption, &chart);
     }
 

@@ -1,4 +1,4 @@
-//! Options that declare a value for a channel: its sign, unit, factor, delay or column.
+//! Options that declare a value for a channel: its sign, unit, factor, amplitude, delay or column.
 
 use std::collections::BTreeSet;
 
@@ -59,27 +59,25 @@ pub type ChannelSign = ChannelValue<Option<SignRole>>;
 
 /// Parses a channel's sign: "NZ=-1", "NZ=-1:physics", "NZ=1".
 pub(super) fn channel_sign(text: &str) -> Result<ChannelSign, String> {
-    valid_sign(text).ok_or_else(|| {
+    ChannelValue::parse(text, inverted_role).ok_or_else(|| {
         format!(
             "expected CHANNEL=-1, optionally followed by :identified, :physics or :all, or \
-            CHANNEL=1; found {text}"
+            CHANNEL=1; found \"{text}\""
         )
     })
 }
 
-fn valid_sign(text: &str) -> Option<ChannelSign> {
-    let (channel, rest) = text.rsplit_once('=')?;
-    let (sign, role) = rest
+/// Parses a sign and, after a colon, the role of the inverted models: "-1", "-1:physics", "1". The
+/// inner `None` is a sign that is not inverted; the outer `None` an invalid text.
+fn inverted_role(text: &str) -> Option<Option<SignRole>> {
+    let (sign, role) = text
         .split_once(':')
-        .unwrap_or((rest, SignRole::Identified.word()));
+        .unwrap_or((text, SignRole::Identified.word()));
     let sign = sign_factor(sign.trim())?;
     let role = SignRole::EACH
         .into_iter()
         .find(|known| known.word() == role.trim())?;
-    Some(ChannelSign {
-        channel: channel.trim().to_owned(),
-        value: if sign < 0.0 { Some(role) } else { None },
-    })
+    Some(if sign < 0.0 { Some(role) } else { None })
 }
 
 /// Parses a sign: `-1` or `-`; `1`, `+1` or `+`.
@@ -180,9 +178,14 @@ mod tests {
             sign("az (down)", Some(SignRole::All))
         );
         assert_eq!(channel_sign("NZ=1"), sign("NZ", None));
-        for wrong in ["NZ", "NZ=-2", "NZ=-1:none"] {
+        for wrong in ["NZ", "NZ=-2", "NZ=-1:none", "=-1", " =1"] {
             assert!(channel_sign(wrong).is_err(), "{wrong}");
         }
+        assert!(
+            channel_sign("NZ=-2")
+                .unwrap_err()
+                .ends_with("found \"NZ=-2\"")
+        );
     }
 
     #[test]

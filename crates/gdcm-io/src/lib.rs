@@ -6,6 +6,9 @@
 //! `export` other tools' formats, `report` the printed report. Files are written whole or not at
 //! all.
 //!
+//! Section numbers (M4, M13.2, ...) are those of the pages listed under
+//! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).
+//!
 //! ```
 //! let example = gdcm_io::embedded_example()?;
 //! assert_eq!(example.dataset.conditions().len(), 11);

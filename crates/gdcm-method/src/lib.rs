@@ -2,7 +2,8 @@
 //! and a delay, so that the model matches flight.
 //!
 //! Equation numbers refer to "Bridging the Gap: Data Driven Method for Linearized Model Fidelity
-//! Enhancement", section numbers (M1, M2, ...) to `docs/method.md`.
+//! Enhancement", section numbers (M1, M2, ...) to the pages in `docs/` under
+//! [Sections M1 to M18](#sections-m1-to-m18).
 //!
 //! # The problem
 //!
@@ -91,6 +92,23 @@
 //! | `J`, `Delta J` | `Cost`, `CostChange` | cost, its change; negative is better |
 //! | `d(a, b)`, `s_a`, `r_a` | `BundleDistance`, `Representative::scores`, `Discontinuity::ratios` | distance, score, discontinuity ratio |
 //! | `V`, `v` | `airspeed_kt`, `Airspeeds::scaled` | true airspeed \[kt\], scaled airspeed \[-\] |
+//!
+//! # Sections M1 to M18
+//!
+//! | section | subject | page |
+//! |---|---|---|
+//! | M1, M2 | data, frequency response | `docs/method.md` |
+//! | M3, M4 | phase difference, cost J | `docs/method.md` |
+//! | M5 | representatives, outliers, models set aside | `docs/method.md` |
+//! | M6, M7 | delta gain and delta delay, bounds | `docs/method.md` |
+//! | M8, M9, M10 | gains, delays, corrected model | `docs/method.md` |
+//! | M11, M12 | schedule, assessment | `docs/method.md` |
+//! | M13 | error bars | `docs/error-bars.md` |
+//! | M14 | identified models from flight records | `docs/identification.md` |
+//! | M15 | leads | `docs/lead.md` |
+//! | M16 | couplings | `docs/couplings.md` |
+//! | M17 | requirements | `docs/requirements.md` |
+//! | M18 | physics parameters | `docs/physics.md` |
 //!
 //! # Modules
 //!

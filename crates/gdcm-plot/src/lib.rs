@@ -7,6 +7,9 @@
 //! | [`figure`] | the description of a figure for every view, and its shapes at their places |
 //! | [`paper`] | a painted figure as SVG, PDF or PNG |
 //!
+//! Section numbers (M4, M13.2, ...) are those of the pages listed under
+//! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).
+//!
 //! A figure is made in four steps:
 //!
 //! 1. **Described** ([`figure::figure`], [`figure::marks`]): plots with panels, axes and marks in

@@ -9,6 +9,9 @@
 //! analysis. Pieces of work run through an [`execution`]; large values are passed to jobs as
 //! [`shared`].
 //!
+//! Section numbers (M4, M13.2, ...) are those of the pages listed under
+//! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).
+//!
 //! # Example
 //!
 //! A helicopter with one response, `q = g / (s + 1)` times the stick. The gain of the measured

@@ -13,7 +13,8 @@
 //! | [`identification`] | the whole run, from flight records to a model with its uncertainty |
 //! | [`options`], [`identification_error`] | settings of the run, and the reasons why it fails |
 //!
-//! Nothing here touches files, windows or threads.
+//! Nothing here touches files, windows or threads. Sections M14.1 to M14.25, cited in the sources,
+//! are in `docs/identification.md`; M4, the cost J, is in `docs/method.md`.
 //!
 //! ```
 //! use gdcm_model::dataset::StateSpace;

@@ -6,9 +6,11 @@ use gdcm_model::simulation::{FlightRecord, Signal};
 use crate::identification_error::{HIGHEST_ORDER, IdentificationError, LONGEST_PAST};
 use crate::spectra::preparation_settings::Preparation;
 
-/// Lowest spectral line used, relative to the lower end of the band.
+/// Lowest spectral line used, relative to the lower end of the band. Lines beyond both ends support
+/// the fit at the ends from either side.
 const LOWEST_LINE: f64 = 0.5;
-/// Highest spectral line used, relative to the upper end of the band.
+/// Highest spectral line used, relative to the upper end of the band. A higher line would need
+/// faster sampling: filters and minimum sample rate are multiples of it (M14.1, M14.11).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
@@ -82,8 +84,13 @@ impl Options {
             .saturating_sub(self.references)
     }
 
-    /// Names the records to which models are fitted, without the record `without`.
-    pub(crate) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
+    /// Names the records to which a model is fitted. `without` is the record, by index, that a
+    /// model in the bundle leaves out (M14.5); `None` for a model fitted to all.
+    pub(crate) fn fitted_records(
+        &self,
+        records: &[FlightRecord],
+        without: Option<usize>,
+    ) -> Vec<String> {
         let mut names = Vec::new();
         for (number, record) in records.iter().enumerate() {
             if !self.held_out.contains(&number) && Some(number) != without {

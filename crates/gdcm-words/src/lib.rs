@@ -4,7 +4,8 @@
 //!
 //! The crates below return typed facts with numbers. This crate formulates them in English for the
 //! terminal, the window, the report and the exported files. It computes nothing except the numbers
-//! in its sentences.
+//! in its sentences. Section numbers (M4, M13.2, ...) are those of the pages listed under
+//! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).
 //!
 //! Sentences: [`remark`], [`conflict_text`], [`leads`], [`lead_price`], [`solution_details`] and
 //! [`sensitivity`] for a condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for

@@ -1,21 +1,37 @@
-//! Sentences and tables about named physics parameters (M18.4 to M18.6).
+//! Sentences and tables about named physics parameters (M18.4 to M18.6 in `docs/physics.md`).
 //!
 //! A parameter needs a "change to agree with flight", or "acts like" another: the diagnosis never
 //! states a cause, because a parameter of similar effect that was not offered cannot be excluded.
+//!
+//! | term | meaning |
+//! |---|---|
+//! | run | physics model linearised with one parameter changed |
+//! | base | physics model at the same trim as a run, with the parameter nominal |
+//! | rerun | physics model linearised with several parameters changed, to check the prediction |
+//! | step | position in the stepwise list, which adds the parameter that explains most next |
+//! | learned | share of a parameter's prior variance that the data remove |
+//! | channels can take | share of a parameter's effect that channel gains and delays can explain |
+//! | pull | change in a parameter's value if a condition is left out of the fit |
 
+mod left_out_runs;
+mod rerun;
+
+use gdcm_method::physics::diagnosis::NOTABLE_MISFIT;
 use gdcm_method::physics::identifiability::WeakDirection;
-use gdcm_method::physics::{OfferedParameter, RunRefusal, Verdict, WhyNotNamed};
-use gdcm_model::number_format::{NO_VALUE, counted, decimals, signed, telling, with_minus_sign};
+use gdcm_method::physics::intervals::LEAST_CONDITIONS;
+use gdcm_method::physics::verdict::LEAST_EXPLAINED;
+use gdcm_method::physics::{OfferedParameter, Verdict, WhyNotNamed};
+use gdcm_model::number_format::{counted, decimals, signed, six_digits, with_minus_sign};
 use gdcm_model::units::number;
 use gdcm_study::results::applied_physics::{AppliedPhysics, AppliedValue};
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
-use gdcm_study::results::physics_findings::{
-    DiagnosedParameter, LeftOutData, NotFitted, PhysicsFindings,
-};
-use gdcm_study::results::rerun_check::{RerunCheck, RerunRefusal, RerunVerdict};
+use gdcm_study::results::physics_findings::{DiagnosedParameter, PhysicsFindings};
 
 use crate::couplings::cost_table;
 use crate::table::Table;
+
+pub use left_out_runs::left_out_lines;
+pub use rerun::rerun_text;
 
 /// Sentence displayed beside every verdict.
 pub const LIKE_EFFECT: &str =
@@ -46,7 +62,7 @@ pub fn change_text(parameter: &OfferedParameter, change: f64, half_width: Option
 
 /// Formats a change with up to six digits and its sign.
 fn plain_change(change: f64) -> String {
-    let text = with_minus_sign(&gdcm_model::number_format::six_digits(change));
+    let text = with_minus_sign(&six_digits(change));
     if change > 0.0 {
         format!("+{text}")
     } else {
@@ -77,13 +93,10 @@ fn interval_decimals(half_width: f64) -> usize {
 
 /// Names an applied value: "Ixx +4 %".
 pub fn applied_value_text(value: &AppliedValue) -> String {
-    let half_width = value
-        .half_width
-        .map(|half_width| half_width * value.parameter.plausible_sd);
     format!(
         "{} {}",
         value.parameter.name,
-        change_text(&value.parameter, value.change(), half_width)
+        change_text(&value.parameter, value.change(), value.half_width())
     )
 }
 
@@ -103,8 +116,8 @@ fn verdict_sentence(findings: &PhysicsFindings) -> String {
     let count = findings.parameters.len();
     let (Some(verdict), Some(explained)) = (diagnosis.verdict, diagnosis.explained()) else {
         return format!(
-            "{} in the fit, four are needed: the values have no intervals, and no parameter is \
-            named.",
+            "{} in the fit, {LEAST_CONDITIONS} are needed: the values have no intervals, and no \
+            parameter is named.",
             counted(diagnosis.conditions.len(), "condition")
         );
     };
@@ -174,15 +187,16 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
         None => format!("change needed to agree with flight: {change}"),
         Some(WhyNotNamed::Held) => format!("held by hand at {change}"),
         Some(WhyNotNamed::FewConditions { found: count }) => format!(
-            "not named: {} in the fit, but four are needed",
+            "not named: {} in the fit, but {LEAST_CONDITIONS} are needed",
             counted(count, "condition")
         ),
         Some(WhyNotNamed::NotPredicted) => {
             "not named: conditions left out could not be predicted".to_owned()
         }
-        Some(WhyNotNamed::NothingExplained { .. }) => {
-            "not named: all parameters together explain less than a tenth of the misfit".to_owned()
-        }
+        Some(WhyNotNamed::NothingExplained { .. }) => format!(
+            "not named: all parameters together explain less than {} of the misfit",
+            percent(LEAST_EXPLAINED)
+        ),
         Some(WhyNotNamed::AtBound { z }) => format!(
             "would need to {} by {}, more than is plausible: look for a parameter of similar \
             effect",
@@ -227,8 +241,9 @@ fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
 
 /// Tabulates the parameters: change and half-width; plausible change; share of the misfit explained
 /// alone; step that adds the parameter to the fit, and share explained by this step; share of the
-/// prior variance removed by the data; share of the effect that channels can take; verdict. The
-/// last rows are the parameters that are switched off.
+/// prior variance removed by the data; share of the effect that channels can take; verdict.
+/// `level` is the confidence level of the half-width, 0 to 1. The last rows are the parameters that
+/// are switched off.
 pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
     let bar = format!("± {} %", number(100.0 * level));
     let columns = [
@@ -267,13 +282,19 @@ pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
         ]);
     }
     for parameter in &findings.off {
-        // Only name, unit, plausible change and verdict.
-        let mut cells = vec![String::new(); table.columns.len()];
-        cells[0] = parameter.name.clone();
-        cells[1] = parameter.unit.clone();
-        cells[4] = number(parameter.plausible_sd);
-        cells[10] = "off".to_owned();
-        table.row(cells);
+        table.row([
+            parameter.name.clone(),
+            parameter.unit.clone(),
+            String::new(),
+            String::new(),
+            number(parameter.plausible_sd),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+            "off".to_owned(),
+        ]);
     }
     table
 }
@@ -289,14 +310,13 @@ fn cell(value: Option<f64>, count: usize) -> String {
 /// Lists the cautions about the diagnosis.
 pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     let diagnosis = &findings.diagnosis;
-    let name = |index: usize| findings.parameters[index].name.as_str();
     let mut cautions = Vec::new();
     if let Some(moving) = diagnosis.fit.still_moving {
         cautions.push(format!(
-            "the fit has not converged after {} passes: {} still changes; usually it cannot be told \
-            apart from another parameter",
+            "the fit has not converged after {} passes: {} still changes; usually it cannot be \
+            told apart from another parameter",
             diagnosis.fit.passes.len(),
-            name(moving)
+            parameter_name(findings, moving)
         ));
     }
     for found in findings.diagnosed() {
@@ -313,8 +333,8 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
         cautions.push(format!(
             "{} and {} cannot be told apart (correlation {}): set a plausible value for one, or \
             change both",
-            name(first),
-            name(second),
+            parameter_name(findings, first),
+            parameter_name(findings, second),
             decimals(pair.correlation, 2)
         ));
     }
@@ -325,12 +345,17 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     if !poor.is_empty() {
         let ids: Vec<String> = poor.iter().map(|id| id.to_string()).collect();
         cautions.push(format!(
-            "condition {}: fitted at least 1.5 times worse than the median condition; check the \
-            nominal model and the runs there",
+            "condition {}: fitted more than {NOTABLE_MISFIT} times worse than the median \
+            condition; check the nominal model and the runs there",
             ids.join(", ")
         ));
     }
     cautions
+}
+
+/// Returns a parameter's name; `index` counts the parameters that are on.
+fn parameter_name(findings: &PhysicsFindings, index: usize) -> &str {
+    &findings.parameters[index].name
 }
 
 fn weak_direction_text(weak: &WeakDirection, findings: &PhysicsFindings) -> String {
@@ -342,7 +367,7 @@ fn weak_direction_text(weak: &WeakDirection, findings: &PhysicsFindings) -> Stri
             parts.push(format!(
                 "{} {}",
                 signed(component, 2),
-                findings.parameters[parameter].name
+                parameter_name(findings, parameter)
             ));
         }
     }
@@ -361,101 +386,11 @@ pub fn pull_lines(findings: &PhysicsFindings) -> Vec<String> {
         lines.push(format!(
             "without condition {}, {} changes by {} plausible standard deviations",
             pull.condition,
-            findings.parameters[pull.parameter].name,
+            parameter_name(findings, pull.parameter),
             signed(pull.change, 2)
         ));
     }
     lines
-}
-
-/// Lists the runs and conditions that take no part in the fit, with the reasons.
-pub fn left_out_lines(left_out: &LeftOutData) -> Vec<String> {
-    let mut lines = Vec::new();
-    for omitted in &left_out.conditions {
-        lines.push(format!(
-            "condition {} is left out of the fit: {}",
-            omitted.condition,
-            not_fitted_text(&omitted.why)
-        ));
-    }
-    for refused in &left_out.runs {
-        lines.push(format!(
-            "condition {}, run \"{}\" of {} is not used: {}",
-            refused.condition,
-            refused.run.model,
-            refused.run.parameter,
-            refusal_text(&refused.run.reason)
-        ));
-    }
-    lines
-}
-
-fn not_fitted_text(why: &NotFitted) -> String {
-    match why {
-        NotFitted::HeldOut => "it is held out".to_owned(),
-        NotFitted::NotCompared { code } => {
-            format!("its models cannot be compared ({code})")
-        }
-        NotFitted::Runs(omission) => omission.to_string(),
-    }
-}
-
-/// Says why a run is not used.
-pub fn refusal_text(refusal: &RunRefusal) -> String {
-    match refusal {
-        RunRefusal::NoBase => {
-            "no physics model of the condition has its perturbation; add the model at that trim \
-            with the parameter nominal"
-                .to_owned()
-        }
-        RunRefusal::BaseNotUsed { base } => format!(
-            "its base \"{base}\" is rejected or set aside; restore it, or supply runs at another \
-            trim"
-        ),
-        RunRefusal::NoMatrices => {
-            "the run or its base is a measured response; matrices are needed".to_owned()
-        }
-        RunRefusal::Shape {
-            base,
-            expected,
-            found,
-        } => format!(
-            "expected {} states, {} inputs and {} outputs as in \"{base}\", found {}, {} and {}",
-            expected[0], expected[1], expected[2], found[0], found[1], found[2]
-        ),
-        RunRefusal::States {
-            base,
-            position,
-            expected,
-            found,
-        } => format!(
-            "state {position}: expected {expected} as in \"{base}\", found {found}; give both the \
-            same states in the same order"
-        ),
-        RunRefusal::Timing { base } => {
-            format!("its sample time or delays differ from those of \"{base}\"")
-        }
-        RunRefusal::Unit { expected, found } => {
-            format!("unit of the step: expected {expected}, found {found}")
-        }
-        RunRefusal::Step { delta } => format!(
-            "expected a finite step other than 0, found {}",
-            number(*delta)
-        ),
-        RunRefusal::NoChange { base } => {
-            format!("it has the matrices of its base \"{base}\": the parameter was not changed")
-        }
-        RunRefusal::StepRepeated { other, delta } => {
-            format!(
-                "\"{other}\" has the same step {}; use different steps",
-                number(*delta)
-            )
-        }
-        RunRefusal::MatricesRepeated { other } => {
-            format!("\"{other}\" has the same matrices at another step; correct one of them")
-        }
-        RunRefusal::TooMany => "two other runs of the parameter are already used".to_owned(),
-    }
 }
 
 /// Tabulates mean J without and with the parameters.
@@ -485,59 +420,6 @@ pub fn channel_delay_table(
         ]);
     }
     table
-}
-
-/// Describes how well the prediction agrees with a rerun of the physics model, or why they are not
-/// compared (M18.6).
-pub fn rerun_text(check: &RerunCheck) -> String {
-    let place = format!("condition {}, rerun \"{}\"", check.condition, check.model);
-    let cost = match &check.outcome {
-        Ok(cost) => cost,
-        Err(refusal) => {
-            return format!("{place} is not compared: {}", rerun_refusal_text(refusal));
-        }
-    };
-    let mean = |value: Option<f64>| match value {
-        Some(value) => telling(value, 2),
-        None => NO_VALUE.to_owned(),
-    };
-    let figures = format!(
-        "J between prediction and rerun: {} on-axis, {} others (between base and rerun: {} and {})",
-        mean(cost.prediction.on_axis),
-        mean(cost.prediction.others),
-        mean(cost.base.on_axis),
-        mean(cost.base.others)
-    );
-    let verdict = match cost.verdict() {
-        RerunVerdict::Good => "the prediction is good",
-        RerunVerdict::Fair => "the prediction is fair",
-        RerunVerdict::NotLinear => {
-            "not linear enough: add a second run at the value found, or use the rerun as the new \
-            nominal model with its own runs"
-        }
-    };
-    format!("{place}: {figures}; {verdict}")
-}
-
-fn rerun_refusal_text(refusal: &RerunRefusal) -> String {
-    match refusal {
-        RerunRefusal::NoBase => {
-            "no physics model of the condition has its perturbation; add one".to_owned()
-        }
-        RerunRefusal::UnknownParameter { name } => {
-            format!("the dataset has no physics model linearised with {name} changed; add one")
-        }
-        RerunRefusal::Unit {
-            name,
-            expected,
-            found,
-        } => format!(
-            "unit of the change of {name}: expected {expected} as in its runs, found {found}"
-        ),
-        RerunRefusal::Runs(omission) => omission.to_string(),
-        RerunRefusal::Increments(error) => error.to_string(),
-        RerunRefusal::NothingToCompare => "no response can be compared".to_owned(),
-    }
 }
 
 /// Returns a text block to paste into the physics model's input: name, change, unit.
@@ -572,12 +454,5 @@ mod tests {
         assert_eq!(text("1", 0.243, Some(0.17)), "+0.24 ± 0.17");
         assert_eq!(text("%", -12.0, None), "−12 %");
         assert_eq!(text("%", 4.0, Some(0.0)), "+4 %");
-    }
-
-    #[test]
-    fn no_sentence_states_a_cause() {
-        let sentences = include_str!("physics.rs");
-        assert_eq!(sentences.matches(concat!("the cause", " is")).count(), 0);
-        assert!(LIKE_EFFECT.contains("not listed"));
     }
 }

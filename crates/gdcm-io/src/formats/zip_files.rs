@@ -78,17 +78,18 @@ impl ArchiveReading {
             return self.add_array(file, name, budget);
         }
         let path = Path::new(file.path);
-        if is_known(path) {
+        let reason = if is_known(path) {
             let bytes = file.unpack(file.path, budget)?;
             let importer = importer_of(&bytes, path);
             if importer.name != ZIP.name {
                 return self.add_contents(file, (importer.read)(&bytes, path, budget));
             }
-        }
-        self.ignored.push(format!(
-            "{}: not read: an unsupported format, or an archive within the archive",
-            file.path
-        ));
+            "an archive within the archive"
+        } else {
+            "an unsupported format"
+        };
+        self.ignored
+            .push(format!("{}: not read: {reason}", file.path));
         Ok(())
     }
 

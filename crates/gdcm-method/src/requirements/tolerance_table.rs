@@ -14,7 +14,8 @@ use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_facto
 use super::positive_number::{NamedLimit, WrongLimit, first_not_positive};
 
 const DEFAULT_SOURCE: &str = "14 CFR part 60, appendix C, table C2A; CS-FSTD(H)";
-const TEN_PERCENT: Option<f64> = Some(0.1);
+/// The relative tolerance in table C2A, as a fraction.
+const TEN_PERCENT: f64 = 0.1;
 
 /// A row: `|simulated - flown| <= max(absolute, relative |flown - flown at the start|)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,119 +31,13 @@ pub struct Tolerance {
     pub absolute: f64,
     /// Unit of `absolute` ("deg").
     pub unit: String,
-    /// The tolerance relative to the change since the manoeuvre's start; `None` if only `absolute`
-    /// applies.
+    /// The tolerance relative to the change since the manoeuvre's start, as a fraction (0.1: 10 %);
+    /// `None` if only `absolute` applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
     /// Entries in the source ("2.b.3.b, 2.d.1").
     #[serde(default)]
     pub entry: String,
-}
-
-/// The tolerances with their source; each row is checked on reading.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "ToleranceRows")]
-pub struct ToleranceTable {
-    source: String,
-    #[serde(rename = "tolerances")]
-    rows: Vec<Tolerance>,
-}
-
-/// The table as written in files.
-#[derive(Deserialize)]
-struct ToleranceRows {
-    #[serde(default)]
-    source: String,
-    tolerances: Vec<Tolerance>,
-}
-
-/// Reasons why a tolerance cannot be applied.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ToleranceError {
-    #[error(
-        "tolerance {row}, {}: expected the name of an output as its channel, found none",
-        quoted(quantity)
-    )]
-    NoChannelName {
-        /// Row number, counted from 1.
-        row: usize,
-        quantity: String,
-    },
-    /// A tolerance is not finite, or not above zero.
-    #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
-    NotPositive {
-        /// Row number, counted from 1.
-        row: usize,
-        quantity: String,
-        /// `absolute` or `relative`.
-        name: &'static str,
-        found: f64,
-    },
-    #[error(
-        "{} is not compared: there is no output {}",
-        quoted(quantity),
-        quoted(channel)
-    )]
-    NoChannel {
-        quantity: String,
-        /// The output that the dataset lacks.
-        channel: String,
-    },
-    /// An output to be integrated is not a rate.
-    #[error(
-        "{} is not compared: it is the integral of a rate in deg/s or rad/s, but the unit of {} \
-        is {}",
-        quoted(quantity),
-        quoted(channel),
-        quoted(unit)
-    )]
-    NotARate {
-        quantity: String,
-        channel: String,
-        unit: String,
-    },
-    /// The tolerance's unit cannot be converted to the output's unit.
-    #[error(
-        "{} is not compared: the tolerance is in {}, but {} is in {}",
-        quoted(quantity),
-        quoted(unit),
-        quoted(channel),
-        quoted(compared_unit)
-    )]
-    Unit {
-        quantity: String,
-        channel: String,
-        unit: String,
-        /// The output's unit, or its integral's.
-        compared_unit: String,
-    },
-}
-
-impl ToleranceError {
-    /// Returns the stable code, for programs and tests.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NoChannelName { .. } => "tolerance-without-channel",
-            Self::NotPositive { .. } => "tolerance-not-positive",
-            Self::NoChannel { .. } => "tolerance-of-unknown-channel",
-            Self::NotARate { .. } => "tolerance-not-of-rate",
-            Self::Unit { .. } => "tolerance-unit",
-        }
-    }
-}
-
-/// A tolerance in its output's units.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChannelTolerance {
-    pub output: usize,
-    /// Whether the output's integral is compared.
-    pub integrated: bool,
-    /// The absolute tolerance, in `unit`.
-    pub absolute: f64,
-    /// The relative tolerance; zero if only `absolute` applies.
-    pub relative: f64,
-    /// Unit in which the output or its integral is compared.
-    pub unit: String,
 }
 
 impl Tolerance {
@@ -224,9 +119,23 @@ fn integral_unit(rate: &str) -> Option<&'static str> {
     if rate.dimension != Dimension::AngularRate {
         return None;
     }
+    // An angle and its rate per second have the same factor to SI, computed from the same constant
+    // (pi/180 for deg and deg/s). No angle here belongs to another rate, such as rpm.
     ["deg", "rad"]
         .into_iter()
         .find(|angle| PhysicalUnit::parse(angle).is_some_and(|angle| angle.size == rate.size))
+}
+
+/// The tolerances with their source; each row is checked on reading.
+///
+/// Every row that fits the dataset applies to every record. Of rows with the same `channel` and
+/// `integrated`, the requirement grid (M17.5) uses the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ToleranceRows")]
+pub struct ToleranceTable {
+    source: String,
+    #[serde(rename = "tolerances")]
+    rows: Vec<Tolerance>,
 }
 
 impl ToleranceTable {
@@ -256,6 +165,14 @@ impl ToleranceTable {
     }
 }
 
+/// The table as written in files.
+#[derive(Deserialize)]
+struct ToleranceRows {
+    #[serde(default)]
+    source: String,
+    tolerances: Vec<Tolerance>,
+}
+
 impl TryFrom<ToleranceRows> for ToleranceTable {
     type Error = ToleranceError;
 
@@ -276,10 +193,11 @@ impl Default for ToleranceTable {
     }
 }
 
-/// A default row; an absolute tolerance in deg applies to a rate's integral.
+/// A default row.
 struct DefaultRow {
     quantity: &'static str,
     channel: &'static str,
+    integrated: bool,
     absolute: f64,
     unit: &'static str,
     relative: Option<f64>,
@@ -291,7 +209,7 @@ impl DefaultRow {
         Tolerance {
             quantity: self.quantity.to_owned(),
             channel: self.channel.to_owned(),
-            integrated: self.unit == "deg",
+            integrated: self.integrated,
             absolute: self.absolute,
             unit: self.unit.to_owned(),
             relative: self.relative,
@@ -304,54 +222,61 @@ const DEFAULT_ROWS: [DefaultRow; 9] = [
     DefaultRow {
         quantity: "roll rate",
         channel: "P",
+        integrated: false,
         absolute: 3.0,
         unit: "deg/s",
-        relative: TEN_PERCENT,
+        relative: Some(TEN_PERCENT),
         entry: "2.b.3.b, 2.d.1",
     },
     DefaultRow {
         quantity: "bank angle",
         channel: "P",
+        integrated: true,
         absolute: 3.0,
         unit: "deg",
-        relative: TEN_PERCENT,
+        relative: Some(TEN_PERCENT),
         entry: "2.b.3.b, 2.d.1",
     },
     DefaultRow {
         quantity: "pitch rate",
         channel: "Q",
+        integrated: false,
         absolute: 2.0,
         unit: "deg/s",
-        relative: TEN_PERCENT,
+        relative: Some(TEN_PERCENT),
         entry: "2.b.3.a, 2.c.1",
     },
     DefaultRow {
         quantity: "pitch attitude",
         channel: "Q",
+        integrated: true,
         absolute: 1.5,
         unit: "deg",
-        relative: TEN_PERCENT,
+        relative: Some(TEN_PERCENT),
         entry: "2.b.3.a, 2.c.1",
     },
     DefaultRow {
         quantity: "yaw rate",
         channel: "R",
+        integrated: false,
         absolute: 2.0,
         unit: "deg/s",
-        relative: TEN_PERCENT,
+        relative: Some(TEN_PERCENT),
         entry: "2.b.3.c, 2.d.1",
     },
     DefaultRow {
         quantity: "heading",
         channel: "R",
+        integrated: true,
         absolute: 2.0,
         unit: "deg",
-        relative: TEN_PERCENT,
+        relative: Some(TEN_PERCENT),
         entry: "2.b.3.c, 2.d.1",
     },
     DefaultRow {
         quantity: "normal acceleration",
         channel: "NZ",
+        integrated: false,
         absolute: 0.1,
         unit: "g",
         relative: None,
@@ -360,6 +285,7 @@ const DEFAULT_ROWS: [DefaultRow; 9] = [
     DefaultRow {
         quantity: "short term: pitch attitude",
         channel: "Q",
+        integrated: true,
         absolute: 1.5,
         unit: "deg",
         relative: None,
@@ -368,9 +294,99 @@ const DEFAULT_ROWS: [DefaultRow; 9] = [
     DefaultRow {
         quantity: "short term: pitch rate",
         channel: "Q",
+        integrated: false,
         absolute: 2.0,
         unit: "deg/s",
         relative: None,
         entry: "2.c.3.b",
     },
 ];
+
+/// A tolerance in its output's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelTolerance {
+    pub output: usize,
+    /// Whether the output's integral is compared.
+    pub integrated: bool,
+    /// The absolute tolerance, in `unit`.
+    pub absolute: f64,
+    /// The relative tolerance, as a fraction; zero if only `absolute` applies.
+    pub relative: f64,
+    /// Unit in which the output or its integral is compared.
+    pub unit: String,
+}
+
+/// Reasons why a tolerance cannot be applied.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ToleranceError {
+    #[error(
+        "tolerance {row}, {}: expected the name of an output as its channel, found none",
+        quoted(quantity)
+    )]
+    NoChannelName {
+        /// Row number, counted from 1.
+        row: usize,
+        quantity: String,
+    },
+    /// A tolerance is not finite, or not above zero.
+    #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
+    NotPositive {
+        /// Row number, counted from 1.
+        row: usize,
+        quantity: String,
+        /// `absolute` or `relative`.
+        name: &'static str,
+        found: f64,
+    },
+    #[error(
+        "{} is not compared: there is no output {}",
+        quoted(quantity),
+        quoted(channel)
+    )]
+    NoChannel {
+        quantity: String,
+        /// The output that the dataset lacks.
+        channel: String,
+    },
+    /// An output to be integrated is not a rate.
+    #[error(
+        "{} is not compared: it is the integral of a rate in deg/s or rad/s, but the unit of {} \
+        is {}",
+        quoted(quantity),
+        quoted(channel),
+        quoted(unit)
+    )]
+    NotARate {
+        quantity: String,
+        channel: String,
+        unit: String,
+    },
+    /// The tolerance's unit cannot be converted to the output's unit.
+    #[error(
+        "{} is not compared: the tolerance is in {}, but {} is in {}",
+        quoted(quantity),
+        quoted(unit),
+        quoted(channel),
+        quoted(compared_unit)
+    )]
+    Unit {
+        quantity: String,
+        channel: String,
+        unit: String,
+        /// The output's unit, or its integral's.
+        compared_unit: String,
+    },
+}
+
+impl ToleranceError {
+    /// Returns the stable code, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoChannelName { .. } => "tolerance-without-channel",
+            Self::NotPositive { .. } => "tolerance-not-positive",
+            Self::NoChannel { .. } => "tolerance-of-unknown-channel",
+            Self::NotARate { .. } => "tolerance-not-of-rate",
+            Self::Unit { .. } => "tolerance-unit",
+        }
+    }
+}

@@ -5,23 +5,23 @@ use super::marks::{Along, Bars, Brackets, Curve, Envelope, Guide, Intervals, Mar
 use super::placed::Placed;
 use super::thinning::{Pixel, thinned};
 
-/// Maximum distance between a thinned line and its original points \[pt\]: about a tenth of the
-/// thinnest curve's width.
+/// Print resolution \[pt\], horizontally and vertically: about a tenth of the thinnest curve's
+/// width. A thinned line is at most this far from its original points.
 const TOLERANCE: f64 = 0.04;
-/// Print resolution to which curves are thinned.
+/// Pixel to which curves are thinned: square.
 const FINEST: Pixel = Pixel {
     width: TOLERANCE,
     tolerance: TOLERANCE,
 };
-/// Maximum absolute coordinate \[pt\]; points beyond it leave a gap.
+/// Maximum absolute coordinate \[pt\] in a curve; points beyond it leave a gap.
 const FAR_OUT: f64 = 1e6;
 /// Style of guides, the labelled grid lines.
 const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Line around a bar.
 const BAR_EDGE: Stroke = Stroke::solid(Color::DIM, 0.3);
 
-/// Paints the backgrounds, which lie below the grid: bands first, then spans, then envelopes
-/// without edges.
+/// Paints the backgrounds, which lie below the grid: bands first, then spans and envelopes without
+/// edges, both in mark order.
 pub(super) fn backgrounds(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = bands(placed);
     for mark in &placed.panel.marks {
@@ -39,6 +39,7 @@ pub(super) fn backgrounds(placed: &Placed<'_>) -> Vec<Shape> {
 fn bands(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for mark in &placed.panel.marks {
+        // `across` returns the lower end of a vertical line first.
         if let Mark::Band(band) = mark
             && let Some([lower_left, _]) = placed.across(Along::X, band.range.min)
             && let Some([_, upper_right]) = placed.across(Along::X, band.range.max)
@@ -63,6 +64,9 @@ fn span_areas(placed: &Placed<'_>, spans: &Spans) -> Vec<Shape> {
 
 /// Paints an envelope's area between gaps: a polygon along the lower line and back along the upper
 /// line.
+///
+/// An envelope without edges is always an area, below the grid ([`backgrounds`]). An envelope with
+/// edges is two lines on paper ([`mark_lines`]), and an area on the screen (`Panel::shapes`).
 pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Shape> {
     let ends: Vec<Option<[[f64; 2]; 2]>> = envelope
         .points
@@ -102,7 +106,7 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
     }
 }
 
-/// Paints a mark's lines and bars, which lie above the grid.
+/// Paints a mark's lines and bars, which lie above the grid; an envelope has lines if it has edges.
 pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),
@@ -150,6 +154,8 @@ fn bar_areas(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
     shapes
 }
 
+/// Paints a guide as a single line. Unlike a curve it keeps points beyond [`FAR_OUT`]: a ray has
+/// two or three points, the last one often far outside the frame, and would vanish without it.
 fn guide_line(placed: &Placed<'_>, guide: &Guide) -> Shape {
     let positions: Vec<[f64; 2]> = guide
         .points

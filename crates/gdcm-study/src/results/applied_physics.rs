@@ -58,7 +58,7 @@ pub struct AppliedValue {
     pub z: f64,
     /// Interval half-width, in plausible standard deviations; `None` for a value set by hand, and
     /// with fewer than four conditions.
-    pub half_width: Option<f64>,
+    pub half_width_sd: Option<f64>,
     /// Whether the value was set by hand.
     pub is_by_hand: bool,
 }
@@ -67,6 +67,11 @@ impl AppliedValue {
     /// Returns the change in the parameter's unit.
     pub fn change(&self) -> f64 {
         self.z * self.parameter.plausible_sd
+    }
+
+    /// Returns the interval half-width in the parameter's unit.
+    pub fn half_width(&self) -> Option<f64> {
+        Some(self.half_width_sd? * self.parameter.plausible_sd)
     }
 
     /// Returns the change as a rerun states it.

@@ -107,7 +107,7 @@ impl Application<'_> {
             {
                 values.push(AppliedValue {
                     z: change / parameter.plausible_sd,
-                    half_width: None,
+                    half_width_sd: None,
                     is_by_hand: true,
                     parameter,
                 });
@@ -154,7 +154,7 @@ impl Application<'_> {
                 values.push(AppliedValue {
                     parameter: parameter.clone(),
                     z: diagnosis.fit.z[index],
-                    half_width: diagnosis.parameters[index].half_width,
+                    half_width_sd: diagnosis.parameters[index].half_width,
                     is_by_hand: matches!(
                         findings.problem.parameters[index],
                         ParameterValue::Held(_)

@@ -268,7 +268,7 @@ impl Models<'_> {
             order: Some(model.order()),
         };
         let source = Provenance {
-            records: self.options.fitted(self.records, without),
+            records: self.options.fitted_records(self.records, without),
             ..Provenance::default()
         };
         Some(Model {

@@ -82,7 +82,7 @@ pub(super) fn physics(analysis: &Analysis) -> Value {
             "unit": value.parameter.unit,
             "change": value.change(),
             "z": value.z,
-            "half_width": value.half_width.map(|half_width| half_width * value.parameter.plausible_sd),
+            "half_width": value.half_width(),
             "by_hand": value.is_by_hand,
         }));
     }

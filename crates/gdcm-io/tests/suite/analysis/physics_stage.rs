@@ -316,7 +316,7 @@ fn a_value_by_hand_is_held_while_the_others_are_fitted() {
         .find(|value| value.parameter.name == "swashplate_phase")
         .unwrap();
     assert!(held.is_by_hand && (held.change() - 0.4).abs() < 1e-12);
-    assert_eq!(held.half_width, None);
+    assert_eq!(held.half_width(), None);
     let findings = found.findings.as_ref().unwrap();
     assert_eq!(findings.parameters.len(), 6);
     assert_eq!(findings.off[0].name, "lift_slope");

@@ -83,7 +83,7 @@ fn main() {
         .map(|table| LaidOutRecord::proposed(table, &channels, &TimeSettings::default()).0)
         .collect();
     let (inputs, outputs) = dataset.input_and_output_names();
-    let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
+    let preparation = Preparation::new(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let mut all_ms = 0.0;
     let mut worst = 0.0f64;
@@ -189,7 +189,7 @@ impl SimulatedFlight {
     fn identify(&self, plain_ms: f64) {
         let records = self.fly();
         let names = ["u0", "u1", "u2", "u3", "y0", "y1", "y2", "y3", "y4", "y5"];
-        let preparation = Preparation::of(&names[..self.inputs], &names[4..4 + self.outputs]);
+        let preparation = Preparation::new(&names[..self.inputs], &names[4..4 + self.outputs]);
         let options = Options::new([0.5, 12.0], preparation);
         let start = Instant::now();
         let found = identify(&records, &options, &Pool, &Unobserved)

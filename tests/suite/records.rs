@@ -98,7 +98,7 @@ fn order_and_cost_of_condition_10(change: f64) -> (usize, f64) {
     let band = dataset.band();
     let request = IdentificationRequest::from_used(
         records.iter(),
-        Preparation::of(&inputs, &outputs),
+        Preparation::new(&inputs, &outputs),
         [band.min(), band.max()],
     );
     let found = request

@@ -263,7 +263,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let records = [HistoryRecords::from_used(
         ConditionId(3),
         &records,
-        Preparation::of(&inputs, &outputs),
+        Preparation::new(&inputs, &outputs),
     )];
     let table = ToleranceTable::default();
     let histories =

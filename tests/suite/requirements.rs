@@ -633,7 +633,7 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
             flight: flight.into(),
             held_out: false,
         },
-        preparation: gdcm_sysid::identification::Preparation::of(&inputs, &outputs),
+        preparation: gdcm_sysid::identification::Preparation::new(&inputs, &outputs),
     };
     let mut executor: Box<dyn Executor> = Box::new(Sequential);
     let history = job.run(&mut executor, &Unobserved).unwrap().unwrap();

@@ -64,6 +64,7 @@ fn failure_fields(failure: &Failure) -> Map<String, Value> {
         Failure::NotIdentified { inputs } => json!({"inputs": inputs}),
         Failure::NoThreads { reason }
         | Failure::NoModels { reason }
+        | Failure::NoPlan { reason }
         | Failure::NoResult { reason }
         | Failure::StandardOutput { reason } => json!({"reason": reason}),
     };

@@ -40,9 +40,10 @@ pub(super) fn analyze_study(
 
 /// Analyses a study.
 ///
-/// 1. The analysis; if requested and if it suggests outliers, again without them.
-/// 2. With error bars: uncertainty, and the benefit of couplings and physics parameters.
-/// 3. Reports conditions without a result on standard error.
+/// 1. Analyse; if requested, reject the suggested outliers and analyse once more. Outliers suggested
+///    by the second analysis are not rejected.
+/// 2. With error bars: compute the uncertainty, and the benefit of couplings and physics parameters.
+/// 3. Report conditions without a result on standard error.
 ///
 /// # Errors
 /// No condition has a result, or the analysis was stopped.
@@ -61,6 +62,8 @@ pub(super) fn analyze_with_progress(
     }
     if bars == ErrorBars::Computed {
         analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, progress)?));
+        // No reason is lost below: an assessment fails only where the analysis has no couplings or
+        // physics parameters either, and `analysis.couplings` and `analysis.physics` contain why.
         let assessed = engine.assess_couplings(&study, study.settings.couplings, progress)?;
         analysis.coupling_assessment = assessed.and_then(Result::ok);
         let assessed = engine.assess_physics(&study, study.settings.physics, progress)?;

@@ -50,7 +50,7 @@ impl Marks {
             Some(Ok(result)) => {
                 marks.suggested = state.open_suggestions(result).len();
                 marks.unmatched_gains = result.gains.unmatched.len();
-                let has_leads = result.compensated.is_some();
+                let has_leads = result.has_leads();
                 marks.unmatched_delays = result
                     .delays
                     .unmatched

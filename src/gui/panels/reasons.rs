@@ -1,16 +1,17 @@
-//! Reasons for the displayed result, below the verdict: remarks, possible causes of a lag, leads,
-//! proof.
+//! Reasons for the displayed result: remarks, possible causes of a lag, leads, proof. They are
+//! drawn in the right panel below the verdict, instead of result and matrix, so that no plot to
+//! which they point is covered.
 
 use egui::{Align, Button, CollapsingHeader, Layout, Rect, RichText, Role, ScrollArea, Ui, vec2};
 
 use gdcm_method::correction::sensitivity::kkt_residual;
 use gdcm_method::correction::{GainObjective, Outcome, Quantity};
-use gdcm_model::statistics::median;
-use gdcm_model::units::{s_to_ms, telling};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::number_format::{telling, with_minus_sign};
+use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::setting_table;
-use gdcm_study::results::condition_remarks::condition_remarks;
-use gdcm_study::results::coupling_remark::CouplingRemark;
-use gdcm_study::results::coupling_remark_search::{coupling_consequences, coupling_offer};
+use gdcm_study::results::coupling_remark_search::coupling_offer;
+use gdcm_study::results::median_lags::MedianLag;
 use gdcm_study::results::remark::Remark;
 use gdcm_study::results::remark_kind::RemarkKind;
 use gdcm_study::{ConditionAnalysis, Edit};
@@ -29,52 +30,23 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{offered_couplings, used_couplings};
-use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::views::offered_couplings;
+use crate::gui::views::shown_remarks::remarks_shown;
+use crate::gui::widgets::controls::{Asks, button_ui, named};
 use crate::gui::widgets::escape_key::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// Returns the remarks on the displayed result, on the schedule, and on the couplings in use.
-pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
-    let schedule = state
-        .analysis()
-        .and_then(|analysis| analysis.schedule.as_ref().ok());
-    let mut remarks = condition_remarks(&state.study, shown, schedule);
-    remarks.extend(coupling_remarks(state).into_iter().map(Remark::Coupling));
-    remarks
-}
-
-/// Returns the benefit and cost of the couplings in use, or the reason for their absence; empty if
-/// none are requested, and until the benefit is computed.
-pub fn coupling_remarks(state: &State) -> Vec<CouplingRemark> {
-    let Some(analysis) = state.analysis() else {
-        return Vec::new();
-    };
-    match &analysis.couplings {
-        Some(Err(error)) => vec![CouplingRemark::Unavailable(error.clone())],
-        None => Vec::new(),
-        Some(Ok(_)) => match used_couplings(state) {
-            Some(assessment) => coupling_consequences(assessment, state.dataset()),
-            None => Vec::new(),
-        },
-    }
-}
+/// Tooltip on a button that decides for every condition.
+const EVERYWHERE: &str = "In every condition; can be undone";
 
 /// Possible cause of a common lag; removing the cause is better than correcting the lag.
 struct Cause {
     title: &'static str,
     symptom: &'static str,
     /// Channels whose median lags distinguish this cause from others.
-    compares: Option<ChannelKind>,
+    compares: Option<ChannelSide>,
     /// View that shows the symptom.
     view: View,
-}
-
-/// Inputs or outputs.
-#[derive(Clone, Copy)]
-enum ChannelKind {
-    Inputs,
-    Outputs,
 }
 
 const CAUSES: [Cause; 4] = [
@@ -93,19 +65,18 @@ const CAUSES: [Cause; 4] = [
     Cause {
         title: "Servos",
         symptom: "A slow servo lags in every response to its input, and in no other.",
-        compares: Some(ChannelKind::Inputs),
+        compares: Some(ChannelSide::Input),
         view: View::Channels,
     },
     Cause {
         title: "Sensors and their filters",
         symptom: "A slow sensor lags in every response at its output, and in no other.",
-        compares: Some(ChannelKind::Outputs),
+        compares: Some(ChannelSide::Output),
         view: View::Channels,
     },
 ];
 
-/// Draws the reasons below the verdict, instead of result and matrix, so that no plot to which they
-/// point is covered. Escape closes them.
+/// Draws the reasons with their heading; Escape closes them.
 pub fn reasons_inspector_ui(
     ui: &mut Ui,
     state: &State,
@@ -135,18 +106,21 @@ pub fn reasons_inspector_ui(
 /// 2. possible sources of a lag, if delays are not matched or leads are in use; the leads;
 /// 3. the proof of optimality, the objectives, and details about the solution.
 fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some(Ok(shown)) = state.outcome() else {
-        let words = match state.outcome() {
-            Some(Err(failure)) => failure_text(failure, state.dataset()),
-            _ => state.results.absence().to_owned(),
-        };
-        ui.label(words);
-        return;
+    let shown = match state.outcome() {
+        Some(Ok(shown)) => shown,
+        Some(Err(failure)) => {
+            ui.label(failure_text(failure, state.dataset()));
+            return;
+        }
+        None => {
+            ui.label(state.results.absence());
+            return;
+        }
     };
     remarks_ui(ui, state, &remarks_shown(state, shown), palette, commands);
     couplings_offer_ui(ui, state, palette, commands);
     suggested_runs_ui(ui, state, palette, commands);
-    if !shown.delays.matched || shown.compensated.is_some() {
+    if !shown.delays.matched || shown.has_leads() {
         causes_ui(ui, state, shown, palette, commands);
     }
     lead_ui(ui, state, shown, palette);
@@ -174,49 +148,27 @@ fn causes_ui(
     for cause in CAUSES {
         ui.label(cause.title);
         ui.label(palette.small(cause.symptom));
-        if let Some(kind) = cause.compares {
-            let lags = channel_lags(state, shown, kind);
-            ui.label(palette.small(format!("Median lag [ms]: {}", lags.join(", "))));
+        if let Some(side) = cause.compares {
+            let lags = lag_words(state, shown, side);
+            ui.label(palette.small(format!("Median lag [ms]: {lags}")));
         }
-        let show = Command::Layout(LayoutCommand::ShowView(cause.view));
-        entries_ui(
-            ui,
-            [(format!("Show {}", cause.view.name()), show)],
-            commands,
-        );
+        let button = Button::new(format!("Show {}", cause.view.name()));
+        let show = LayoutCommand::ShowView(cause.view);
+        button_ui(ui, button, "", show, commands);
         ui.add_space(4.0);
     }
 }
 
-/// Returns entries such as "LON 66": an input or output, and the median over its responses of the
-/// physics representative's lag behind the identified one, in whole milliseconds; channels without
-/// a defined lag are omitted.
-fn channel_lags(state: &State, shown: &ConditionAnalysis, kind: ChannelKind) -> Vec<String> {
-    let dataset = state.dataset();
-    let channels = match kind {
-        ChannelKind::Inputs => dataset.inputs(),
-        ChannelKind::Outputs => dataset.outputs(),
-    };
-    let mut lags = Vec::new();
-    for (index, channel) in channels.iter().enumerate() {
-        let mut lags_ms = Vec::new();
-        for pair in dataset.on_axis().pairs() {
-            let place = match kind {
-                ChannelKind::Inputs => pair.input,
-                ChannelKind::Outputs => pair.output,
-            };
-            if place == index
-                && let Some(delay_s) = shown.wanted_delay_s(pair)
-            {
-                lags_ms.push(-s_to_ms(delay_s));
-            }
-        }
-        if !lags_ms.is_empty() {
-            let lag = telling(median(&mut lags_ms), 0).replace('-', "\u{2212}");
-            lags.push(format!("{} {lag}", channel.name));
-        }
+/// Lists median lags of the physics representative behind the identified one \[ms\]: "LON 66,
+/// LAT −12".
+fn lag_words(state: &State, shown: &ConditionAnalysis, side: ChannelSide) -> String {
+    let mut entries = Vec::new();
+    for MedianLag { channel, lag_s } in shown.median_lags(side) {
+        let name = channel.name_in(state.dataset());
+        let lag_ms = with_minus_sign(&telling(s_to_ms(lag_s), 0));
+        entries.push(format!("{name} {lag_ms}"));
     }
-    lags
+    entries.join(", ")
 }
 
 /// Draws whether the gains are proven optimal, and the optimality gap.
@@ -267,9 +219,6 @@ fn remarks_ui(
     }
 }
 
-/// Tooltip on a button that decides for every condition.
-const EVERYWHERE: &str = "In every condition; can be undone";
-
 fn objective_ui(
     ui: &mut Ui,
     shown: &ConditionAnalysis,
@@ -301,7 +250,7 @@ fn objective_ui(
             ExplainTarget::DelayObjective(id),
             commands,
         );
-        let equation = if shown.compensated.is_some() {
+        let equation = if shown.has_leads() {
             "M15.4"
         } else {
             "eq. (11)"
@@ -317,7 +266,7 @@ fn objective_ui(
 /// Describes the lead in each constrained response and each filter's price; draws nothing without
 /// leads.
 fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
-    if shown.compensated.is_none() {
+    if !shown.has_leads() {
         return;
     }
     let header = palette.small("Description of the leads");
@@ -346,8 +295,8 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
         let button = Button::new(USE_COUPLINGS).small();
         let use_them = setting_table::COUPLINGS.to(couplings);
         button_ui(ui, button, EVERYWHERE, use_them, commands);
-        let show = Command::Layout(LayoutCommand::ShowView(View::Couplings));
-        entries_ui(ui, [(INSPECT, show)], commands);
+        let show = LayoutCommand::ShowView(View::Couplings);
+        button_ui(ui, Button::new(INSPECT), "", show, commands);
     });
 }
 

@@ -10,12 +10,12 @@ use gdcm_words::caution::failure_text;
 use gdcm_words::verdict::{gain_verdict_text, match_count_text, phase_verdict_text};
 
 use super::advice::{Advice, Step};
-use super::reasons::remarks_shown;
 use super::verdict_caution::{caution, unstable_in_band};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::views::shown_remarks::remarks_shown;
 use crate::message::Message;
 
 /// Verdict on the constrained responses' gain and phase, in the displayed condition and in all

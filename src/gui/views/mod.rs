@@ -57,6 +57,7 @@ mod scatter_bars;
 mod schedule_cost;
 mod schedule_tables;
 pub mod setting_controls;
+pub mod shown_remarks;
 pub mod variant_analyses;
 mod variant_effects;
 

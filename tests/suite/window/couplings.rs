@@ -4,13 +4,13 @@ use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::panels::cost_map::cost_of;
-use gdcm::gui::panels::reasons::coupling_remarks;
 use gdcm::gui::panels::verdict::Verdict;
 use gdcm::gui::state::mapped_cost::MappedCost;
 use gdcm::gui::state::sheet::Sheet;
 use gdcm::gui::state::view::View;
 use gdcm::gui::views::figures::figure_of;
 use gdcm::gui::views::offered_couplings;
+use gdcm::gui::views::shown_remarks::used_coupling_remarks;
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::Mark;
 use gdcm_study::decisions::setting_table;
@@ -138,7 +138,7 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
         codes.contains(&"change-above-band") && codes.contains(&"newly-unstable"),
         "{codes:?}"
     );
-    for remark in coupling_remarks(state(&window)) {
+    for remark in used_coupling_remarks(state(&window)) {
         let words = coupling_remark_text(&remark, state(&window).dataset());
         assert!(is_listed(&window, &words), "{words}");
     }
@@ -171,7 +171,7 @@ fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
     assert_eq!(caution.code, "no-couplings");
     assert!(texts(&window).contains(&caution.text), "{}", caution.text);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
-    let remarks = coupling_remarks(state(&window));
+    let remarks = used_coupling_remarks(state(&window));
     assert_eq!(remarks.len(), 1);
     assert_eq!(remarks[0].code(), "no-couplings");
     let words = coupling_remark_text(&remarks[0], state(&window).dataset());

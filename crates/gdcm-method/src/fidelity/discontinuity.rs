@@ -78,6 +78,32 @@ impl Discontinuity {
         })
     }
 
+    /// Returns `r_ab` of a model, given by its index in the bundle, for each other model `b` in
+    /// bundle order (step 3): their median is `r_a`. Empty for a model that is set aside.
+    ///
+    /// `distance` and `bundle` are those of the fit.
+    pub fn pair_ratios(
+        &self,
+        distance: &BundleDistance,
+        bundle: &[PerturbedModel<'_>],
+        model: usize,
+    ) -> Vec<f64> {
+        let compared = distance.measured().compared_models();
+        let Some(place) = compared.iter().position(|&other| other == model) else {
+            return Vec::new();
+        };
+        let models: Vec<_> = compared.iter().map(|&other| bundle[other]).collect();
+        let Ok(trims) = ScaledTrims::new(&models) else {
+            return Vec::new();
+        };
+        let weights: Vec<f64> = self
+            .weights
+            .iter()
+            .map(|coordinate| coordinate.weight)
+            .collect();
+        pair_ratios(distance, &compared, &trims, &weights, place)
+    }
+
     /// Returns `sqrt(sum_k w_k (p_ak - p_bk)^2)` for two trims: the distance explained by their
     /// perturbations.
     pub fn fitted_distance(&self, a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> f64 {
@@ -133,6 +159,23 @@ fn ratio(
     weights: &[f64],
     a: usize,
 ) -> Option<f64> {
+    let mut to_others = pair_ratios(distance, compared, trims, weights, a);
+    if to_others.is_empty() {
+        None
+    } else {
+        Some(median(&mut to_others))
+    }
+}
+
+/// Step 3: computes `r_ab` for the compared model at place `a` and each other model `b` from which
+/// its fitted distance is not zero.
+fn pair_ratios(
+    distance: &BundleDistance,
+    compared: &[usize],
+    trims: &ScaledTrims<'_>,
+    weights: &[f64],
+    a: usize,
+) -> Vec<f64> {
     let mut to_others = Vec::new();
     for (b, &other) in compared.iter().enumerate() {
         let fitted = trims.fitted_square(a, b, weights);
@@ -143,11 +186,7 @@ fn ratio(
             to_others.push(distance / fitted.sqrt());
         }
     }
-    if to_others.is_empty() {
-        None
-    } else {
-        Some(median(&mut to_others))
-    }
+    to_others
 }
 
 /// A perturbation coordinate's contribution to the squared distance.

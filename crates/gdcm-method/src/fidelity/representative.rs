@@ -48,4 +48,16 @@ impl Representative {
         };
         Some(Self { model, scores })
     }
+
+    /// Returns an accepted model's distances `d(a, b)` from the other accepted models, in bundle
+    /// order: their mean is its score. `distance` is the one from which the scores were computed.
+    pub fn score_distances(&self, distance: &BundleDistance, model: usize) -> Vec<f64> {
+        let mut distances = Vec::new();
+        for (other, score) in self.scores.iter().enumerate() {
+            if other != model && score.is_some() {
+                distances.extend(distance.between(model, other));
+            }
+        }
+        distances
+    }
 }

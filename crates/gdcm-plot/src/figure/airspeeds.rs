@@ -176,10 +176,10 @@ impl AirspeedPlots<'_> {
         };
         let mut panel = panels.panel(pane, axis);
         if let Some(optima) = &self.curves.optima {
-            panel = panel.over(optima_envelope(optima, pane, self.options));
+            panel = panel.with_ground(optima_envelope(optima, pane, self.options));
         }
         panel
-            .over(band_ground(band, self.options))
+            .with_ground(band_ground(band, self.options))
             .with(Rule::horizontal(0.0, NO_ERROR))
     }
 }

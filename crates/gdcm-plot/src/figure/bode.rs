@@ -57,7 +57,7 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     };
     let plot = contents.plot();
     match coherence_panel(source, pair, options) {
-        Some(panel) => plot.panel(panel.over(band_ground(band, options))),
+        Some(panel) => plot.panel(panel.with_ground(band_ground(band, options))),
         None => plot,
     }
 }
@@ -167,8 +167,10 @@ impl ResponsePlot<'_> {
     fn on_grounds(&self, panel: Panel) -> Panel {
         let band = band_ground(self.band, self.options);
         match self.invalid_up_to() {
-            Some(up_to) => panel.over(self.invalid_ground(up_to)).over(band),
-            None => panel.over(band),
+            Some(up_to) => panel
+                .with_ground(self.invalid_ground(up_to))
+                .with_ground(band),
+            None => panel.with_ground(band),
         }
     }
 
@@ -223,7 +225,7 @@ fn overview_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions
     let axis = Axis::linear("Magnitude [dB]").at_least(LEAST_DB);
     let mut panel = panels
         .panel(Pane::Magnitude, axis)
-        .over(band_ground(source.study.settings.band, options));
+        .with_ground(band_ground(source.study.settings.band, options));
     let mut title = source.dataset().pair_name(pair);
     if let Some(analysis) = source.analysis {
         if let Some(cost) = &analysis.cost[pair] {

@@ -83,7 +83,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
         .including(0.0)
         .including(1.0);
     let mut panel = Panel::new(Axis::logarithmic(unit.axis_label()), y)
-        .over(band)
+        .with_ground(band)
         .with(ringing);
     for (id, condition) in &assessment.conditions {
         if *id != shown {

@@ -172,7 +172,7 @@ impl Panel {
     }
 
     /// Returns the panel with another mark, drawn below the existing marks.
-    pub fn over(mut self, ground: impl Into<Mark>) -> Self {
+    pub fn with_ground(mut self, ground: impl Into<Mark>) -> Self {
         self.marks.insert(0, ground.into());
         self
     }
@@ -201,7 +201,8 @@ impl Panel {
     }
 }
 
-/// A title, and panels below one another with the same horizontal range.
+/// A title, and panels below one another. On paper, the panels' horizontal ranges are united into a
+/// common range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
     /// Subject: `LON → Q`. May be empty.

@@ -179,7 +179,7 @@ fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
         key: limit_text(price),
     };
     panel
-        .over(ground)
+        .with_ground(ground)
         .with(Rule::vertical(price.limit_rad_s, LIMIT))
 }
 

@@ -225,7 +225,7 @@ fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
     );
     if let Some(first) = first_idle_step(scores) {
         let end = points.len() as f64 - 0.5;
-        panel = panel.over(Band {
+        panel = panel.with_ground(Band {
             range: Range::new(first as f64 - 0.5, end),
             color: NO_IMPROVEMENT,
             key: "no improvement".to_owned(),

@@ -7,6 +7,7 @@ use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
+use gdcm_method::fidelity::discontinuity::PerturbedModel;
 use gdcm_method::fidelity::representative::Representative;
 use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
@@ -254,6 +255,11 @@ impl ConditionAnalysis {
         }
     }
 
+    /// Returns whether leads are in use: whether they are requested.
+    pub fn has_leads(&self) -> bool {
+        self.compensated.is_some()
+    }
+
     /// Returns the bounds on every channel gain.
     pub fn gain_bounds(&self) -> GainBounds {
         self.gain_problem.bounds
@@ -309,10 +315,36 @@ impl ConditionAnalysis {
         self.representative(kind).scores[self.condition.position(kind, name)?]
     }
 
+    /// Returns a model's distances from the other kept models, whose mean is its score; `None` if
+    /// the score is not defined.
+    pub fn score_distances(&self, kind: BundleKind, name: &str) -> Option<Vec<f64>> {
+        self.score(kind, name)?;
+        let model = self.condition.position(kind, name)?;
+        let distance = self.bundle_metrics.bundle(kind);
+        Some(self.representative(kind).score_distances(distance, model))
+    }
+
     /// Returns a physics model's discontinuity ratio, if defined.
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
         let ratios = &self.bundle_metrics.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
+    }
+
+    /// Returns a physics model's distance ratios `r_ab` to the other models, whose median is its
+    /// discontinuity ratio; `None` if there are no discontinuity ratios.
+    pub fn pair_ratios(&self, name: &str) -> Option<Vec<f64>> {
+        let fit = self.bundle_metrics.discontinuity.as_ref().ok()?;
+        let model = self.condition.position(BundleKind::Physics, name)?;
+        let bundle: Vec<PerturbedModel<'_>> = self
+            .condition
+            .bundle(BundleKind::Physics)
+            .iter()
+            .map(|model| PerturbedModel {
+                name: &model.name,
+                perturbation: model.perturbation(),
+            })
+            .collect();
+        Some(fit.pair_ratios(&self.bundle_metrics.physics, &bundle, model))
     }
 }
 

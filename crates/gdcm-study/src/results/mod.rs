@@ -24,6 +24,7 @@ pub mod grid_source;
 pub mod lead_compensation;
 pub mod lead_offer;
 pub mod lead_remarks;
+pub mod median_lags;
 pub mod missing_finding;
 pub mod model_swap;
 pub mod moved_models;

@@ -27,7 +27,7 @@ pub struct Spectrogram {
     pub time_s: [f64; 2],
     /// Frequencies in the first and the last row \[rad/s\].
     pub omega: [f64; 2],
-    /// Level \[dB\] in each row, window by window.
+    /// Levels \[dB\], as `levels[window][row]`.
     pub levels: Vec<Vec<f64>>,
 }
 
@@ -42,7 +42,7 @@ const FEWEST_SAMPLES: usize = 8;
 /// Number of steps from window to window in a window length.
 const STEPS_A_WINDOW: usize = 8;
 /// Maximum number of steps from the first window to the last.
-const MOST_WINDOWS: usize = 400;
+const MOST_STEPS: usize = 400;
 /// Highest frequency, as a fraction of half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
 
@@ -115,7 +115,7 @@ impl Windows {
             return None;
         }
         let hop = (length / STEPS_A_WINDOW)
-            .max((samples - length).div_ceil(MOST_WINDOWS))
+            .max((samples - length).div_ceil(MOST_STEPS))
             .max(1);
         Some(Self {
             step_s,
@@ -168,6 +168,8 @@ impl FrequencyRows {
     fn power_at(&self, spectrum: &Spectrum, omega: f64) -> f64 {
         let lines = &spectrum.omega;
         let half_row = self.ratio.sqrt();
+        // The clamps keep at least one line, the next above, if none is within half a row; and the
+        // last line if none is above.
         let next = lines
             .partition_point(|line| *line < omega)
             .min(lines.len().saturating_sub(1));

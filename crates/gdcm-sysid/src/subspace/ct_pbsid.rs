@@ -2,13 +2,16 @@
 //!
 //! ```text
 //! z_k = [u~_k; y~_k]: k-th Laguerre projections of the inputs u and the outputs y (`data_matrix`)
-//! p past window, q channels, n order, R triangular factor of the data matrix [z_0 ... z_p]
+//! p past window, q channels (inputs and outputs), l outputs, n order
+//! R triangular factor of the data matrix Z = [z_0 ... z_p]. R'R = Z'Z, so that least squares on
+//!   columns of R and on those of Z agree; the leading block of R serves a shorter past window
 //! Gamma K: map from the past to the future (observability times controllability matrix)
+//! W, S left singular vectors and singular values; W_n, S_n the first n of them; T map to n states
 //!
 //! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, columns of R
 //! 1  Theta = argmin |[Z0 U] Theta - Y|^2 + ridge |Theta|^2     predictor with an exogenous input
-//! 2  Gamma K: block row i = Theta' columns 1 to (p - i) q, placed from column i q
-//!    i = 0 ... f - 1, f = min(p, f_max)
+//! 2  Gamma K: block row i = i q columns of zeros, then the first (p - i) q columns of Theta'
+//!    i = 0 ... f - 1, f = min(p, f_max): f l rows suffice for f l states
 //! 3  Gamma K Z0' = W S V';   T = S_n^-1/2 W_n' Gamma K;   states X0 = Z0 T', X1 = Z1 T'
 //! 4  [Co Do] from Y on [X0 U], residual E;   [Ao Bo Ko] from X1 on [X0 U E]
 //! 5  (Ao, Bo, Co, Do), a model in k, to continuous time (`continuous_model`)
@@ -24,15 +27,28 @@ use gdcm_model::dataset::StateSpace;
 use super::continuous_model::continuous;
 use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
 
-/// Dimensions of a data matrix and its map to the future.
+/// Channel counts, and the chosen sizes of the past and the future.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SubspaceShape {
     pub(crate) inputs: usize,
     pub(crate) outputs: usize,
     /// Past window p.
     pub(crate) past: usize,
-    /// Maximum number of block rows in the map to the future, `f_max`.
+    /// Maximum number of block rows in the map to the future, `f_max`: more rows than the highest
+    /// order needs only enlarge the decomposition.
     pub(crate) longest_future: usize,
+}
+
+impl SubspaceShape {
+    /// Returns q, the number of channels.
+    fn channels(self) -> usize {
+        self.inputs + self.outputs
+    }
+
+    /// Returns p q, the number of columns in `Z0`.
+    fn past_columns(self) -> usize {
+        self.past * self.channels()
+    }
 }
 
 /// States for models of all orders, from one Laguerre pole and one past window.
@@ -63,72 +79,53 @@ impl Subspace {
         shape: SubspaceShape,
         ridge: f64,
     ) -> Option<Self> {
-        let SubspaceShape {
-            inputs,
-            outputs,
-            past,
-            longest_future,
-        } = shape;
-        let channels = inputs + outputs;
-        let width = past * channels;
-        let size = width + channels;
+        let size = shape.past_columns() + shape.channels();
         if factor.matrix().ncols() < size {
             return None;
         }
         let factor = factor.matrix().view((0, 0), (size, size)).into_owned();
-        let theta = ridge_solution(factor.as_view(), width + inputs, ridge)?.transpose();
-        let future = past.min(longest_future);
-        let mut map = DMatrix::zeros(future * outputs, width);
-        for row in 0..future {
-            let kept = (past - row) * channels;
-            map.view_mut((row * outputs, row * channels), (outputs, kept))
-                .copy_from(&theta.columns(0, kept));
-        }
-        // (Gamma K Z0')' is tall: the transpose of its small triangular factor has the same left
-        // singular vectors and singular values as Gamma K Z0'.
-        let mut transposed = TriangularFactor::empty(future * outputs);
-        transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
-        let decomposition =
-            transposed
-                .matrix()
-                .transpose()
-                .try_svd(true, false, f64::EPSILON, 10_000)?;
-        let singular_values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
-        if !singular_values.iter().all(|value| value.is_finite()) {
-            return None;
-        }
+        let predictor = transposed_predictor(&factor, shape, ridge)?;
+        let map = map_to_future(&predictor, shape);
+        let decomposition = decompose(&factor, &map)?;
         Some(Self {
             pole,
-            inputs,
+            inputs: shape.inputs,
             factor,
             map,
-            left: decomposition.u?,
-            singular_values,
+            left: decomposition.left,
+            singular_values: decomposition.singular_values,
         })
     }
 
     /// Computes the continuous-time model at an order (steps 4 and 5); `None` if the data do not
     /// contain so many states, or do not determine the model.
     pub(crate) fn model(&self, order: usize) -> Option<StateSpace> {
+        let model_in_k = self.model_in_k(order)?;
+        continuous(self.pole, &model_in_k)
+    }
+
+    /// Step 4: fits `(Ao, Bo, Co, Do)`. `Ko` is fitted and dropped, because a model has no noise
+    /// input; as `E` is orthogonal to `[X0 U]`, it changes `Ao` and `Bo` only by rounding.
+    fn model_in_k(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;
         let width = self.map.ncols();
         let channels = self.factor.ncols() - width;
         let outputs = channels - inputs;
-        let states = self.state_map(order)?.transpose();
-        let x0 = self.factor.columns(0, width) * &states;
-        let x1 = self.factor.columns(channels, width) * &states;
+        let to_states = self.state_map(order)?.transpose();
+        let x0 = self.factor.columns(0, width) * &to_states;
+        let x1 = self.factor.columns(channels, width) * &to_states;
         let u = self.factor.columns(width, inputs);
         let y = self.factor.columns(width + inputs, outputs);
         let regressors = side_by_side(&[x0.as_view(), u.as_view()]);
         let output_solution = least_squares(&regressors, &y.into_owned())?;
-        let innovation = y - &regressors * &output_solution;
-        let regressors = side_by_side(&[regressors.as_view(), innovation.as_view()]);
+        let residual = y - &regressors * &output_solution;
+        let regressors = side_by_side(&[regressors.as_view(), residual.as_view()]);
         let state_solution = least_squares(&regressors, &x1)?;
         let a = state_solution.rows(0, order).transpose();
         let b = state_solution.rows(order, inputs).transpose();
         let c = output_solution.rows(0, order).transpose();
         let d = output_solution.rows(order, inputs).transpose();
-        continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
+        StateSpace::new(a, b, c, d).ok()
     }
 
     /// Computes `T = S_n^-1/2 W_n' Gamma K` (step 3); `None` if there are fewer than `order`
@@ -145,6 +142,59 @@ impl Subspace {
         }
         Some(map)
     }
+}
+
+/// Step 1: computes `Theta'`, a row for each output; `None` if the regressors depend on each other.
+fn transposed_predictor(
+    factor: &DMatrix<f64>,
+    shape: SubspaceShape,
+    ridge: f64,
+) -> Option<DMatrix<f64>> {
+    let regressors = shape.past_columns() + shape.inputs;
+    Some(ridge_solution(factor.as_view(), regressors, ridge)?.transpose())
+}
+
+/// Step 2: computes `Gamma K` from `Theta'`. The predictor of `y~_{p+i}` uses `z_i` to `z_{p+i-1}`,
+/// of which `z_i` to `z_{p-1}` are in the past window.
+fn map_to_future(predictor: &DMatrix<f64>, shape: SubspaceShape) -> DMatrix<f64> {
+    let outputs = shape.outputs;
+    let channels = shape.channels();
+    let future = shape.past.min(shape.longest_future);
+    let mut map = DMatrix::zeros(future * outputs, shape.past_columns());
+    for row in 0..future {
+        let kept = (shape.past - row) * channels;
+        map.view_mut((row * outputs, row * channels), (outputs, kept))
+            .copy_from(&predictor.columns(0, kept));
+    }
+    map
+}
+
+/// `W` and the diagonal of `S` in step 3.
+struct LeftDecomposition {
+    left: DMatrix<f64>,
+    singular_values: Vec<f64>,
+}
+
+/// Step 3: decomposes `Gamma K Z0'`; `None` if the iteration does not converge.
+fn decompose(factor: &DMatrix<f64>, map: &DMatrix<f64>) -> Option<LeftDecomposition> {
+    let width = map.ncols();
+    // (Gamma K Z0')' is tall: the transpose of its small triangular factor has the same left
+    // singular vectors and singular values as Gamma K Z0'.
+    let mut transposed = TriangularFactor::empty(map.nrows());
+    transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
+    let decomposition =
+        transposed
+            .matrix()
+            .transpose()
+            .try_svd(true, false, f64::EPSILON, 10_000)?;
+    let singular_values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
+    if !singular_values.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    Some(LeftDecomposition {
+        left: decomposition.u?,
+        singular_values,
+    })
 }
 
 /// Joins matrices side by side.

@@ -27,7 +27,7 @@ fn pooled<'a>(
 fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
     let mut rests_on = context.models();
     rests_on.push(context.band());
-    rests_on.push(context.measuring());
+    rests_on.push(context.measured_responses());
     rests_on
 }
 

@@ -110,7 +110,7 @@ impl<'a> Context<'a> {
     }
 
     /// Lists the responses from which bounds and distances are computed.
-    pub(super) fn measuring(&self) -> String {
+    pub(super) fn measured_responses(&self) -> String {
         let measuring = self.analysis.study.dataset.measuring_pairs();
         format!("responses {}", self.pairs(measuring.marked()))
     }

@@ -1,172 +1,19 @@
-//! Derives J (M4), scores and discontinuity ratios (M5).
+//! Derives J before and after a correction (M4), and its change in an assessment (M12), each as a
+//! [`Derivation`]: the equation, the same with numbers, and what the result rests on, as texts.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
-use gdcm_method::fidelity::{Cost, CostAverage, SUGGESTION_RATIO};
-use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
-use gdcm_model::number_format::{counted, five_digits};
+use gdcm_method::fidelity::{Cost, CostAverage};
+use gdcm_model::dataset::{BundleKind, Pair};
+use gdcm_model::number_format::five_digits;
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, assessed};
 
 use super::context::weight_words;
-use super::sample_words::median_words;
 use super::{Context, Derivation};
 use crate::assessment::correction_source;
 
-/// Maximum number of terms that are written out in a sum.
-const MOST_TERMS: usize = 8;
-
 /// Section that defines J in the method description.
 const COST_SECTION: &str = "M4, eq. (14) to (19)";
-
-/// Writes a sum: "a + b + c + … (20 terms)".
-fn sum_words(terms: &[f64]) -> String {
-    let shown: Vec<String> = terms
-        .iter()
-        .take(MOST_TERMS)
-        .map(|term| five_digits(*term))
-        .collect();
-    let sum = shown.join(" + ");
-    if terms.len() > MOST_TERMS {
-        format!("{sum} + … ({} terms)", terms.len())
-    } else {
-        sum
-    }
-}
-
-/// Describes a model: origin, states, sampling, and source.
-fn model_words(model: &Model) -> Vec<String> {
-    let mut words = Vec::new();
-    if let Origin::Identified {
-        method: Some(method),
-        ..
-    } = &model.origin
-    {
-        words.push(format!("identified by {method}"));
-    }
-    if let Some(order) = model.order() {
-        words.push(format!("{order} states"));
-    }
-    if let Dynamics::StateSpace(matrices) = &model.dynamics
-        && !matrices.timing().is_plain()
-    {
-        words.push(matrices.timing().words());
-    }
-    if let Some(source) = &model.source {
-        words.push(source.origin_words());
-    }
-    words
-}
-
-/// Derives a model's score: its mean distance to the other kept models.
-pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
-    let result = context.result;
-    let kind = model.bundle;
-    let value = result.score(kind, &model.name)?;
-    let index = result.condition.position(kind, &model.name)?;
-    let scores = &result.representative(kind).scores;
-    let distances: Vec<f64> = (0..scores.len())
-        .filter(|&other| other != index && scores[other].is_some())
-        .filter_map(|other| result.bundle_metrics.bundle(kind).between(index, other))
-        .collect();
-    let step = if distances.is_empty() {
-        "s = 0, because no other model is kept".to_owned()
-    } else {
-        format!(
-            "s = ({}) / {} = {}",
-            sum_words(&distances),
-            distances.len(),
-            five_digits(value)
-        )
-    };
-    let mut rests_on = vec![
-        format!(
-            "{} kept; {} is used as representative",
-            counted(distances.len() + 1, &format!("{kind} model")),
-            result.representative_name(kind)
-        ),
-        context.band(),
-        context.measuring(),
-    ];
-    if let Some(model) = result.condition.bundle(kind).get(index) {
-        rests_on.extend(model_words(model));
-    }
-    Some(Derivation {
-        title: context.title(&format!("score of {}", model.name)),
-        equation:
-            "s_a = mean over b ≠ a of d(a, b), d(a, b)² = mean over the responses of J(a against b)"
-                .to_owned(),
-        with_numbers: vec![step],
-        rests_on,
-        section: "M5",
-        value,
-    })
-}
-
-/// Derives a physics model's discontinuity ratio: its distance to other models, relative to the
-/// distance that the difference in trim explains (the fitted distance).
-pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
-    const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
-        divided by its maximum, w_k ≥ 0 by least absolute deviations";
-    let result = context.result;
-    let value = result.discontinuity_ratio(&model.name)?;
-    let fit = result.bundle_metrics.discontinuity.as_ref().ok()?;
-    let models = result.condition.bundle(BundleKind::Physics);
-    let index = result
-        .condition
-        .position(BundleKind::Physics, &model.name)?;
-    let perturbation = models[index].perturbation()?;
-    let mut ratios = Vec::new();
-    for (other, other_model) in models.iter().enumerate() {
-        let (Some(other_perturbation), Some(distance)) = (
-            other_model.perturbation(),
-            result.bundle_metrics.physics.between(index, other),
-        ) else {
-            continue;
-        };
-        let fitted = fit.fitted_distance(perturbation, other_perturbation);
-        if other != index && fitted > 0.0 {
-            ratios.push(distance / fitted);
-        }
-    }
-    let mut with_numbers: Vec<String> = fit
-        .weights
-        .iter()
-        .map(|coordinate| {
-            format!(
-                "w_{} = {}, perturbations up to ±{}",
-                coordinate.name,
-                five_digits(coordinate.weight),
-                five_digits(coordinate.largest)
-            )
-        })
-        .collect();
-    with_numbers.push(format!(
-        "r = {} = {}",
-        median_words(&ratios),
-        five_digits(value)
-    ));
-    let mut rests_on = vec![
-        format!(
-            "all {} physics models, including rejected models",
-            models.len()
-        ),
-        context.band(),
-        context.measuring(),
-    ];
-    rests_on.extend(model_words(&models[index]));
-    rests_on.push(format!(
-        "a model above {SUGGESTION_RATIO} is suggested as an outlier"
-    ));
-    Some(Derivation {
-        title: context.title(&format!("discontinuity ratio of {}", model.name)),
-        equation: EQUATION.to_owned(),
-        with_numbers,
-        rests_on,
-        section: "M5",
-        value,
-    })
-}
 
 /// Returns the word that an equation uses for the average over frequency.
 fn average_word(average: CostAverage) -> &'static str {

@@ -6,6 +6,7 @@ mod channels;
 mod context;
 mod costs;
 mod deltas;
+mod distances;
 mod error_bars;
 mod explain_target;
 mod sample_words;
@@ -78,9 +79,9 @@ fn derivation_without_bar(analysis: &Analysis, target: &ExplainTarget) -> Option
             costs::change(&response(id, pair)?, *pair, *choice)
         }
         ExplainTarget::DiscontinuityRatio(model) => {
-            costs::ratio(&condition(&model.condition)?, model)
+            distances::ratio(&condition(&model.condition)?, model)
         }
-        ExplainTarget::Score(model) => costs::score(&condition(&model.condition)?, model),
+        ExplainTarget::Score(model) => distances::score(&condition(&model.condition)?, model),
         ExplainTarget::ScheduledGain(channel, airspeed_kt) => {
             scheduled_gain::scheduled_gain(analysis, *channel, *airspeed_kt)
         }

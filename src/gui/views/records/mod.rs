@@ -46,6 +46,7 @@ mod simulation;
 mod small_plots;
 mod spectrogram;
 mod time_charts;
+mod time_lines;
 mod typed_lists;
 mod unassigned_records;
 mod value_range;

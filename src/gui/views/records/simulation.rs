@@ -1,23 +1,24 @@
-//! Models compared with a record over time: the jobs that simulate them in the background, and
-//! their responses, found again by comparing jobs. The record is divided into windows, and each is
+//! Jobs that simulate the models with the displayed record, and their results.
+//!
+//! Each frame builds the jobs anew, with the corrected models; a job's result is found in
+//! `state.results.simulations` by an equal job. The record is divided into windows, and each is
 //! simulated from its own initial state.
 
 use std::sync::Arc;
 
 use egui::Ui;
 
-use gdcm_method::correction::Pade;
+use gdcm_method::correction::{ChannelCorrection, Pade};
 use gdcm_model::dataset::{BundleKind, StateSpace};
 use gdcm_model::simulation::Validation;
+use gdcm_study::ConditionAnalysis;
 use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_words::missing_results::simulation_failure_text;
 
 use super::frame_cache::cached;
+use super::time_lines::TimeLines;
 use crate::gui::state::records::{ConditionRecords, TimeRole};
 use crate::gui::state::window_state::State;
-
-/// Points on a curve over time, as a line for each window.
-type Lines = Vec<Arc<[[f64; 2]]>>;
 
 /// Model compared with the displayed record.
 pub(super) struct Simulated<'a> {
@@ -63,11 +64,12 @@ impl Simulated<'_> {
 
     /// Returns an output's response, a line per window, each from its own initial state; empty
     /// until it is computed.
-    pub(super) fn lines(&self, ui: &Ui, output: usize) -> Arc<Lines> {
+    pub(super) fn lines(&self, ui: &Ui, output: usize) -> Arc<TimeLines> {
         let Some(validation) = self.validation() else {
             return Arc::default();
         };
         let name = format!("{} {output}", self.role.name());
+        // Computed again only when `validation` is another one, compared by address.
         let source = Arc::clone(validation) as _;
         cached(ui, &name, &[source], (), || {
             simulated_points(validation, output)
@@ -75,27 +77,8 @@ impl Simulated<'_> {
     }
 }
 
-/// Returns a curve's value at a time \[s\], interpolated linearly; `None` outside its lines.
-pub(super) fn value_at(lines: &[Arc<[[f64; 2]]>], time_s: f64) -> Option<f64> {
-    for line in lines {
-        let after = line.partition_point(|point| point[0] < time_s);
-        let Some(next) = line.get(after) else {
-            continue;
-        };
-        if next[0] == time_s {
-            return Some(next[1]);
-        }
-        let Some(before) = after.checked_sub(1).and_then(|before| line.get(before)) else {
-            continue;
-        };
-        let share = (time_s - before[0]) / (next[0] - before[0]);
-        return Some(before[1] + share * (next[1] - before[1]));
-    }
-    None
-}
-
 /// Returns time \[s\] and simulated output, as a line for each window.
-fn simulated_points(validation: &Validation, output: usize) -> Lines {
+fn simulated_points(validation: &Validation, output: usize) -> TimeLines {
     let mut lines = Vec::new();
     for window in &validation.windows {
         let mut points = Vec::new();
@@ -115,8 +98,8 @@ struct ModelJob {
     job: SimulationJob,
 }
 
-/// Returns a job for each model that is available as a continuous-time state space without delays;
-/// none until the displayed record's columns are assigned.
+/// Returns a job for each model that has a [`state_space`]; none until the displayed record's
+/// columns are assigned.
 fn model_jobs(state: &State) -> Vec<ModelJob> {
     let Some(records) = state.records.conditions.get(&state.condition().id()) else {
         return Vec::new();
@@ -154,6 +137,7 @@ pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
 pub(super) fn simulated(state: &State) -> Vec<Simulated<'_>> {
     let mut models = Vec::new();
     for ModelJob { role, job } in model_jobs(state) {
+        // Equal jobs have the same record, compared by address, and equal matrices.
         let known = state
             .results
             .simulations
@@ -167,36 +151,33 @@ pub(super) fn simulated(state: &State) -> Vec<Simulated<'_>> {
     models
 }
 
-/// Returns the state space of the identified model, the physics representative, or that with the
-/// correction (delays as Padé approximants); `None` if it is unavailable, or a physics model is in
-/// discrete time or has delays.
+/// Returns a role's model in the displayed condition, in continuous time and without delays:
+///
+/// | role | model |
+/// |---|---|
+/// | physics | physics representative, without couplings |
+/// | corrected | physics representative with the condition's own correction |
+/// | scheduled | physics representative with the schedule at the condition's flight state |
+/// | identified | refined identified model |
+///
+/// Physics models include the physics parameters, if any, as in comparison and correction. Delays
+/// in the corrected and scheduled models become Padé approximants.
+///
+/// Returns `None` if the model is unavailable, is in discrete time, or has delays.
 fn state_space(state: &State, records: &ConditionRecords, role: TimeRole) -> Option<StateSpace> {
-    if role == TimeRole::Identified {
-        return records.identification()?.refined.state_space().cloned();
-    }
-    let analysis = state.shown()?;
-    let name = analysis.representative_name(BundleKind::Physics);
-    // These models are changed by the physics parameters, if any, as in comparison and correction.
-    let physics = analysis
-        .condition
-        .model(BundleKind::Physics, name)?
-        .state_space()?;
-    let correction = match role {
-        TimeRole::Corrected => Some(analysis.correction.clone()),
+    let space = match role {
+        TimeRole::Physics => physics_representative(state.shown()?)?.clone(),
+        TimeRole::Corrected => {
+            let shown = state.shown()?;
+            corrected_representative(shown, &shown.correction)?
+        }
         TimeRole::Scheduled => {
             let schedule = state.analysis()?.schedule.as_ref().ok()?;
-            Some(schedule.at_state(state.condition().flight_state()))
+            let correction = schedule.at_state(state.condition().flight_state());
+            corrected_representative(state.shown()?, &correction)?
         }
-        TimeRole::Physics | TimeRole::Identified | TimeRole::Measured => None,
-    };
-    let space = match correction {
-        Some(correction) => {
-            analysis
-                .corrected_model(physics, &correction, Pade::default())
-                .ok()?
-                .model
-        }
-        None => physics.clone(),
+        TimeRole::Identified => records.identification()?.refined.state_space()?.clone(),
+        TimeRole::Measured => return None,
     };
     if space.timing().is_plain() {
         Some(space)
@@ -205,20 +186,22 @@ fn state_space(state: &State, records: &ConditionRecords, role: TimeRole) -> Opt
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Returns the physics representative's matrices; `None` if it is a measured response.
+fn physics_representative(shown: &ConditionAnalysis) -> Option<&StateSpace> {
+    shown
+        .representative_model(BundleKind::Physics)
+        .state_space()
+}
 
-    #[test]
-    fn a_value_is_interpolated_within_a_line_and_absent_between_lines() {
-        let lines: Lines = vec![
-            Arc::from([[0.0, 1.0], [1.0, 3.0]]),
-            Arc::from([[4.0, 5.0], [5.0, 7.0]]),
-        ];
-        let values = [-0.1, 0.0, 0.25, 1.0, 2.0, 4.5, 5.1].map(|time_s| value_at(&lines, time_s));
-        assert_eq!(
-            values,
-            [None, Some(1.0), Some(1.5), Some(3.0), None, Some(6.0), None]
-        );
-    }
+/// Returns the physics representative with the couplings in use and a correction; `None` if it has
+/// no matrices, or its delays cannot become states.
+fn corrected_representative(
+    shown: &ConditionAnalysis,
+    correction: &ChannelCorrection,
+) -> Option<StateSpace> {
+    let physics = physics_representative(shown)?;
+    let corrected = shown
+        .corrected_model(physics, correction, Pade::default())
+        .ok()?;
+    Some(corrected.model)
 }

@@ -3,7 +3,10 @@
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::CostAverage;
 use gdcm_model::dataset::ModelId;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::statistics::median;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::results::median_lags::MedianLag;
 use gdcm_study::{AssessedCorrection, AssessmentTable};
 use gdcm_words::ExplainTarget;
 use gdcm_words::derivation::{Derivation, derivation};
@@ -194,10 +197,21 @@ fn scores_and_discontinuity_ratios_are_told() {
             ExplainTarget::DiscontinuityRatio(of.clone()),
             result.discontinuity_ratio(&model.name).unwrap(),
         );
+        let mut ratios = result.pair_ratios(&model.name).unwrap();
+        assert_eq!(
+            Some(median(&mut ratios)),
+            result.discontinuity_ratio(&model.name)
+        );
+        let distances = result.score_distances(BundleKind::Physics, &model.name);
         match result.score(BundleKind::Physics, &model.name) {
-            Some(score) => assert_told(ExplainTarget::Score(of), score),
-            None => continue,
-        };
+            Some(score) => {
+                assert_told(ExplainTarget::Score(of), score);
+                let distances = distances.unwrap();
+                let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+                assert_eq!(mean, score);
+            }
+            None => assert_eq!(distances, None),
+        }
     }
     let rejected = ModelId::new(id, BundleKind::Physics, "nominal");
     assert_eq!(
@@ -218,9 +232,24 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
                 .then(|| result.bundle_metrics.physics.between(place, other).unwrap() / fitted)
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
-        let median = gdcm_model::statistics::median(&mut ratios);
+        let median = median(&mut ratios);
         // Rounding: the test takes squares and square roots in another order.
         assert!((median / fit.ratios[place].unwrap() - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_channels_median_lag_has_the_opposite_sign_of_its_delays() {
+    let result = analysis().condition(CONDITION).unwrap();
+    let lags = result.median_lags(ChannelSide::Input);
+    assert!(!lags.is_empty());
+    for MedianLag { channel, lag_s } in lags {
+        let delays = result.delay_problem.delta.iter();
+        let mut delays_s: Vec<f64> = delays
+            .filter(|(pair, _)| channel == Channel::Input(pair.input))
+            .filter_map(|(_, delay_s)| *delay_s)
+            .collect();
+        assert_eq!(lag_s, -median(&mut delays_s));
     }
 }
 

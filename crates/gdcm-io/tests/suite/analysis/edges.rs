@@ -16,6 +16,7 @@ use gdcm_study::results::caution::{BundleModel, Caution, GainOutOfRange, NotFini
 use gdcm_study::stages::model_cautions::cautions_of_models;
 use gdcm_study::{ConditionAnalysis, Execution};
 use gdcm_words::caution::caution_text;
+use gdcm_words::derivation::{ExplainTarget, derivation};
 
 use super::*;
 use crate::made_up::two_lags;
@@ -172,6 +173,14 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
     );
     let ratios = &found.bundle_metrics.discontinuity.as_ref().unwrap().ratios;
     assert!(ratios[3].is_none() && ratios[0].is_some());
+    let models = found.condition.bundle(BundleKind::Physics);
+    let first = ModelId::new(ONLY, BundleKind::Physics, &models[0].name);
+    let explained = derivation(&analysis, &ExplainTarget::DiscontinuityRatio(first)).unwrap();
+    let compared = models.len() - 1;
+    assert_eq!(
+        explained.rests_on[0],
+        format!("all {compared} physics models that are not set aside, including rejected models")
+    );
     value["conditions"][0]["physics_models"]
         .as_array_mut()
         .unwrap()

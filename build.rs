@@ -60,8 +60,8 @@ fn commit_of_checkout() -> Option<String> {
         return None;
     }
     let commit = git(&["rev-parse", "HEAD"])?;
-    // Any change of the source compiles this package again in any case: looking whether the source
-    // differs from the commit costs nothing more.
+    // A change in these paths usually compiles this package again anyway, so that checking again
+    // whether the source differs from the commit costs little.
     for path in ["src", "crates", "assets", "Cargo.toml", "Cargo.lock"] {
         println!("cargo::rerun-if-changed={path}");
     }

@@ -9,7 +9,7 @@ use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::{quoted, sanitized};
 use gdcm_study::decisions::edit_refusal::EditRefusal;
 
-/// Fault in an entry of a file; the message states the expected and the actual content.
+/// Fault in an entry of a file; most messages state the expected and the actual content.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContentFault {
     #[error("expected {expected}, found {found} (line {line}, column {column})")]
@@ -30,7 +30,6 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// Lists or objects are nested too deeply.
     #[error(
         "lists or objects are nested too deeply; check the brackets (line {line}, column {column})"
     )]
@@ -44,7 +43,7 @@ pub enum ContentFault {
     MissingKey { key: String },
     #[error("duplicate key {}; remove one", quoted(key))]
     DuplicateKey { key: String },
-    /// Lists of numbers that must have the same length differ.
+    /// Lists of numbers that must be equally long have different lengths.
     #[error(
         "expected {expected} entries, as in the first of these lists, found {found} (line {line}, \
         column {column})"

@@ -34,13 +34,13 @@ pub enum ExportFault {
         quoted(found)
     )]
     FunctionName { found: String },
-    /// The file extension does not belong to a format for models.
+    /// The file extension does not suit the requested format for models.
     #[error("the file name of exported models must end in .mat, .json or .npz")]
     ModelsFormat,
-    /// The values cannot be written.
+    /// Variables for MATLAB or NumPy cannot be written.
     #[error(transparent)]
     Variables(#[from] VariableFault),
-    /// There is no schedule to export.
+    /// The schedule that the export requires does not exist.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
     /// Couplings are requested but unavailable, so that the export would differ from the request.

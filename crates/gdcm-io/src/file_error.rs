@@ -100,7 +100,7 @@ pub enum FileError {
         /// Stated version, as displayed in the message.
         found: String,
     },
-    /// The text is JSON of the expected format, but has an invalid entry.
+    /// The file has the expected format, but an invalid entry.
     #[error("{}: {}{fault}{}", sanitized_path(path), place.before(), line_words(*line))]
     Content {
         path: PathBuf,

@@ -1,5 +1,5 @@
 //! Rectangular arrays of numbers in JSON: matrices and response tables as nested lists. An array
-//! that exceeds a limit is rejected before it occupies memory.
+//! that exceeds a limit is rejected before the excess occupies memory.
 
 use std::fmt;
 
@@ -41,7 +41,7 @@ impl<const DEPTH: usize> Nested<DEPTH> {
 }
 
 impl Nested<2> {
-    /// Converts a matrix; its values are in row order.
+    /// Converts a matrix to values in row order.
     pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
         // nalgebra stores matrices by columns, a file by rows.
         Self {

@@ -123,8 +123,8 @@ fn syntax_words(reason: &str) -> String {
     }
 }
 
-/// Translates an error about a missing, unknown or duplicate key, or about a value with the wrong
-/// type.
+/// Translates an error in valid JSON: a missing or duplicate key, an unknown word, a wrong list
+/// length, frequency band or type; any other error keeps serde's words.
 fn data_fault(reason: &str, position: Position) -> ContentFault {
     let Position { line, column } = position;
     if let Some(key) = text_between(reason, "missing field `", "`") {

@@ -1,5 +1,5 @@
 //! JSON lists and objects with limits on their lengths. Content that exceeds a limit is rejected
-//! before it occupies memory.
+//! before the excess occupies memory.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -9,7 +9,7 @@ pub(super) enum Step {
     Entry(usize),
 }
 
-/// Keys on the paths to the conditions and models in a dataset.
+// Keys on the paths to the conditions and models in a dataset.
 pub(super) const CONDITIONS: &str = "conditions";
 pub(super) const PHYSICS_MODELS: &str = "physics_models";
 pub(super) const IDENTIFIED_MODELS: &str = "identified_models";

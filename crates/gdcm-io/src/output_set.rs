@@ -139,8 +139,9 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Adds the SHA-256 of every file so far, in `sha256sum` format. This file is renamed last; it
-    /// reveals whether the other files belong together.
+    /// Adds the SHA-256 of every file so far, in `sha256sum` format. To be called after all other
+    /// files are added: the checksums are renamed last, and reveal whether the other files belong
+    /// together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let mut lines = String::new();
         for staged in &self.staged {
@@ -239,7 +240,8 @@ impl Placed {
         Ok(Self { target, earlier })
     }
 
-    /// Restores the previous file; if this fails, nothing more can be done.
+    /// Restores the previous file, or removes the new file if there was none; if this fails,
+    /// nothing more can be done.
     fn take_back(self) {
         match self.earlier {
             Some(earlier) => drop(earlier.persist(&self.target)),

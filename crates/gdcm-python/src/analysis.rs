@@ -23,7 +23,7 @@ pub(crate) struct Analysis {
     /// Messages that the program reported, as JSON.
     #[pyo3(get)]
     messages: String,
-    /// The summary that the command prints.
+    /// The summary that `gdcm analyze` prints.
     #[pyo3(get)]
     summary: String,
     /// The cautions in the summary, as JSON.

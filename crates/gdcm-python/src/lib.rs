@@ -24,7 +24,7 @@ use crate::identification::Identification;
 /// Module `gdcm._gdcm`.
 #[pymodule]
 fn _gdcm(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    // Results state the commit, as the program's own do.
+    // Results state the commit, as do those that the program writes itself.
     gdcm::version::set_commit();
     module.add("version", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<Data>()?;

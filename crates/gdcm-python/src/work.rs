@@ -2,8 +2,9 @@
 //! with progress and interruption.
 //!
 //! The calling thread waits. At every tick it takes the lock, lets Python handle its signals
-//! (Ctrl+C raises `KeyboardInterrupt`), and hands the progress to the callback. If either raises an
-//! exception, the work is asked to stop, and the exception is raised once it has.
+//! (Ctrl+C raises `KeyboardInterrupt`), and hands the progress, if it has changed, to the callback.
+//! If either raises an exception, the work is asked to stop, and the exception is raised once it
+//! has.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -19,7 +19,6 @@ use crate::formats::variables::Variable;
 /// Options of `gdcm export` for files with results per condition.
 const OPTIONS: &[&str] = &["--condition"];
 
-/// Export as `corrections.json`.
 pub(super) const JSON: ExportFormat = ExportFormat {
     name: "json",
     extension: "json",
@@ -44,7 +43,6 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     },
 };
 
-/// Export as `corrections.csv`.
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "csv",
     extension: "csv",
@@ -62,7 +60,6 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     ..JSON
 };
 
-/// Export as `assessment.csv`.
 pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
     name: "assessment",
     extension: "csv",
@@ -110,7 +107,6 @@ pub(super) const PHYSICS: ExportFormat = ExportFormat {
     ..JSON
 };
 
-/// Export as the MATLAB struct `corrections`.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "mat",
     extension: "mat",

@@ -45,7 +45,6 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     export: export_models,
 };
 
-/// Export of corrected models for NumPy.
 pub(super) const NUMPY: ExportFormat = ExportFormat {
     name: "state-space-npz",
     extension: "npz",
@@ -54,7 +53,6 @@ pub(super) const NUMPY: ExportFormat = ExportFormat {
     ..STATE_SPACE
 };
 
-/// Export of corrected models in the format `gdcm-models`.
 pub(super) const JSON: ExportFormat = ExportFormat {
     name: "state-space-json",
     extension: "json",

@@ -195,7 +195,7 @@ mod tests {
     use crate::files::corrections_file::corrections;
     use crate::files::dataset_file::embedded_example;
 
-    /// Collects the paths of all JSON members, leaving out list indices and names of channels and
+    /// Collects the paths of all JSON leaves, leaving out list indices and names of channels and
     /// models.
     fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
         match json {

@@ -12,12 +12,13 @@ use gdcm_study::{AssessedCorrection, PhaseCorrection};
 use super::Export;
 use super::exported_model::ExportedModel;
 
-/// Phase error \[deg\] below which a corrected model needs no note.
+/// Phase error \[deg\] due to approximations, below which a corrected model needs no note.
 const NOTABLE_ERROR_DEG: f64 = 0.005;
 
 impl Export<'_> {
     /// Returns the notes on a file with condition results: conditions not chosen or without a
-    /// result; missing error bars, couplings or schedule; and the price of scheduled leads.
+    /// result; missing error bars, requested couplings or schedule; and the price of scheduled
+    /// leads ([`LeadPrice`]).
     pub(super) fn result_notes(&self) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = self.choice_notes();
@@ -43,7 +44,7 @@ impl Export<'_> {
     }
 
     /// Returns the notes on a file with the schedule: its delays, the conditions that it does not
-    /// use, and the price of its leads.
+    /// use, and the price of its leads; empty without a schedule.
     pub(super) fn schedule_notes(&self) -> Vec<ExportNote> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -214,7 +215,7 @@ fn price_note(price: Option<LeadPrice>) -> Option<ExportNote> {
     Some(ExportNote::NotValidAbove { price })
 }
 
-/// Returns each channel's maximum gain over the models; `None` without lead filters.
+/// Returns the price with each channel's maximum gain over the models; `None` without lead filters.
 fn greatest_price(models: &[ExportedModel]) -> Option<LeadPrice> {
     let mut greatest: Option<LeadPrice> = None;
     for model in models {

@@ -2,7 +2,7 @@
 //! and the same bytes are then written together, or not at all.
 //!
 //! ```text
-//! names   prefix + stem + number + extension; the number keeps existing files
+//! names   prefix + stem + number + extension; a number prevents replacing files
 //! dry run each format computes its bytes, its summary and its notes; notes on the same subject are
 //!         merged; then the checksums of these files, if requested
 //! write   all files; the caller writes the report
@@ -171,8 +171,8 @@ impl ExportSet {
         names.map(|name| self.folder.join(name)).collect()
     }
 
-    /// Computes all files, with the checksums, without writing any. A file that cannot be computed
-    /// stays in the plan, with the fault instead of its contents.
+    /// Computes all files and, if requested, their checksums, without writing any. A file that
+    /// cannot be computed stays in the plan, with the fault instead of its contents.
     ///
     /// # Errors
     /// [`Cancelled`] between two files.
@@ -347,7 +347,7 @@ impl ExportPlan {
         });
     }
 
-    /// Returns the total file size \[bytes\].
+    /// Returns the total file size \[bytes\], without the report.
     pub fn size(&self) -> usize {
         let mut size = 0;
         for file in &self.files {

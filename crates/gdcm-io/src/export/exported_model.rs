@@ -20,23 +20,20 @@ pub(super) struct ExportedModel {
     pub(super) model: StateSpace,
     /// State names, in the order used by `model`.
     pub(super) states: Vec<String>,
-    /// Number of states that represent delays.
     pub(super) delay_states: usize,
-    /// Number of states that represent lead filters.
     pub(super) lead_states: usize,
     /// Order of the Padé approximants for delays; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
     /// Maximum phase error \[deg\] at the band's upper end due to the Padé approximants or, in
     /// discrete time, to Tustin's rule.
     pub(super) approximation_error_deg: f64,
-    /// Phase lag \[deg\] at the band's upper end due to delays in the condition's own correction
-    /// that the schedule omits.
+    /// Maximum phase lag \[deg\] at the band's upper end due to delays in the condition's own
+    /// correction that the schedule omits.
     pub(super) left_out_deg: f64,
-    /// Correction parts that the model contains.
     pub(super) contents: ExportContents,
     /// The band's upper end, the highest compared frequency \[rad/s\].
     pub(super) band_top_rad_s: f64,
-    /// Lead filter cost; `None` without lead filters.
+    /// `None` without lead filters.
     pub(super) price: Option<DescribedPrice>,
     pub(super) couplings: ModelCouplings,
 }
@@ -52,9 +49,9 @@ pub(super) enum ModelCouplings {
     FeedbackAroundDelays,
 }
 
-/// Accuracy of the parts in an exported model. A part is exact unless it is approximated: in
-/// discrete time (`pade_order` 0), lead filters by Tustin's rule; in continuous time, delays by
-/// Padé approximants.
+/// Accuracy of the parts in an exported model. In discrete time (`pade_order` 0), lead filters are
+/// approximated by Tustin's rule; in continuous time, delays by Padé approximants. Everything else
+/// is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ModelAccuracy {
     /// Gains and delays are exact, lead filters follow Tustin's rule.
@@ -73,7 +70,6 @@ pub(super) enum ModelAccuracy {
     PadeOwnDelays,
 }
 
-/// Lead filter cost, with its description.
 pub(super) struct DescribedPrice {
     pub(super) price: LeadPrice,
     pub(super) words: String,

@@ -17,7 +17,6 @@ use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 
-/// Lookup table export as text.
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "table-csv",
     extension: "csv",
@@ -36,7 +35,6 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     },
 };
 
-/// Lookup table export for MATLAB.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "table-mat",
     extension: "mat",
@@ -116,7 +114,8 @@ struct Breakpoint {
     second: Option<f64>,
 }
 
-/// Values of one channel quantity at the breakpoints.
+/// Values of a channel's quantity at the breakpoints; for a mixing entry, `channel` is the
+/// receiving input.
 struct Column {
     quantity: &'static Quantity,
     channel: Channel,
@@ -134,7 +133,8 @@ struct BreakpointTable<'e> {
     airspeeds_kt: Vec<f64>,
     /// All airspeeds, repeated for each value of the second variable.
     rows: Vec<Breakpoint>,
-    /// Gain, delay and lead filter for each input, then for each output; then the mixing.
+    /// Gain, delay and, if scheduled, lead filter for each input, then for each output; then the
+    /// mixing, if there is any.
     columns: Vec<Column>,
 }
 
@@ -196,7 +196,7 @@ impl<'e> BreakpointTable<'e> {
         Ok(table)
     }
 
-    /// Adds a channel's gain, delay and lead filter.
+    /// Adds a channel's gain, delay and, if scheduled, lead filter.
     fn add_channel(&mut self, channel: Channel, second_values: &[Option<f64>]) {
         let schedule = self.scheduled.schedule;
         let gain = self.column(channel, &GAIN, second_values, |row| {

@@ -47,7 +47,6 @@ use crate::output_set::OutputSet;
 /// Purpose that several formats share; the variants are in display order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FormatGroup {
-    /// Results per condition.
     PerCondition,
     /// The schedule as a function in a programming language.
     Function,
@@ -144,7 +143,6 @@ pub enum ExportedRole {
     Nominal,
     /// The model that represents the bundle.
     Representative,
-    /// The model with this name.
     Named(String),
 }
 
@@ -159,8 +157,8 @@ impl ExportedRole {
     }
 }
 
-/// What to export, with options; by default nominal models with the scheduled correction and
-/// second-order Padé approximants.
+/// Request for an export, with its options; by default nominal models with the scheduled correction
+/// and second-order Padé approximants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportRequest {
     pub format: ExportFormat,
@@ -210,7 +208,6 @@ pub struct Export<'e> {
 }
 
 impl ExportRequest {
-    /// Returns the exported conditions.
     fn chosen(&self, analysis: &Analysis) -> BTreeSet<ConditionId> {
         match &self.conditions {
             Some(conditions) => conditions.clone(),
@@ -220,8 +217,8 @@ impl ExportRequest {
 }
 
 impl<'e> Export<'e> {
-    /// Returns remarks on what the scheduled leads cost, for files that contain these leads; empty
-    /// without leads.
+    /// Returns a remark on the price of the scheduled leads, for files that contain these leads;
+    /// empty without leads.
     fn price_remarks(&self) -> Vec<String> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -266,7 +263,6 @@ impl<'e> Export<'e> {
     }
 }
 
-/// Function that writes a file.
 type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
 /// File contents, with remarks on them line by line, and with facts for the list of files.

@@ -60,7 +60,8 @@ pub(super) fn c_text(text: &str) -> String {
     quoted
 }
 
-/// Writes a string as a Python string literal.
+/// Writes a string as a Python string literal, in which all characters but printable ASCII become
+/// escapes.
 pub(super) fn python_text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {

@@ -38,7 +38,8 @@ struct Language {
     /// Whether lists of numbers must be declared as arrays; otherwise they are written in place, in
     /// square brackets.
     declares_arrays: bool,
-    /// Writes a string as a literal; the MATLAB template contains no such literals.
+    /// Writes a string as a literal; for MATLAB, whose template contains no string literals, as a
+    /// comment.
     text: fn(&str) -> String,
 }
 
@@ -87,7 +88,6 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
     export: |export| MATLAB_LANGUAGE.export(export),
 };
 
-/// Export as a Python module.
 pub(super) const PYTHON: ExportFormat = ExportFormat {
     name: "py",
     extension: "py",
@@ -101,7 +101,6 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
     export: |export| PYTHON_LANGUAGE.export(export),
 };
 
-/// Export as a C header.
 pub(super) const C: ExportFormat = ExportFormat {
     name: "h",
     extension: "h",
@@ -185,8 +184,9 @@ impl Language {
             .map_err(io::Error::other)
     }
 
-    /// Returns the template values for the parts of the correction: name and source of each part,
-    /// and the omitted parts, as string literals of the language.
+    /// Returns the template values for the correction's parts: name and source of each part, the
+    /// changes of the physics parameters, and the omitted parts; all but the names are string
+    /// literals.
     fn contained_parts(&self, scheduled: &ExportedSchedule<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in scheduled.contents.parts() {
@@ -279,8 +279,8 @@ impl Language {
 
     /// Returns the expression of a curve in terms of the airspeed `a`, the scaled airspeed `v` and
     /// the scaled second variable `z`, together with the arrays `c0`, `c1`, … that it uses: the
-    /// regression; plus the slope times `z`; its exponential, if it gives a logarithm; clamped to 0
-    /// and the upper limit.
+    /// regression; plus the slope times `z`; its exponential, if it gives a logarithm; clamped
+    /// between 0 and the upper limit, if there is one.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
         let mut value = self.regression_expression(&curve.figures, &mut arrays);

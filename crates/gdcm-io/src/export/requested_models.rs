@@ -42,8 +42,9 @@ pub(super) fn exported_models(
     Ok(models)
 }
 
-/// Returns `M_O H~ M_I` at the frequencies `omega` \[rad/s\]: a condition's requested physics model
-/// with its couplings, and with the requested correction. Delays are exact.
+/// Returns `M_O H~ M_I` at the frequencies `omega` \[rad/s\]: `H~` is a condition's requested
+/// physics model with its couplings, and `M_I` and `M_O` correct its inputs and outputs as
+/// requested. Delays are exact.
 ///
 /// # Errors
 /// The analysis lacks the condition, the model, or a requested correction part.

@@ -85,7 +85,7 @@ impl ExportedSchedule<'_> {
         ]
     }
 
-    /// Returns the remarks on the schedule: missing delays, lead costs, and cautions.
+    /// Returns the remarks on the schedule: missing delays, the price of leads, and cautions.
     pub(super) fn notes(&self) -> Vec<String> {
         let (inputs, outputs) = self.dataset.input_and_output_names();
         let mut notes = Vec::new();

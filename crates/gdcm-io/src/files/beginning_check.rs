@@ -31,7 +31,8 @@ const LAST: usize = 16 << 20;
 /// another format or version, values whose type their keys do not permit, lists that are too long.
 ///
 /// # Errors
-/// Returns the first such error within 16 MiB, or an error if the file cannot be opened.
+/// Returns the first such error in the longest beginning (64 KiB, 1 MiB or 16 MiB) that the file
+/// fills, or an error if the file cannot be opened.
 pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut reader = text_reader(path)?;
     let mut text = Vec::new();
@@ -67,7 +68,7 @@ fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
         check_dataset_text(text, path, &budget)
     };
     match checked {
-        // The end of the text is expected, because it is only the beginning of the file.
+        // The end of the text is expected, because the text is only the beginning of the file.
         Err(FileError::CutOff { .. }) => Ok(()),
         checked => checked,
     }

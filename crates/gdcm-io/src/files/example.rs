@@ -45,7 +45,7 @@ impl ExampleFile {
         }
     }
 
-    /// Returns the content as it is written.
+    /// Returns the content as it is written, unpacked if necessary.
     fn written(&self) -> Result<Cow<'static, [u8]>, FileError> {
         if !self.is_packed {
             return Ok(Cow::Borrowed(self.content));
@@ -106,7 +106,7 @@ impl Example {
     /// Every example, in menu order.
     pub const ALL: [Self; 2] = [Self::Simulated, Self::RealAircraft];
 
-    /// Returns the name by which studies and messages refer to it.
+    /// Returns the name by which studies and messages refer to the example.
     pub fn name(self) -> &'static str {
         match self {
             Self::Simulated => "embedded example",

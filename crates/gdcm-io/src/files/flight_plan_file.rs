@@ -16,7 +16,8 @@ use crate::json_writing::write_pretty;
 use crate::output_set::OutputSet;
 use crate::software::software;
 
-/// Planned sweeps for one condition, and ways to reach its targets.
+/// Planned sweeps for one condition, and ways to reach the requested half-widths of its responses'
+/// intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionPlan {
     /// Condition in the dataset; `None` without a dataset.

@@ -198,7 +198,7 @@ fn response_array(
     }
 }
 
-/// Converts a caution to JSON, with its record's name if it concerns only one.
+/// Converts a caution to JSON; `record` is null unless the caution concerns exactly one record.
 fn caution_json(note: &CautionNote) -> Value {
     let single_record = match note.records.as_slice() {
         [record] => Some(record),

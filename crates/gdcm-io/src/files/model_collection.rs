@@ -25,12 +25,10 @@ use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 use crate::software::software;
 
-/// Model file format and version.
 pub(crate) const MODELS: Format = Format {
     name: "gdcm-models",
     version: 1,
 };
-/// Format and version of a file with identified models.
 pub(crate) const IDENTIFIED: Format = Format {
     name: "gdcm-identified",
     version: 1,
@@ -89,7 +87,6 @@ struct ModelsWithContentsText {
     models: Vec<ModelWithContentsText>,
 }
 
-/// Writes corrected models to a file.
 pub(crate) fn write_models_with_contents(
     models: &[ModelWithContents],
     file: &mut dyn Write,
@@ -162,9 +159,9 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
 /// Reads the models from a file in one of this program's model formats, with cautions about unknown
 /// keys.
 ///
-/// Returns `None` for any other file, if a model has no dimensions or unfitting labels, and if an
-/// unknown key's name suggests a delay: such a file is read as general JSON instead, which supports
-/// more delay notations and asks the engineer about the rest.
+/// Returns `None` for any other file, if a model has no dimensions or labels that do not fit them,
+/// and if an unknown key's name suggests a delay: such a file is read as general JSON instead,
+/// which supports more delay notations and asks the engineer about the rest.
 pub(crate) fn found_models(
     text: &[u8],
     path: &Path,

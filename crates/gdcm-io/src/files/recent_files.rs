@@ -17,7 +17,6 @@ use crate::reading_budget::ReadingBudget;
 const MOST: usize = 10;
 /// File name in the program's directory for user state.
 const NAME: &str = "recent-files.json";
-/// Format and version of the list of recent files.
 const FORMAT: Format = Format {
     name: "gdcm-recent-files",
     version: 1,

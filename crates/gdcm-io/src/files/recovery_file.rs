@@ -13,7 +13,7 @@ use super::study_file::{STUDY_EXTENSION, dataset_of_study, save_recovery};
 use crate::file_error::FileError;
 use crate::output_set::make_directory;
 
-/// Extension for lock files; the file is locked while its process runs.
+/// Extension for lock files, each of which is locked while its process runs.
 const LOCK_EXTENSION: &str = "lock";
 /// Age below which a lock file may belong to a process that has not locked it yet.
 const YOUNG: Duration = Duration::from_secs(60);
@@ -61,7 +61,7 @@ impl RecoveryFile {
         }
     }
 
-    /// Returns the recovery file's path.
+    /// Returns the path at which [`Self::write`] creates the recovery file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -103,7 +103,8 @@ impl RecoveryFile {
 }
 
 impl Drop for RecoveryFile {
-    /// Removes the lock file, unless a recovery file was written: both are kept for the next start.
+    /// Removes the lock file, unless the recovery file exists: both are then kept for the next
+    /// start.
     fn drop(&mut self) {
         if !self.path.exists() {
             // If the lock file cannot be removed now, the next start removes it.
@@ -128,7 +129,7 @@ pub struct LostStudy {
 }
 
 impl LostStudy {
-    /// Returns the recovery file's path.
+    /// Returns the path of the recovery file, which opens as a study.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -143,8 +144,8 @@ impl LostStudy {
     }
 }
 
-/// Returns the recovery files in `directory` whose processes have ended, newest first. Removes lock
-/// files without a recovery file.
+/// Returns the recovery files in `directory` whose processes have ended, newest first. Removes old
+/// lock files without a recovery file.
 pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     let Ok(entries) = fs::read_dir(directory) else {
         return Vec::new();
@@ -157,8 +158,8 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     lost
 }
 
-/// Returns the recovery file that belongs to a lock file. `None` for any other file, if its process
-/// still runs, and without a recovery file; in that case an old lock file is removed.
+/// Returns the recovery file that belongs to a lock file. `None` for any other file, if the process
+/// still runs, and without a recovery file; an old lock file without one is removed.
 fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     if lock_path.extension()? != LOCK_EXTENSION {
         return None;

@@ -67,7 +67,6 @@ pub fn rules_json(rules: &Rules) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Rules file format and version.
 pub(crate) const FORMAT: Format = Format {
     name: "gdcm-rules",
     version: 1,
@@ -94,7 +93,7 @@ pub(crate) struct RulesText {
     #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(crate) on_axis: Vec<(String, String)>,
     pub(crate) band_rad_s: [f64; 2],
-    /// The physics model's named parameters.
+    /// Named parameters of the physics models.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",

@@ -38,7 +38,7 @@ const NO_PAGES: bool = false;
 /// Results of reading model files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundModels {
-    /// Models in file order.
+    /// Models in file order; those whose matrices are in separate files come last.
     pub models: Vec<FoundModel>,
     /// Files that could not be read and invalid models, each with its place and the reason.
     pub faults: Vec<String>,
@@ -229,7 +229,8 @@ impl<'h> ModelReading<'h> {
         }
     }
 
-    /// Recognises models among variables; a single matrix is stored until all files have been read.
+    /// Recognises models among variables; a [`LooseMatrix`] is stored until all files have been
+    /// read.
     fn recognise(
         &mut self,
         variables: &[Variable],

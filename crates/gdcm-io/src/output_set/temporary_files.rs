@@ -1,5 +1,5 @@
 //! Temporary files beside the files that they replace: new content before it is renamed, and second
-//! names of existing files.
+//! names or copies of existing files.
 //!
 //! Each is locked while its process runs. A temporary file without a lock is a leftover from a
 //! killed run, and is removed by the next write into its directory.
@@ -10,7 +10,7 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
-/// Beginning and end of the names of temporary files.
+// Beginning and end of the names of temporary files.
 pub(super) const PREFIX: &str = ".gdcm-";
 pub(super) const SUFFIX: &str = ".tmp";
 

@@ -57,7 +57,8 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the appendix with on-axis J in parts, and with the off-axis responses.
+/// Adds the appendix with J in parts for the on-axis responses (all if none is on-axis), and with
+/// the off-axis responses.
 pub(super) fn add_assessment_details(page: &mut Page, analysis: &Analysis) {
     page.appendix("Details of the assessment");
     let table = AssessmentTable::assess(analysis, usual_choice(analysis));

@@ -68,7 +68,7 @@ struct SharedRemark {
     conditions: Vec<ConditionId>,
 }
 
-/// Returns the cautions and the unmatched responses: each kind once, worded for its first
+/// Returns the cautions and the unmatched responses: each remark code once, worded for its first
 /// condition, followed by the other conditions with such a remark.
 fn shared_remarks(analysis: &Analysis) -> Vec<String> {
     let study = &analysis.study;
@@ -144,7 +144,7 @@ pub(super) fn add_condition_details(
     Ok(())
 }
 
-/// Returns a remark as a sentence that begins with its kind.
+/// Returns a remark as text, which begins with its kind unless it is good.
 fn remark_words(remark: &Remark, study: &Study) -> String {
     let text = remark_text(remark, &study.dataset);
     match remark.kind() {
@@ -181,7 +181,8 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
 }
 
-/// Returns names and values for the first table: flight state, bundles, bounds and objectives.
+/// Returns names and values for a condition's first table: flight state, bundles, bounds,
+/// objectives, and whether the condition is scheduled.
 fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, String)> {
     let bounds = result.gain_bounds();
     let gains = &result.gains;

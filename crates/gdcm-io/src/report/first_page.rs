@@ -24,7 +24,7 @@ const PAIRS_SHOWN: usize = 6;
 const ROWS_SHOWN: usize = 24;
 /// Net delays up to this magnitude are displayed as zero \[ms\].
 const NO_DELAY_MS: f64 = 0.05;
-/// Who signs the report.
+/// Roles of those who sign the report.
 const ROLES: [&str; 3] = ["Prepared by", "Checked by", "Approved by"];
 
 /// Adds the verdict on the study, the corrections for all conditions, and the signature block.

@@ -79,7 +79,7 @@ pub struct ReportSubject<'a> {
     pub analysis: &'a Analysis,
     /// Model responses to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
-    /// Poles of the identified models.
+    /// Poles of the identified models with their uncertainty, which the dataset does not store.
     pub known: &'a KnownPoles,
 }
 
@@ -90,7 +90,7 @@ pub struct Report {
     /// Headings of the sections and appendices.
     pub headings: Vec<String>,
     pub summary: FileSummary,
-    /// What the report omits.
+    /// Omissions of the report.
     pub notes: Vec<ExportNote>,
 }
 

@@ -12,7 +12,7 @@ use super::page::Page;
 use super::wording::{MISSING, NAMES_SHOWN, counted_are, names};
 
 /// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
-/// the analysis, and suspected ones.
+/// the analysis, suspected ones, and those that the analyst chose as representatives.
 pub(super) fn add_models_left_out(page: &mut Page, analysis: &Analysis) {
     page.section("Models left out");
     let rejected = rejected_table(analysis);

@@ -18,8 +18,9 @@ pub(super) struct NotedTable {
 }
 
 impl NotedTable {
-    /// Replaces a long text that several rows share in a column by a letter, and explains the
-    /// letter in a note. Long texts in a narrow column would make the table several times as long.
+    /// Replaces the long texts that several rows share in a column, at most [`MOST_NOTES`], by
+    /// letters, and explains each letter in a note. Long texts in a narrow column would make the
+    /// table several times as long.
     pub(super) fn new(table: &Table) -> Self {
         let mut noted = Self {
             table: without_empty_columns(table),

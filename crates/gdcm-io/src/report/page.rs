@@ -19,7 +19,8 @@ const ROWS: usize = 1000;
 const ROWS_ON_A_SHEET: usize = 30;
 /// Maximum number of characters in a cell that is kept on one line.
 const SHORT: usize = 24;
-/// Maximum figure height \[pt\]: four figures with their captions fill an A4 or letter page.
+/// Figure height \[pt\] above which plots are flattened: four such figures with their captions fill
+/// an A4 or letter page.
 const FIGURE_PT: f64 = 145.0;
 /// Minimum ratio of height to width for a plot flattened to a quarter page.
 const LEAST_ASPECT: f64 = 0.3;
@@ -283,17 +284,14 @@ impl Page {
         headings
     }
 
-    /// Returns the number of tables.
     pub(super) fn table_count(&self) -> usize {
         self.tables
     }
 
-    /// Returns the number of figures.
     pub(super) fn figure_count(&self) -> usize {
         self.figures
     }
 
-    /// Returns the table of contents.
     fn contents(&self) -> String {
         let mut entries = String::new();
         for Heading { number, title } in &self.headings {

@@ -1,4 +1,4 @@
-//! What a report omits, as the export dialog states it.
+//! Omissions of a report, as the export dialog states them.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::export_note::ExportNote;
@@ -6,8 +6,8 @@ use gdcm_study::results::export_note::ExportNote;
 use super::ReportSubject;
 use super::limits::CONDITIONS_DRAWN;
 
-/// Returns the notes on a report: conditions without a result or without figures; missing
-/// couplings, schedule and flight records.
+/// Returns the notes on a report: conditions without a result or without figures; a missing
+/// schedule, missing flight records, and requested couplings that are unavailable.
 pub(super) fn report_notes(subject: ReportSubject<'_>) -> Vec<ExportNote> {
     let analysis = subject.analysis;
     let dataset = &analysis.study.dataset;

@@ -80,7 +80,7 @@ pub(super) fn add_requirements(
 }
 
 /// Adds the appendix on the requirements: bandwidths, modes, time histories if flight records are
-/// available, and the reasons for missing values with cautions.
+/// available, the reasons for missing values, and cautions.
 pub(super) fn add_requirement_details(
     page: &mut Page,
     requirements: &Requirements,

@@ -1,5 +1,5 @@
-//! Report section on each condition's channel gains and delays, and on the gains scheduled with
-//! airspeed.
+//! Report section on the schedule over airspeed, and appendix on each condition's channel gains and
+//! delays.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
@@ -128,8 +128,8 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
     ]);
 }
 
-/// Describes a schedule's kind, degree, variables and airspeed tolerance, and whether delays are
-/// scheduled.
+/// Describes a schedule's kind, degree, variables, quantity and airspeed tolerance, and whether
+/// delays are scheduled.
 fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -151,7 +151,7 @@ fn schedule_words(settings: &ScheduleSettings) -> String {
     )
 }
 
-/// Adds the cost of leads, cautions about the schedule, and the delays that the schedule omits.
+/// Adds the price of leads, cautions about the schedule, and the delays that the schedule omits.
 fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.input_and_output_names();

@@ -7,8 +7,8 @@ use crate::export::exported_model::ExportedModel;
 use crate::export::matlab_values::{Fields, cell_of_texts, contained_parts, records};
 use crate::formats::variables::{Value, Variable};
 
-/// Returns the variable `models`: a struct for each model with the property names that MATLAB's
-/// `ss` uses, so that `ss(m.A, m.B, m.C, m.D, m.Ts)` is the model.
+/// Returns the variable `models`: a struct for each model whose fields include properties of
+/// MATLAB's `ss` under their names, so that `ss(m.A, m.B, m.C, m.D, m.Ts)` is the model.
 pub(super) fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
     Variable {
         name: "models".to_owned(),

@@ -29,7 +29,6 @@ fn sample_time_s(model: &ExportedModel) -> f64 {
     model.model.timing().sample_time_s.unwrap_or(0.0)
 }
 
-/// Returns the corrected model's matrices, by name.
 pub(super) fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>); 4] {
     let model = &model.model;
     [
@@ -40,8 +39,7 @@ pub(super) fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>);
     ]
 }
 
-/// Converts a matrix to a file value.
 pub(super) fn array(values: &DMatrix<f64>) -> Value {
-    // Both libraries store matrices by columns.
+    // nalgebra and MATLAB both store matrices in column-major order.
     matrix(values.nrows(), values.ncols(), values.as_slice().to_vec())
 }

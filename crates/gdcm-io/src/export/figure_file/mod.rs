@@ -1,4 +1,5 @@
-//! Figures as files: SVG, PNG, PDF, and their data as CSV. The bytes depend only on the figure.
+//! Figures as files: SVG, PNG, PDF, and their data as CSV. The bytes depend only on the figure and
+//! its width.
 
 use std::io::{self, Write};
 use std::iter::once;

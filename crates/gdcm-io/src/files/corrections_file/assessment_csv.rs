@@ -201,9 +201,9 @@ impl ResponseRow<'_> {
         }
     }
 
-    /// Returns the half-width of `ln |H_ref / H_sim|` over the band (identified over physics
-    /// representative), a mismatch that remains because one gain cannot match every frequency;
-    /// `None` without uncertainty.
+    /// Returns the half-width of the range of `ln |H_ref / H_sim|` over the band (identified over
+    /// physics representative), the mismatch that remains because one gain cannot match every
+    /// frequency; `None` without uncertainty.
     fn left_in_band(&self) -> Option<f64> {
         let uncertainty = self.results.analysis.uncertainty.as_ref()?;
         let id = self.results.condition.id();

@@ -19,7 +19,6 @@ use super::solutions::{delay_solution, gain_solution};
 use super::uncertainty::{bars, net_gain_bar};
 use crate::json_empty_members::without_empty;
 
-/// Returns the object with a condition's results.
 pub(super) fn condition_json(
     names: &LabelledAnalysis<'_>,
     condition: &Condition,
@@ -79,7 +78,7 @@ pub(super) fn condition_json(
     )
 }
 
-/// Returns the rejected models with the reasons that the engineer noted.
+/// Returns the rejected models for which the engineer noted a reason, with this reason.
 fn rejection_reasons(choice: &ConditionChoice) -> Value {
     let mut reasons = Vec::new();
     for kind in BundleKind::BOTH {

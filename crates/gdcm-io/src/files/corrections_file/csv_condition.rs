@@ -55,7 +55,7 @@ impl ConditionResults<'_> {
         self.result().map(|result| &result.correction)
     }
 
-    /// Returns what the leads cost in the condition's own correction; `None` without leads.
+    /// Returns the price of the leads in the condition's own correction; `None` without leads.
     pub(super) fn price(&self) -> Option<LeadPrice> {
         LeadPrice::new(self.own()?.leads.as_ref()?)
     }

@@ -261,9 +261,9 @@ fn rerun_json(check: &RerunCheck) -> Value {
     rerun
 }
 
-/// Writes `physics.csv`: a row for each parameter, with its diagnosis and the applied change; for a
-/// parameter set by hand without a fit, only the applied change. Writes only the headings if no
-/// parameters are applied.
+/// Writes `physics.csv`: a row for each parameter, with its diagnosis and the applied change; a
+/// parameter that is off has neither, and one set by hand without a fit has no diagnosis. Writes
+/// only the headings if no parameters are applied.
 pub(crate) fn write_physics_csv(
     applied: Option<&AppliedPhysics>,
     file: &mut dyn Write,
@@ -321,7 +321,7 @@ fn empty_cells(parameter: &OfferedParameter) -> Vec<String> {
     cells
 }
 
-/// Returns all cells for a parameter except the last.
+/// Returns all cells for a diagnosed parameter except the last, the applied change.
 fn diagnosed_cells(found: DiagnosedParameter<'_>) -> Vec<String> {
     let diagnosis = found.diagnosis;
     let [lower, upper] = match found.interval() {

@@ -8,7 +8,8 @@ use gdcm_words::schedule::schedule_caution_text;
 use super::labelled_analysis::LabelledAnalysis;
 use crate::json_empty_members::without_empty;
 
-/// Returns the object with the scheduled gains and delays over airspeed.
+/// Returns the object with the scheduled gains and delays (with leads, signed delays) over
+/// airspeed.
 pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
     let airspeeds = &schedule.airspeeds;
     let gains = names.coefficients(&schedule.gains);

@@ -14,7 +14,6 @@ use gdcm_words::conflict_text::{agreement_text, conflict_text, miss_text};
 use super::labelled_analysis::LabelledAnalysis;
 use crate::json_empty_members::without_empty;
 
-/// Returns the object with the results of the gain fit.
 pub(super) fn gain_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let gains = &result.gains;
     let mut unmatched = Vec::new();
@@ -39,7 +38,6 @@ pub(super) fn gain_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnal
     })
 }
 
-/// Returns the object with the results of the delay fit.
 pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let delays = &result.delays;
     let band_top_rad_s = names.analysis.study.settings.band.max();

@@ -30,7 +30,8 @@ pub(super) fn net_gain_bar(
     Some(bar_json(scalar, bar, uncertainty.level, left_in_band))
 }
 
-/// Returns a condition's confidence intervals, except those for net gains.
+/// Returns a condition's confidence intervals, except those for net gains; `None` if they were not
+/// computed.
 pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
@@ -159,8 +160,8 @@ fn difference_json(difference: &AirspeedDifference, level: f64) -> Value {
     })
 }
 
-/// Returns what contributes to a net gain's scatter, as standard deviations of the natural
-/// logarithm.
+/// Returns the contributions to a net gain's scatter, at the same airspeed and about the schedule,
+/// as standard deviations of the natural logarithm.
 fn scatter_json(scatter: &PairScatter, level: f64) -> Value {
     let same_airspeed = scatter.same_airspeed.as_ref();
     let about_schedule = scatter.about_schedule.as_ref();

@@ -21,8 +21,8 @@ pub(super) struct CautionedDraft {
 }
 
 impl DatasetText {
-    /// Converts the file's entries to a draft. Only entries spelled as words (units, roles, kinds)
-    /// are checked here; numbers are checked with the draft.
+    /// Converts the file's entries to a draft. Only entries spelled as words (the band's unit,
+    /// roles, kinds) are checked here; numbers are checked with the draft.
     pub(super) fn into_draft(self) -> Result<CautionedDraft, ContentError> {
         let band = self.frequency_band;
         if band.unit != "rad/s" {
@@ -58,7 +58,6 @@ impl DatasetText {
         Ok(CautionedDraft { draft, cautions })
     }
 
-    /// Converts a dataset to its form in the file.
     pub(super) fn from_dataset(dataset: &Dataset) -> Self {
         let mut on_axis = Vec::new();
         for pair in dataset.on_axis().marked() {
@@ -274,7 +273,6 @@ impl RecordText {
         })
     }
 
-    /// Converts a record to its form in the file.
     pub(crate) fn from_record(record: &ConditionRecord) -> Self {
         let record = record.clone();
         Self {

@@ -14,7 +14,6 @@ use gdcm_model::whole_number::{whole, whole_or_none};
 
 use crate::json_reading::{Format, Limited, Nested, Numbers, list, list_while};
 
-/// File format name and version.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-dataset",
     version: 1,
@@ -82,7 +81,7 @@ pub(super) struct BandText {
     pub(super) unit: String,
 }
 
-/// A named parameter in the physics model.
+/// A named parameter of the physics models.
 #[derive(Deserialize, Serialize)]
 pub(super) struct ParameterText {
     pub(super) name: String,
@@ -123,7 +122,6 @@ pub(super) struct ConditionText {
     pub(super) records: Option<Limited<RecordText, MOST_RECORDS>>,
 }
 
-/// A condition's flight record.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct RecordText {
     pub(super) name: String,

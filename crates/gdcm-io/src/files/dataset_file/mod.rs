@@ -171,7 +171,7 @@ pub(crate) fn dataset_from(
 ///
 /// # Errors
 /// Fails if the file or its structure cannot be read, or an entry spelled as a word (unit, role,
-/// kind) is invalid: further faults cannot be found then.
+/// kind) is missing or invalid: further faults cannot be found then.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -225,8 +225,8 @@ pub fn add_dataset(
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
-            // Buffered, because JSON is written in small pieces, each of which the encoder would
-            // compress separately.
+            // Buffered, because JSON is written in small pieces, each of which would cost a call of
+            // the encoder.
             let mut pieces =
                 BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
             write_compact(&text, &mut pieces)?;

@@ -105,7 +105,7 @@ impl ModelText {
         }
     }
 
-    /// Returns the origin given by the role; `None` for an unknown role.
+    /// Returns the origin given by the role; `None` for a missing or unknown role.
     pub(crate) fn origin(&self) -> Option<Origin> {
         let perturbation = self.perturbation.clone();
         match self.role.as_deref() {
@@ -144,17 +144,14 @@ impl ModelText {
         }
     }
 
-    /// Converts a dataset's model to its form in the file.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::from_draft(ModelDraft::from_model(model))
     }
 
-    /// Converts a model with moved parameters to its form in the file.
     pub(super) fn of_moved(moved: &MovedModel) -> Self {
         Self::from_draft(ModelDraft::from_moved(moved))
     }
 
-    /// Converts a model draft to its form in the file.
     pub(crate) fn from_draft(draft: ModelDraft) -> Self {
         let [a, b, c, d] = draft
             .matrices

@@ -31,7 +31,7 @@ pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
     pub time_histories: &'a TimeHistories,
     pub dataset: &'a Dataset,
-    /// Limits and tolerances in the grid.
+    /// Level boundaries, tolerances and limits for the grid.
     pub settings: &'a RequirementSettings,
     /// SHA-256 of the dataset file.
     pub sha256: &'a str,
@@ -69,7 +69,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
     with_sentences(&document, results)
 }
 
-/// Content of `requirements.json`: the dataset, then the findings.
+/// Content of `requirements.json`: the dataset, the findings, then the requirement grids.
 #[derive(Serialize)]
 struct RequirementsDocument<'a> {
     format: &'static str,

@@ -21,13 +21,11 @@ const MOST_BREAKPOINTS: usize = 1000;
 /// Maximum number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
-/// Study file format and version.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-study",
     version: 1,
 };
 
-/// Content of a study file.
 #[derive(Deserialize, Serialize)]
 pub(super) struct StudyText {
     pub(super) format: String,
@@ -78,7 +76,6 @@ pub(super) struct AdoptedText {
     pub(super) records: Vec<RecordText>,
 }
 
-/// Choices for an export.
 #[derive(Deserialize, Serialize)]
 pub(super) struct ExportText {
     /// Format names; unknown names are ignored.

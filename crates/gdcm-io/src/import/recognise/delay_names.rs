@@ -18,7 +18,7 @@ pub(super) enum Delayed {
     Unclear,
 }
 
-/// A delay's unit, according to its name.
+/// A delay's unit, according to the field's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DelayUnit {
     Seconds,

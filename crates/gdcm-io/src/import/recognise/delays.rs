@@ -157,7 +157,7 @@ impl DelayReading {
     }
 
     /// Splits the delays of single responses (a matrix, outputs x inputs) into input and output
-    /// delays, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay to input 0,
+    /// delays, `tau_oi = tau_o + tau_i`. With `f` the output with the smallest delay from input 0,
     /// `tau_f = 0`, hence `tau_i = tau_fi` and `tau_o = tau_o0 - tau_f0`.
     ///
     /// # Errors
@@ -321,7 +321,7 @@ impl DelayReading {
     }
 }
 
-/// Returns a question about an ambiguous field, with the names that resolve it.
+/// Returns a question about a field with an ambiguous unit, with the field name that resolves it.
 fn question(name: &str, unit: UnclearDelayUnit) -> RecognitionFault {
     RecognitionFault::DelayUnit {
         name: name.to_owned(),

@@ -66,8 +66,8 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, Recogni
     })
 }
 
-/// Returns a quantity of the flight condition, given beside a model or in an enclosing record,
-/// there each as a field or inside a struct; `None` if it is not given. No place has precedence.
+/// Returns a quantity of the flight condition, given as a field or inside a struct, beside a model
+/// or in an enclosing record; `None` if it is not given. No place has precedence.
 ///
 /// # Errors
 /// The reason if different values are given, or a list's length differs from the number of models.
@@ -164,7 +164,7 @@ fn number_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, Rec
     Ok(None)
 }
 
-/// Returns whether [`facts_of`] reads a field with this name.
+/// Returns whether [`number_inside`] reads a field with this name.
 fn is_fact_name(name: &str) -> bool {
     name == "id"
         || [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS]

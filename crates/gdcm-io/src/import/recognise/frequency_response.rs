@@ -140,7 +140,7 @@ impl<'v> StoredResponse<'v> {
     }
 }
 
-/// Returns the coherence γ²: from a field that is certainly γ²; `None` if the record has none.
+/// Returns the coherence γ² from a field that certainly holds it; `None` without coherence.
 ///
 /// # Errors
 /// The reason if the coherence and the response have different value counts, a value is not finite,

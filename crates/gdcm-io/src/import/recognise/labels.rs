@@ -46,7 +46,6 @@ const STATE_NAMES: &[&str] = &[
 const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
-/// Returns the labels for `count` inputs.
 pub(super) fn inputs_of(
     record: &Record<'_>,
     count: usize,
@@ -54,7 +53,6 @@ pub(super) fn inputs_of(
     labels(record, ChannelSide::Input, count)
 }
 
-/// Returns the labels for `count` outputs.
 pub(super) fn outputs_of(
     record: &Record<'_>,
     count: usize,
@@ -101,7 +99,7 @@ fn labels(
 /// Returns the names or units in the first field with one of these keys, from the record or
 /// otherwise from its enclosing records; missing entries are empty strings. Fields with numbers,
 /// with empty strings only, and in an enclosing record those with another count are passed over.
-/// Returns `None` if no field has them.
+/// Returns `None` if there is no other field.
 ///
 /// # Errors
 /// As [`labels`].
@@ -196,7 +194,8 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, Recogn
     }
 }
 
-/// Returns a channel object's label as a string, with its unit in brackets: "P [deg/s]".
+/// Returns a channel object's name, followed by its unit in brackets unless the name contains one:
+/// "P [deg/s]"; `None` without a name.
 fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
     let record = Record::from_struct(records, index);
     let name = record.get(LABEL_NAMES).and_then(first_text_of)?;

@@ -73,7 +73,6 @@ pub(crate) enum RecognitionFault {
     #[error("{name}: expected {expected}, found {found}")]
     Kind {
         name: String,
-        /// Expected kind of value.
         expected: &'static str,
         /// Description of the found value.
         found: String,
@@ -335,7 +334,7 @@ pub(crate) enum RecognitionFault {
     Variables(VariableFault),
 }
 
-/// Why a delay unit is unclear.
+/// Reason why a delay's unit is unclear.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum UnclearDelayUnit {
     #[error("in samples, but the model has no sample time")]

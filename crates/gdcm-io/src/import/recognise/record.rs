@@ -22,8 +22,8 @@ const RESPONSE_PART: &str = "frequencyresponse";
 /// Maximum nesting depth of parts.
 const DEEPEST_PART: usize = 3;
 
-/// First field with each name. The index is built at the first query, because a file with n bytes
-/// may create a record with nearly n fields.
+/// Index of the first field with each name, built at the first query. A record may have nearly as
+/// many fields as its file has bytes, too many to search for each name.
 #[derive(Clone, Debug, Default)]
 struct FieldIndex<'v> {
     exact: HashMap<&'v str, Field<'v>>,
@@ -124,7 +124,7 @@ impl<'v> Record<'v> {
     }
 
     /// Returns the number of models in element `index` of an object array, whose part `Data_` has
-    /// an element for each model.
+    /// an element for each model; 1 without such a part.
     pub(crate) fn page_count(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index)
             .into_iter()

@@ -29,7 +29,6 @@ pub(super) fn has_several_frequencies(record: &Record<'_>) -> bool {
     array_of(frequencies.value).is_some_and(|array| array.len() > 1)
 }
 
-/// A response's frequencies.
 pub(super) struct Frequencies {
     /// Angular frequencies \[rad/s\].
     pub(super) omega: Vec<f64>,
@@ -122,7 +121,7 @@ impl FrequencyUnit {
         }
     }
 
-    /// Returns the factor from the unit to rad/s; without a unit, from Hz.
+    /// Returns the factor from the unit to rad/s; from Hz if the unit is no multiple of Hz.
     fn rad_s_per_multiple_of_hertz(&self) -> f64 {
         match self.multiple_of_hertz {
             Some(unit) => TAU * unit.size,
@@ -130,8 +129,9 @@ impl FrequencyUnit {
         }
     }
 
-    /// Returns the factor from the unit to rad/s; without a unit, 1. Any unit other than an angle
-    /// in rad over a time is an error.
+    /// Returns the factor from the unit to rad/s: 1 without a unit, and for rad alone or over
+    /// MATLAB's `TimeUnit`, which is taken as the second. Any other unit than rad over a time is an
+    /// error.
     fn rad_s_per_angular_rate(&self) -> Result<f64, RecognitionFault> {
         if let Some(unit) = self.angular_rate {
             return Ok(unit.size);

@@ -32,8 +32,9 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const MOST_LISTED: usize = 20;
 /// Memory for a complex number \[bytes\].
 const COMPLEX_BYTES: u64 = 16;
-/// Memory charged for a listed path and for a fault, in addition to their characters \[bytes\].
+/// Memory charged for a listed path, in addition to its characters \[bytes\].
 const PATH_BYTES: u64 = 64;
+/// Memory charged for a fault, in addition to its characters \[bytes\].
 const FAULT_BYTES: u64 = 128;
 
 /// Models or records found among variables.

@@ -26,7 +26,6 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MATRICES: [&str; 5] = ["A", "B", "C", "D", "E"];
 
-/// Models whose matrices have a common suffix.
 pub(super) struct SuffixedModels {
     pub(super) found: Found<FoundModel>,
     /// Names of the variables that these models use.

@@ -52,7 +52,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Fields that list column names for a matrix of neither inputs nor outputs.
+/// Fields that list column names for a matrix that holds neither inputs nor outputs.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -65,7 +65,7 @@ const NAMES: [&str; 10] = [
     "colheaders",
     "varlab",
 ];
-/// Fields that list column units for a matrix of neither inputs nor outputs.
+/// Fields that list column units for a matrix that holds neither inputs nor outputs.
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
 /// Labels of the columns in a field.
@@ -120,7 +120,6 @@ impl ColumnLabels {
         }
     }
 
-    /// Returns whether the file gives column names.
     pub(super) fn has_names(&self) -> bool {
         self.names.is_some()
     }

@@ -7,7 +7,8 @@ use gdcm_model::dataset::condition::ConditionRecord;
 use crate::relative_folder::relative_folder;
 
 /// Returns the entry for a record in a dataset file: makes the record file's path relative to the
-/// path `dataset`. `requested` lists the files and folders from which records were read.
+/// path `dataset`, or leaves it unchanged if the file is not found. `requested` lists the files and
+/// folders from which records were read.
 pub fn relative_entry(
     mut entry: ConditionRecord,
     requested: &[PathBuf],

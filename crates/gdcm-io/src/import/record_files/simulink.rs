@@ -10,7 +10,8 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::first_text_of;
 
-/// Reads the columns from a structure with time; `None` for any other record.
+/// Reads the columns from a structure with time; `None` for any other record, and if it has no
+/// signals or too few samples.
 pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let time = samples_of(record.get(&["time"])?, None)?;
     let Some(Value::Struct(signals)) = record.get(&["signals"]) else {

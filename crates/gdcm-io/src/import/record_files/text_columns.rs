@@ -19,8 +19,8 @@ const FEW_COLUMNS: usize = 2;
 ///    too short for a record are skipped.
 ///
 /// # Errors
-/// An exceeded limit at once. If neither way yields a table, the fault of the whole text, which
-/// describes what the user wrote.
+/// A limit that is exceeded ends the reading at once. If neither way yields a table, the fault of
+/// the whole text, which describes what the user wrote.
 pub(super) fn text_columns(
     text: &str,
     budget: &ReadingBudget<'_>,

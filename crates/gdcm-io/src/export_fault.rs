@@ -35,8 +35,11 @@ pub enum ExportFault {
     )]
     FunctionName { found: String },
     /// The file extension does not suit the requested format for models.
-    #[error("the file name of exported models must end in .mat, .json or .npz")]
-    ModelsFormat,
+    #[error("the file name of exported models must end in {expected}")]
+    ModelsFormat {
+        /// The suitable extensions, as a list.
+        expected: &'static str,
+    },
     /// Variables for MATLAB or NumPy cannot be written.
     #[error(transparent)]
     Variables(#[from] VariableFault),
@@ -101,7 +104,7 @@ impl ExportFault {
             Self::Curve { .. } => "curve-not-finite",
             Self::Breakpoints => "breakpoints",
             Self::FunctionName { .. } => "function-name",
-            Self::ModelsFormat => "models-format",
+            Self::ModelsFormat { .. } => "models-format",
             Self::Variables(fault) => fault.code(),
             Self::Schedule(error) => error.code(),
             Self::NoCouplings { .. } => "no-couplings",

@@ -65,7 +65,9 @@ fn check_models_format(path: &Path, expected: ModelsFormat) -> Result<(), Export
     if ModelsFormat::from_path(path)? == expected {
         Ok(())
     } else {
-        Err(ExportFault::ModelsFormat)
+        Err(ExportFault::ModelsFormat {
+            expected: expected.extension(),
+        })
     }
 }
 
@@ -127,6 +129,14 @@ enum ModelsFormat {
 }
 
 impl ModelsFormat {
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Mat => ".mat",
+            Self::Json => ".json",
+            Self::Npz => ".npz",
+        }
+    }
+
     /// Chooses the format by the file extension; fails for an unknown extension.
     fn from_path(path: &Path) -> Result<Self, ExportFault> {
         let extension = path
@@ -137,7 +147,9 @@ impl ModelsFormat {
             "mat" => Ok(Self::Mat),
             "json" => Ok(Self::Json),
             "npz" => Ok(Self::Npz),
-            _ => Err(ExportFault::ModelsFormat),
+            _ => Err(ExportFault::ModelsFormat {
+                expected: ".mat, .json or .npz",
+            }),
         }
     }
 }

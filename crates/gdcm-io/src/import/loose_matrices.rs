@@ -39,6 +39,7 @@ impl LooseMatrix {
         };
         let (letter, before) = matrix_letter(stem)?;
         let group = match (folder, before) {
+            ("", "") => ".".to_owned(),
             ("", before) => before.to_owned(),
             (folder, "") => folder.to_owned(),
             (folder, before) => format!("{folder}/{before}"),

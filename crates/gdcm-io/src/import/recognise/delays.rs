@@ -385,7 +385,7 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, RecognitionFault> 
 
 /// Rejects a model whose time unit is not seconds, because its frequencies and delays would be
 /// wrong.
-fn refuse_other_time_units(record: &Record<'_>) -> Result<(), RecognitionFault> {
+pub(super) fn refuse_other_time_units(record: &Record<'_>) -> Result<(), RecognitionFault> {
     let unit = record.get(&["TimeUnit"]).and_then(first_text_of);
     match unit.as_deref() {
         None | Some("" | "s" | "sec" | "second" | "seconds") => Ok(()),

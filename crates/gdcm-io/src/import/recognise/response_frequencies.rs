@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
+use super::delays::refuse_other_time_units;
 use super::recognition_fault::RecognitionFault;
 use super::record::Record;
 use super::values::{Field, array_of, first_text_of, list_of};
@@ -44,7 +45,7 @@ impl Frequencies {
         let factor = if is_hertz {
             unit.rad_s_per_multiple_of_hertz()
         } else {
-            unit.rad_s_per_angular_rate()?
+            unit.rad_s_per_angular_rate(record)?
         };
         Ok(Self {
             omega: values.into_iter().map(|value| value * factor).collect(),
@@ -129,15 +130,21 @@ impl FrequencyUnit {
         }
     }
 
-    /// Returns the factor from the unit to rad/s: 1 without a unit, and for rad alone or over
-    /// MATLAB's `TimeUnit`, which is taken as the second. Any other unit than rad over a time is an
-    /// error.
-    fn rad_s_per_angular_rate(&self) -> Result<f64, RecognitionFault> {
+    /// Returns the factor from the unit to rad/s: 1 without a unit, and for rad alone.
+    ///
+    /// # Errors
+    /// The unit is not rad over a time, or it is MATLAB's `rad/TimeUnit` and the record's
+    /// `TimeUnit` is not the second.
+    fn rad_s_per_angular_rate(&self, record: &Record<'_>) -> Result<f64, RecognitionFault> {
         if let Some(unit) = self.angular_rate {
             return Ok(unit.size);
         }
         match self.text.to_lowercase().as_str() {
-            "" | "rad" | "rads" | "rad/timeunit" => Ok(1.0),
+            "" | "rad" | "rads" => Ok(1.0),
+            "rad/timeunit" => {
+                refuse_other_time_units(record)?;
+                Ok(1.0)
+            }
             other => Err(RecognitionFault::FrequencyUnit {
                 unit: other.to_owned(),
             }),

@@ -39,9 +39,11 @@ impl MatrixName {
 
     /// Returns the matrix value in a record and marks it as used; `None` if there is none.
     fn value<'v>(self, record: &Record<'v>) -> Option<&'v Value> {
-        record
-            .exact(self.large)
-            .or_else(|| record.exact(self.small))
+        let mut value = record.exact(self.large);
+        if value.is_none() && record.stands_alone {
+            value = record.exact(self.small);
+        }
+        value
     }
 
     fn is_in(self, record: &Record<'_>) -> bool {

@@ -42,9 +42,9 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift for a group's scales that minimises the regularised deviations from neutral;
+/// Returns the shift for a piece's scales that minimises the regularised deviations from neutral;
 /// it raises the input coordinates and lowers the output coordinates by the same amount. The
-/// outputs are regularised (the inputs, if the group has no output); for signed delays, both.
+/// outputs are regularised (the inputs, if the piece has no output); for signed delays, both.
 ///
 /// ```text
 /// signed delays               (sum y - sum x) / (count of x and y)

@@ -1,5 +1,5 @@
-//! Bounds on the channel gains and delays, from the spread over the band of the gains and delays
-//! that the responses need (M7).
+//! Bounds on the channel gains and delays: quantiles, over the band, of the gains and delays that
+//! the responses need (M7).
 //!
 //! ```text
 //! gains    LB = min(1, q-quantile),  UB = max(1, (1-q)-quantile)    of |H_ref| / |H_sim|

@@ -55,7 +55,7 @@ impl ChannelCorrection {
         self.delay_s(Channel::Output(pair.output)) + self.delay_s(Channel::Input(pair.input))
     }
 
-    /// Returns a channel's gain.
+    /// Returns a channel's gain `k`; a ratio, not in dB.
     pub fn gain(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_gains[input],

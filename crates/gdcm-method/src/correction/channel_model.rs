@@ -28,9 +28,9 @@ impl ChannelModel {
         }
     }
 
-    /// Creates a lead filter in continuous time, which is exact (M15.3). With `w1 = 1 / a` and `w2
-    /// = 1 / b`, where `a` and `b` are the numerator's and denominator's time constants, and the
-    /// gain at infinite frequency `R`, `(a / b)^2` or `a / b`:
+    /// Creates a lead filter in continuous time, which is exact (M15.3). `w1` and `w2` are the
+    /// reciprocals \[rad/s\] of the numerator's and the denominator's time constant, and `R` is the
+    /// gain at infinite frequency, `(w2 / w1)^2` or `w2 / w1`:
     ///
     /// ```text
     /// second order   A = [0 1; -w2^2 -sqrt(2) w2],  B = [0; 1],  C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)],  D = R

@@ -56,7 +56,7 @@ impl Channel {
     }
 }
 
-/// Names a response: "PED → NY".
+/// Names a response, the input first: "PED → NY".
 pub fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
     let input = Channel::Input(pair.input).name(inputs, outputs);
     let output = Channel::Output(pair.output).name(inputs, outputs);

@@ -18,7 +18,8 @@ use super::constraints::{Constraints, PairNodes};
 use super::interval::Interval;
 
 /// Infeasibility, in coordinates, up to which a component is accepted as feasible: a relative error
-/// of 1e-9 in a gain product, well below the tolerance for a met entry (`infeasible_entries`).
+/// of 1e-9 in a gain product, or 1e-9 of the problem's time unit in a delay sum, well below the
+/// tolerance for a met entry (`infeasible_entries`).
 pub(crate) const ACCEPTED_INFEASIBILITY: f64 = 1e-9;
 
 /// The components, each with the permitted interval for its scale. A channel without a constrained
@@ -120,7 +121,7 @@ impl Components {
     }
 
     /// Step 3: shifts the offsets so that scale 0 is in the middle of each component's interval,
-    /// and no channel is far outside the box there. The intervals must then be set again.
+    /// where no channel is far outside the box. The intervals must then be set again.
     fn centre_offsets(&mut self, range: Interval) {
         // A scale at an interval end has two rounding errors: in the range end, and from
         // subtracting the offset.
@@ -167,12 +168,13 @@ impl Components {
     }
 }
 
-/// A node's component, and its offset there.
+/// A node's component, and its offset in this component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub(crate) component: usize,
-    /// Node value at scale 0. Its error accumulates over the constrained sums between the
-    /// component's first node and this node; both ends of the scale's interval contribute too.
+    /// Node value at scale 0. The error bound sums the rounding along the spanning tree from the
+    /// component's first node, and the rounding when the offset is shifted to centre the scale's
+    /// interval (step 3).
     pub(crate) offset: Rounded,
 }
 

@@ -1,6 +1,6 @@
 //! Finds the conflict behind each constrained entry that stage 1 could not meet.
 //!
-//! Nodes, their values `s` and entries as prescribed differences between nodes are defined in
+//! Nodes, their values, and entries as prescribed differences between these values are defined in
 //! [`super::constraints`]. A missed entry is a *pull* from one node to another; the pulls are the
 //! directed edges in a graph, the *flow* ([`super::pull_flow`]).
 
@@ -150,8 +150,8 @@ impl ConflictSearch<'_> {
         None
     }
 
-    /// Returns whether the sequence requires more than its last node's maximum less its first
-    /// node's minimum.
+    /// Returns whether the pulls in the sequence add up to more than its last node's maximum less
+    /// its first node's minimum.
     fn is_impossible(&self, run: &[Pull]) -> bool {
         let (Some(first), Some(last)) = (run.first(), run.last()) else {
             return false;

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The channels are the *nodes* in a graph, the inputs first, then the outputs. An input node has
-//! the value `x_i`, an output node `-y_o`, so that a constrained entry prescribes the difference
-//! between two nodes.
+//! the value `v = x_i`, an output node `v = -y_o`, so that a constrained entry prescribes the
+//! difference between two nodes.
 
 use gdcm_model::dataset::Pair;
 

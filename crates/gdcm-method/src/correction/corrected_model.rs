@@ -66,7 +66,6 @@ pub enum CorrectedModelError {
         channel: Channel,
         /// Delay \[s\], correction plus model.
         delay_s: f64,
-        /// Sample time \[s\].
         sample_time_s: f64,
     },
     /// A lead filter is too fast for the sample time.
@@ -77,7 +76,6 @@ pub enum CorrectedModelError {
         number(*longest_s)
     )]
     SlowSamples {
-        /// The model's sample time \[s\].
         sample_time_s: f64,
         /// Maximum admissible sample time \[s\].
         longest_s: f64,

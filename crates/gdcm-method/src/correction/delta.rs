@@ -26,7 +26,8 @@ pub enum GainSource {
     #[default]
     #[serde(rename = "representatives")]
     Representatives,
-    /// All pairs, each a kept physics model and a kept identified model: `G = exp(mean(ln G))`.
+    /// All pairs of an accepted physics model and an accepted identified model (neither rejected
+    /// nor set aside): `G = exp(mean(ln G))`.
     #[serde(rename = "mean")]
     MeanOfPairs,
 }

@@ -113,8 +113,9 @@ fn unmatched(
     }
 }
 
-/// Returns the constraints, with the entries in accepted loops replaced by their targets.
-pub(super) fn settled_loops(
+/// Returns the constraints with each entry in `agreeing` (a loop that is consistent within the
+/// tolerance) replaced by its target.
+pub(super) fn with_agreeing_targets(
     constraints: &Constraints,
     reached: &Reached,
     agreeing: &[Unmatched],

@@ -29,7 +29,6 @@ impl Interval {
         u.clamp(self.low, self.high)
     }
 
-    /// Returns `high - low`.
     pub(crate) fn width(self) -> f64 {
         self.high - self.low
     }

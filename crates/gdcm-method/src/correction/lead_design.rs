@@ -112,8 +112,8 @@ impl LeadDesign {
     }
 
     /// Computes `-d'(l)`, by how much the band delay falls with the lead time, dimensionless. With
-    /// `x = a omega` it is the weighted mean of `(1 + x^2) / (1 + x^4)` (second order) or `1 / (1 +
-    /// x^2)` (first order).
+    /// `x = a omega` it is the mean, weighted by `omega^2`, of `(1 + x^2) / (1 + x^4)` (second
+    /// order) or `1 / (1 + x^2)` (first order).
     fn band_delay_fall(&self, lead_s: f64) -> f64 {
         let zero_s = self.filter_for_lead(lead_s).zero_s;
         let slopes = self.omega.iter().map(|&omega| {

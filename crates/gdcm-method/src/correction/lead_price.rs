@@ -39,8 +39,8 @@ impl LeadPrice {
         })
     }
 
-    /// Returns the larger gain of the two prices for each channel; used for a schedule whose leads
-    /// depend on airspeed.
+    /// Returns the price with the larger of both gains for each channel; used for a schedule whose
+    /// leads depend on airspeed.
     #[must_use]
     pub fn or_more(self, other: &Self) -> Self {
         let gains_db = self

@@ -69,5 +69,5 @@ pub use problem::Problem;
 pub use quantity::{GainObjective, Quantity};
 pub use solution::{Outcome, Solution};
 
-/// Bounds on the channel gains.
+/// Bounds on the channel gains; ratios, not in dB.
 pub type GainBounds = Bounds;

@@ -19,14 +19,13 @@ use super::connected_pieces::connected_pieces;
 use super::problem::{Entry, Problem};
 use super::solution::Solution;
 
-/// Whether a channel is on its lower bound, and whether it is on its upper bound.
 #[derive(Clone, Copy)]
 struct AtBounds {
     lower: bool,
     upper: bool,
 }
 
-/// The objective's slope along the common movement of connected channels.
+/// The objective's slope along a piece's common movement ([`ConstrainedMinimum::sign`]).
 pub(super) struct Push {
     pub(super) slope: f64,
     /// Channels whose active bounds stop the movement.
@@ -36,7 +35,7 @@ pub(super) struct Push {
 /// The minimum, with the channels as variables: inputs first, then outputs.
 pub(super) struct ConstrainedMinimum {
     pub(super) inputs: usize,
-    /// The objective's slope in each channel's value.
+    /// `dF/dx_c` by channel, inputs first.
     slopes: Vec<f64>,
     /// One entry per channel, inputs first.
     at_bounds: Vec<AtBounds>,
@@ -67,7 +66,7 @@ impl ConstrainedMinimum {
         }
     }
 
-    /// Groups the channels that are connected by constrained entries.
+    /// Finds the pieces: groups of channels that constrained entries connect.
     pub(super) fn pieces(&self) -> Vec<Vec<usize>> {
         let ties = self
             .constrained
@@ -82,7 +81,7 @@ impl ConstrainedMinimum {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// Computes the objective's slope along the common movement of connected channels.
+    /// Computes the objective's slope along a piece's common movement.
     pub(super) fn push(&self, piece: &[usize]) -> Push {
         let slope: f64 = piece
             .iter()
@@ -90,8 +89,7 @@ impl ConstrainedMinimum {
             .sum();
         let mut stopping = Vec::new();
         for &channel in piece {
-            // The group would move downhill: an input on its upper bound prevents a rise, and so
-            // does an output on its lower bound.
+            // Downhill, the channel rises or falls; the bound at that end stops the piece.
             let rises = self.sign(channel) * slope < 0.0;
             let at = self.at_bounds[channel];
             if (rises && at.upper) || (!rises && at.lower) {
@@ -114,15 +112,15 @@ impl Multipliers {
     /// Solves the conditions `dF/dx_c = mu_c + sum lambda_e` for the multipliers.
     ///
     /// ```text
-    /// 1  groups of channels that constrained entries connect
-    /// 2  for each group: slope of F along its common movement;  mu_c <- the slope, divided equally
+    /// 1  pieces: groups of channels that constrained entries connect
+    /// 2  for each piece: slope of F along its common movement;  mu_c <- the slope, divided equally
     ///    among the channels whose bounds stop it;  0 for all others
     /// 3  lambda <- least squares of  dF/dx - mu = (incidence matrix) lambda
     /// ```
     ///
-    /// The slope that pushes a group of connected channels against a bound is divided equally among
-    /// the channels on that bound. The constrained entries' multipliers balance the remainder; in a
-    /// loop, where they are not unique, their sum of squares is minimal.
+    /// The slope that pushes a piece against bounds is divided equally among the channels on these
+    /// bounds. The constrained entries' multipliers balance the remainder; in a loop, where they
+    /// are not unique, their sum of squares is minimal.
     pub(super) fn new(minimum: &ConstrainedMinimum) -> Self {
         let mut channels = vec![0.0; minimum.slopes.len()];
         for piece in minimum.pieces() {

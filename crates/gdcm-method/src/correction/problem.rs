@@ -22,7 +22,6 @@ const GAIN_BOUNDS: RangeInclusive<f64> = 1e-9..=1e9;
 /// stay clear of overflow.
 const MOST_DELAY_S: f64 = 1e50;
 
-/// Valid regularisation weights `alpha`.
 const ALPHAS: RangeInclusive<f64> = 0.0..=1e12;
 
 /// Deviation \[s\] up to which constrained delays in a loop are accepted as consistent: half a unit
@@ -50,7 +49,6 @@ pub struct Problem {
     pub constrained: PairTable<bool>,
     /// Entries that count in the objective (`w = 1`), p x m.
     pub fitted: PairTable<bool>,
-    /// Bounds on every channel.
     pub bounds: Bounds,
     /// Weight on the deviations from neutral: output gains from 1, output delays from 0, or all
     /// signed delays from 0; `alpha = 0` means the limit `alpha -> 0+`.
@@ -271,7 +269,7 @@ impl Problem {
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
             // Limit the range: along a path through constrained entries, channels differ by at most
-            // one unit per entry, so that an upper bound beyond this sum is never active.
+            // one unit per entry, so that a bound beyond this sum is never active.
             Coordinate::Time { .. } => {
                 let channels = (self.delta.outputs() + self.delta.inputs()) as f64;
                 Interval {

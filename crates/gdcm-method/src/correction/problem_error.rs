@@ -38,18 +38,13 @@ pub enum ProblemError {
     },
     /// A delta delay is not finite, or too large.
     #[error("the delta delay of output {} and input {} is {delay_s} s; it must be a number below 1e50 s", pair.output + 1, pair.input + 1)]
-    Delay {
-        pair: Pair,
-        /// Delta delay \[s\].
-        delay_s: f64,
-    },
+    Delay { pair: Pair, delay_s: f64 },
     /// The bounds are invalid for the quantity, see [`Bounds`].
     #[error("{}", bounds_error(*quantity, *bounds))]
     Bounds { quantity: Quantity, bounds: Bounds },
     /// `alpha` is negative, too large or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
     Alpha { alpha: f64 },
-    /// The quadratic program for the delays was not solved.
     #[error("the quadratic program for the delays was not solved: {reason}")]
     Program {
         /// Status reported by the solver.
@@ -76,7 +71,6 @@ impl ProblemError {
     }
 }
 
-/// Returns the message about invalid bounds.
 fn bounds_error(quantity: Quantity, bounds: Bounds) -> String {
     let Bounds { lower, upper } = bounds;
     match quantity {

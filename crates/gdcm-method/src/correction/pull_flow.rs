@@ -1,8 +1,8 @@
 //! Constrained entries that stage 1 could not meet, as pulls between the nodes in a directed graph,
-//! and the shortest walks there.
+//! and the shortest walks in this graph.
 //!
-//! The nodes and their values `s` are defined in [`super::constraints`]. A *pull* requires `s_to -
-//! s_from >= weight`, but stage 1 has reached less.
+//! The nodes and their values `v` are defined in [`super::constraints`]. A *pull* requires `v_to -
+//! v_from >= weight`, but stage 1 has reached less.
 
 use std::collections::VecDeque;
 
@@ -15,15 +15,15 @@ use super::reachable_targets::Reached;
 /// is a rounding error in stage 1.
 const RESIDUAL_ROUNDING: f64 = 1e-11;
 
-/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the actual
+/// A constrained entry that stage 1 missed: it requires `v_to - v_from >= weight`, but the actual
 /// difference is smaller.
 #[derive(Clone, Copy)]
 pub(super) struct Pull {
-    /// Node `from`, too high.
+    /// Node whose value is too high.
     pub(super) from: usize,
-    /// Node `to`, too low.
+    /// Node whose value is too low.
     pub(super) to: usize,
-    /// Prescribed difference `s_to - s_from`.
+    /// Prescribed difference `v_to - v_from`.
     pub(super) weight: f64,
     pub(super) pair: Pair,
 }
@@ -107,12 +107,14 @@ impl Flow {
         }
     }
 
-    /// Returns the shortest way along the flow that leads from the end of `pull` back to its start.
+    /// Returns the shortest way along the flow that leads from the end of `pull` back to its start;
+    /// `None` if there is none.
     pub(super) fn way_back(&self, pull: &Pull) -> Option<Vec<Pull>> {
         self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from)
     }
 
-    /// Returns the shortest path from a lower bound through `pull` to an upper bound.
+    /// Returns the shortest path from a node at its lower bound through `pull` to a node at its
+    /// upper bound; `None` if there is none.
     pub(super) fn path_through(&self, pull: &Pull) -> Option<Vec<Pull>> {
         let onward = self.shortest_walk(pull.to, Direction::Along, |node| self.at_upper[node])?;
         let mut path =

@@ -42,14 +42,13 @@ pub enum Quantity {
 /// dB per natural logarithm unit.
 const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// Seconds per millisecond.
 const SECONDS_PER_MS: f64 = 1e-3;
 
 /// `(20 / ln 10)^2`: squared dB per squared natural logarithm unit.
 pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
 
 impl Quantity {
-    /// Returns whether the quantity is a gain.
+    /// Returns whether the quantity is a gain, whichever its objective.
     pub fn is_gain(self) -> bool {
         matches!(self, Self::Gain(_))
     }

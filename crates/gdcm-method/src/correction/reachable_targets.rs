@@ -20,8 +20,8 @@ pub(crate) struct Reached {
     pub(crate) targets: Vec<ConstrainedSum>,
     /// Components for the constrained entries at their targets.
     pub(crate) components: Components,
-    /// A point in the box that attains the targets, one value per node; `None` if every entry is
-    /// feasible.
+    /// A point in the box that attains the targets in the infeasible components, one value per
+    /// node; `None` if every entry is feasible.
     pub(crate) point: Option<Vec<f64>>,
 }
 

@@ -6,9 +6,10 @@
 //! coordinate of net = offset + s_input - s_output
 //! ```
 //!
-//! `s_input` and `s_output` are the scales of the components ([`super::components`]) that contain
-//! the entry's input and output. A channel's deviation from neutral is an entry too; its other
-//! scale is the *ground*, a last scale that is always 0.
+//! `w` is 0 for an ignored entry. `s_input` and `s_output` are the scales of the components
+//! ([`super::components`]) that contain the entry's input and output; `offset` is the coordinate of
+//! the net value at scales 0. A channel's deviation from neutral is an entry with the weight
+//! `alpha`; its other scale is the *ground*, a last scale that is always 0.
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
 use super::branch_and_bound::objective::Objective;

@@ -33,9 +33,9 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// Returns the step for the description \[dB or ms\]: the largest of 1, 0.1, 0.01, … for which
-    /// the linear extrapolation changes the objective by at most half; the objective cannot fall
-    /// below zero.
+    /// Returns the step \[dB or ms\] in which to describe the sensitivity: the largest of 1, 0.1,
+    /// 0.01, … for which the linear extrapolation changes the objective by at most half; the
+    /// objective cannot fall below zero.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
         /// Maximum count of divisions by ten: the minimum step is a nanosecond, or 1e-6 dB.
@@ -105,8 +105,8 @@ fn sensitivity(
 /// direction in which channels could still move within the bounds and with the entries constrained.
 /// For a convex problem, a residual of zero proves the minimum.
 ///
-/// The unit is the objective's unit per channel unit; for delays, s² / s. `solution` is
-/// [`super::solve`]'s result for `problem`.
+/// The unit is the objective's unit per natural logarithm unit (gains), or s² / s (delays).
+/// `solution` is [`super::solve`]'s result for `problem`.
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let mut residual = 0.0_f64;

@@ -14,13 +14,13 @@ use super::remedy::Remedy;
 pub enum Outcome {
     /// No feasible channel values are better by more than the relative gap, which is at most 1e-9.
     Proven {
-        /// Relative gap, `(objective - lower bound) / objective`.
+        /// Relative gap ([`Outcome::gap`]).
         gap: f64,
     },
     /// The search ended before a proof: better solutions may exist, but none that is better by more
     /// than the relative gap.
     NotProven {
-        /// Relative gap, `(objective - lower bound) / objective`.
+        /// Relative gap ([`Outcome::gap`]).
         gap: f64,
         /// Limit that ended the search.
         limit: Limit,
@@ -28,7 +28,8 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns the relative gap, `(objective - lower bound) / objective`.
+    /// Returns the relative gap, `(objective - lower bound) / objective`; for a small objective,
+    /// see [`Proof::outcome`].
     pub fn gap(self) -> f64 {
         match self {
             Outcome::Proven { gap } | Outcome::NotProven { gap, .. } => gap,
@@ -81,8 +82,8 @@ pub struct Unmatched {
     /// Gain product, or delay sum \[s\], to which the entry is constrained instead.
     pub target: f64,
     /// How much the target exceeds the delta. For gains it is `20 log10 (target / delta)` dB,
-    /// negative if the correction is too weak; for delays it is `target - delta` in seconds, the
-    /// additional lead that would be needed.
+    /// negative if the correction is too weak; for delays it is `target - delta` in seconds: if
+    /// positive, the additional lead that would be needed.
     pub excess: f64,
     /// Conflict that makes the delta infeasible. If it does not contain the entry, the entry
     /// deviates as a compromise with the entries in the conflict.

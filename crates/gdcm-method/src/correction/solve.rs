@@ -11,7 +11,7 @@ use super::branch_and_bound::proof_budget::ProofBudget;
 use super::branch_and_bound::search::{Minima, search};
 use super::components::Components;
 use super::constraints::Constraints;
-use super::infeasible_entries::{distinct_conflicts, misses, settled_loops};
+use super::infeasible_entries::{distinct_conflicts, misses, with_agreeing_targets};
 use super::interior_point::interior_point;
 use super::problem::{Problem, ProblemError};
 use super::quantity::Quantity;
@@ -27,7 +27,7 @@ use super::solution::{LocalMinimum, Outcome, Proof, Solution};
 /// 1  targets: the sums nearest to the deltas that the box and the loops permit (stage 1)
 /// 2  objective over the scales that the constrained sums leave free (M8, proof)
 /// 3  global minimum by branch and bound (stage 2)
-/// 4  limit alpha -> 0+ if a common scale is free
+/// 4  limit alpha -> 0+ for floating pieces (`alpha_limit`)
 /// 5  for each infeasible delta of stage 1: its conflict, and the single changes that would resolve all conflicts
 /// ```
 ///
@@ -87,7 +87,7 @@ pub fn solve(
     let conflicts = distinct_conflicts(&misses.unmatched);
     let remedy = Remedy::new(
         problem,
-        &settled_loops(&constraints, &reached, &misses.agreeing),
+        &with_agreeing_targets(&constraints, &reached, &misses.agreeing),
         &conflicts,
         &effort,
     )?;

@@ -19,7 +19,7 @@ pub struct Toggle {
     pub before: f64,
     /// Minimum objective after the toggle.
     pub after: f64,
-    /// Count of infeasible constrained entries after the toggle.
+    /// Count of unmatched entries ([`Solution::unmatched`]) after the toggle.
     pub unmatched_after: usize,
     /// Whether the toggled entry meets its delta after the toggle; true if it was released.
     pub matched_after: bool,

@@ -1,4 +1,4 @@
-//! Mixing and feedback entries in a pilot's units: percent of stick, degrees of swashplate phase
+//! Mixing and feedback entries in a pilot's units: share of stick, degrees of swashplate phase
 //! (M16.4).
 //!
 //! ```text
@@ -117,7 +117,7 @@ pub struct MixingShare {
 }
 
 /// Returns a normalised mixing's off-diagonal entries, largest magnitude first; `cyclic` holds the
-/// two cyclic inputs' indices.
+/// two cyclic inputs' indices, if known.
 pub fn mixing_shares(
     normalised_mixing: &DMatrix<f64>,
     cyclic: Option<[usize; 2]>,

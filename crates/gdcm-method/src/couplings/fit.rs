@@ -18,9 +18,9 @@ use super::weighted_condition::WeightedCondition;
 pub struct CouplingFit {
     pub matrices: CouplingMatrices,
     pub unknowns: Vec<Unknown>,
-    /// The unknowns' values after each solve, ordered as `unknowns`.
+    /// The unknowns' values after each pass, ordered as `unknowns`.
     pub coefficients: Vec<Vec<f64>>,
-    /// Optimality check for the last solve, a convex problem with a single optimum: the largest
+    /// Optimality check for the last pass, a convex problem with a single optimum: the largest
     /// residual in the normal equations relative to their largest right-hand side.
     pub residual: f64,
     /// Outputs that cannot be fed back, because their response to some input is missing in every
@@ -109,7 +109,7 @@ pub fn fit_couplings(
     })
 }
 
-/// Returns the outputs that a feedback should use but cannot.
+/// Returns the outputs that a feedback would use but cannot; empty for a mixing alone.
 fn not_fed_back(problem: &CouplingProblem, fed_back: &[usize]) -> Vec<usize> {
     if !problem.kind.feeds_back() {
         return Vec::new();

@@ -1,7 +1,7 @@
 //! Normal equations for a pass: sum over the conditions, scaling, regularisation (M16.2).
 //!
 //! ```text
-//! 1  G, b <- the conditions' blocks summed, with powers of the airspeed v for the unknowns M_ji
+//! 1  G, b <- the conditions' blocks summed, with powers of the scaled airspeed v for the unknowns M_ji
 //! 2  divide rows and columns by the root of the diagonal, because the entries of K differ in unit
 //! 3  (G + rho diag G) theta = b + rho diag G theta_0,   theta_0: M = I, K = 0;  solved as an arrow
 //!    an unknown with a zero on the diagonal, which no response determines, keeps its value in theta_0

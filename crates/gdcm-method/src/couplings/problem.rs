@@ -70,11 +70,11 @@ pub struct CouplingOptions {
     /// `rho`: regularisation towards M = I, K = 0, relative to each unknown's diagonal entry in the
     /// normal matrix.
     pub ridge: f64,
-    /// Count of successive linear least-squares problems.
+    /// Count of passes, each a linear least-squares problem.
     pub solves: usize,
     /// Highest power of the scaled airspeed on the diagonal of `M`.
     pub degree: usize,
-    /// Airspeeds whose neighbours are closer than this \[kt\] count as equal (M11b).
+    /// Neighbouring airspeeds that differ by at most this \[kt\] count as equal (M11b).
     pub airspeed_tolerance_kt: f64,
 }
 
@@ -125,8 +125,8 @@ impl CouplingProblem {
     /// alone.
     ///
     /// An input column in the equations needs every such output's flight response. An output that
-    /// is missing for some input at all frequencies of all conditions is therefore left out, and so
-    /// is an output missing from the physics models.
+    /// is missing for some input with data, at all frequencies in all conditions, is therefore left
+    /// out, and so is an output missing from the physics models.
     pub(super) fn fed_back(&self) -> Vec<usize> {
         if !self.kind.feeds_back() {
             return Vec::new();
@@ -143,7 +143,7 @@ impl CouplingProblem {
             .collect()
     }
 
-    /// Returns whether flight data exist for an input.
+    /// Returns whether any response to an input is known ([`Self::is_known`]).
     fn has_data(&self, input: usize) -> bool {
         (0..self.outputs()).any(|output| self.is_known(Pair::new(output, input)))
     }

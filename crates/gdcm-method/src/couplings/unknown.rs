@@ -9,20 +9,13 @@ pub enum Unknown {
     /// Coefficient of `v^power` in `M_to,from`: the share that input `to` receives from input
     /// `from`.
     Mixing {
-        /// The receiving input.
         to: usize,
-        /// The source input.
         from: usize,
         /// Power of the scaled airspeed: 0 off the diagonal.
         power: usize,
     },
     /// `K_input,output`: feedback from an output to an input.
-    Feedback {
-        /// The receiving input.
-        input: usize,
-        /// The output that is fed back.
-        output: usize,
-    },
+    Feedback { input: usize, output: usize },
 }
 
 impl Unknown {

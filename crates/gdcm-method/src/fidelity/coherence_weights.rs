@@ -54,8 +54,9 @@ impl CoherenceWeights {
         selected
     }
 
-    /// Returns the weights for every response in a model. `None` unless the model is a measured
-    /// response with coherence and `threshold` is given: all frequencies then have equal weight.
+    /// Returns the weights for every response in a model. `None`, for equal weights at all
+    /// frequencies, unless the model is a measured response with coherence and `threshold` is
+    /// given.
     pub fn of_model(
         dynamics: &Dynamics,
         omega: &[f64],

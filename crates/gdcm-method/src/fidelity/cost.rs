@@ -99,8 +99,8 @@ impl Cost {
     }
 }
 
-/// Computes J for `simulated` against `reference`, on the same frequencies: `J = 20 / N sum_k (W_g
-/// e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
+/// Computes J for `simulated` against `reference`, on the same `N` frequencies: `J = 20 / N sum_k
+/// (W_g e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
 ///
 /// Equals [`super::mismatch::Mismatch::cost`] with the mean, without gain or delay. Separate for
 /// speed: distances within a bundle with `n` models evaluate it `n (n - 1) / 2` times per response,

@@ -40,8 +40,8 @@ impl ComparedModel<'_> {
     }
 }
 
-/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; for
-/// a large bundle, the calls are independent tasks.
+/// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; the
+/// calls for different `a` are independent tasks.
 ///
 /// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
 /// reference: if either has coherence, J is the mean over both directions, so that a distance does
@@ -80,7 +80,7 @@ fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Opt
 /// (M5b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPairs {
-    /// The marked responses available in at least one model.
+    /// The responses marked in `measuring` ([`MeasuredPairs::new`]) that at least one model has.
     pub compared: Vec<Pair>,
     /// Compared responses that each model lacks: zero or not finite somewhere in the band. A model
     /// that lacks any is *set aside*: it takes no part in distances, suggestions and
@@ -116,7 +116,7 @@ impl MeasuredPairs {
             .collect()
     }
 
-    /// Returns whether a model is set aside.
+    /// Returns whether a model is set aside, because it lacks a compared response.
     pub fn is_set_aside(&self, model: usize) -> bool {
         !self.lacks[model].is_empty()
     }

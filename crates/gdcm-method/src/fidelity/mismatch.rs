@@ -146,7 +146,7 @@ impl Mismatch {
 
     /// Returns `Delta phi(sim, ref)` \[rad\], whose slope over `omega` is the delay: by M3 if it
     /// stays within half a turn, otherwise at each frequency the turn nearest to the best-fitting
-    /// pure delay (M6b).
+    /// pure delay (M6b); [`Self::turn`] is added.
     pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
         let mut phase = self.unwrapped();
         let omega = self.omega(omega);
@@ -165,7 +165,7 @@ impl Mismatch {
         phase
     }
 
-    /// Returns the median `Delta phi` \[rad\] over frequency.
+    /// Returns the median `Delta phi` \[rad\] over frequency, without weights.
     pub fn median_phase(&self, omega: &[f64]) -> f64 {
         median(&mut self.phase_difference(omega))
     }

@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! 1  match each model's poles to the reference's poles (assignment)
-//! 2  track: the matches of one reference mode; of a conjugate pair only the upper one's,
-//!    unless a model breaks the pair
+//! 2  track: the matches of one reference mode; for a conjugate pair, only of the mode with positive
+//!    imaginary part, unless a model breaks the pair
 //! 3  centre <- median real and imaginary part;  spread <- median distance from the centre
 //! 4  jump: a pole more than 5 spreads and more than 0.05 rad/s from the centre
 //! ```
@@ -41,8 +41,8 @@ pub struct ModeTrack {
     pub jumps: Vec<usize>,
 }
 
-/// Returns a track for each mode in `models[reference]`, in its order; a conjugate pair has one
-/// track, unless a model matches it with two poles that are not a pair.
+/// Returns a track for each mode in `models[reference]`, in that model's mode order; a conjugate
+/// pair has one track, unless a model matches it with two poles that are not a pair.
 ///
 /// Each model's poles are matched to the reference's poles with the minimum sum of s-plane
 /// distances (an assignment problem). No tracks if the reference has no modes.

@@ -19,8 +19,7 @@ use nalgebra::Complex;
 
 use gdcm_model::units::ratio_to_db;
 
-/// Two quadratic polynomials, numerator and denominator, highest power first, and a delay \[s\].
-/// Evaluated at `s = j omega`.
+/// A quotient of two quadratic polynomials in `s`, highest power first, times `e^(-s delay_s)`.
 struct Factor {
     numerator: [f64; 3],
     denominator: [f64; 3],
@@ -113,8 +112,8 @@ fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
 /// is outside an envelope: ascending and disjoint.
 ///
 /// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
-/// its value near zero. Between two frequencies the distance from the envelope is linear in `ln
-/// omega`.
+/// the value nearest to zero, without whole turns. Between two frequencies the distance from the
+/// envelope is interpolated linearly in `ln omega`.
 pub fn ranges_outside(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
     let mut outside_db = Vec::with_capacity(omega.len());
     let mut outside_deg = Vec::with_capacity(omega.len());

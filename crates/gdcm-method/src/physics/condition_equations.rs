@@ -67,10 +67,9 @@ pub(super) struct ConditionEquations {
     target_square: f64,
 }
 
-/// How many unknowns there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct UnknownCounts {
-    /// Fitted parameters.
+    /// Count of fitted parameters.
     pub(super) parameters: usize,
     pub(super) outputs: usize,
     pub(super) inputs: usize,

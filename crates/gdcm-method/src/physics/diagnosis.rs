@@ -18,8 +18,8 @@ use super::verdict::{NamingFacts, Verdict, WhyNotNamed};
 /// A condition's misfit, relative to the median over the conditions, above which a caution is
 /// raised.
 pub const NOTABLE_MISFIT: f64 = 1.5;
-/// Least information that a condition must have about a parameter, relative to the prior: its
-/// standard deviation is then three plausible ones.
+/// Least information that a condition must have about a parameter, relative to the prior: the
+/// value's standard deviation is then three plausible ones.
 const LEAST_INFORMATION: f64 = 1.0 / 9.0;
 /// Share of the progress for the passes; scores and intervals follow.
 const PASSES_SHARE: f64 = 0.95;
@@ -117,7 +117,8 @@ pub struct PhysicsDiagnosis {
 }
 
 impl PhysicsDiagnosis {
-    /// Returns the share of left-out conditions' misfit that the parameters explain.
+    /// Returns the share of left-out conditions' misfit that the parameters explain; `None` without
+    /// scores.
     pub fn explained(&self) -> Option<f64> {
         Some(self.scores.as_ref()?.explained())
     }

@@ -9,16 +9,17 @@ use super::problem::{PhysicsError, PhysicsProblem};
 use super::weighted_condition::{PassPoint, WeightedCondition};
 use crate::correction::Channels;
 
-/// Greatest change in a value per pass, in plausible standard deviations.
+/// Greatest change in a parameter value per pass, in plausible standard deviations.
 const GREATEST_STEP: f64 = 1.0;
-/// The passes end when no value changes by more than this, in plausible standard deviations.
+/// The passes end when no parameter value changes by more than this, in plausible standard
+/// deviations.
 const SETTLED: f64 = 1e-3;
-/// Minimum number of passes.
+/// Minimum number of passes, unless [`PhysicsProblem::options`] permits fewer.
 const FEWEST_PASSES: usize = 3;
 /// Step name in progress reports.
 const FITTING: &str = "physics parameters";
 
-/// A pass in the fit.
+/// A pass in the fit: the values that it reached, and the misfit from which it started.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPass {
     /// All parameter values after the pass, in plausible standard deviations.
@@ -41,7 +42,8 @@ pub struct PhysicsFit {
     /// `a`, `b`: channel ln gains, for each condition.
     pub ln_gains: Vec<Channels<f64>>,
     pub passes: Vec<FitPass>,
-    /// Parameter that still moved most in the last pass, by index; `None` if all had settled.
+    /// Index of the parameter that moved most in the last pass; `None` if none moved by more than
+    /// 1e-3.
     pub still_moving: Option<usize>,
     /// Misfit `s` at the solution, ln units, at least 0.01.
     pub misfit: f64,
@@ -75,8 +77,8 @@ pub fn fit_parameters(
 /// ```text
 /// 1  point <- parameters at zero or at the values set by hand; no delays, no ln gains       step 2 in `physics`
 /// 2  normal equations at the point, and their solution                                     steps 3 to 7
-/// 3  point <- towards the solution, as far as no value moves by more than 1                 step 7
-/// 4  repeat from 2: at least three passes, until no value moves by more than 1e-3 or the passes are used up   step 8
+/// 3  point <- towards the solution, as far as no z moves by more than 1                     step 7
+/// 4  repeat from 2: at least three passes, until no z moves by more than 1e-3 or the passes are used up       step 8
 /// 5  normal equations at the last point
 /// ```
 pub(super) fn solve(
@@ -125,8 +127,8 @@ pub(super) fn solve(
 
 impl FitPoint {
     /// Moves to a pass's solution, whose values are already limited to the permitted range;
-    /// shortens the whole step if a value would move by more than one plausible standard deviation.
-    /// Returns the parameter that moves most, or `None` if all move by 1e-3 or less.
+    /// shortens the whole step if a parameter would move by more than one plausible standard
+    /// deviation. Returns the parameter that moves most, or `None` if all move by 1e-3 or less.
     fn step_to(&mut self, solution: &FitPoint) -> Option<usize> {
         let mut largest = 0.0;
         let mut moving = None;

@@ -50,7 +50,6 @@ impl Matrices {
         add_scaled(&mut self.d, &other.d, factor);
     }
 
-    /// Multiplies every entry by `factor`.
     pub(super) fn scale(&mut self, factor: f64) {
         self.a *= factor;
         self.b *= factor;
@@ -58,7 +57,8 @@ impl Matrices {
         self.d *= factor;
     }
 
-    /// Returns `S^-1 A S`, `S^-1 B`, `C S`, `D` for a diagonal `S`.
+    /// Returns `S^-1 A S`, `S^-1 B`, `C S`, `D`, where `S` is the diagonal matrix with the entries
+    /// `scales`.
     pub(super) fn balanced(&self, scales: &[f64]) -> Self {
         let mut balanced = self.clone();
         for (state, &scale) in scales.iter().enumerate() {

@@ -19,10 +19,11 @@
 //!
 //! `z_k` is parameter k's change divided by its plausible standard deviation, `R` the identified
 //! representative, `H` the physics representative; `nu` is how many independent frequencies a
-//! response counts as, `N` the number of frequencies in the grid. The ln gains `a`, `b` belong to a
-//! condition, the delays `tau` are common to all; both are left free, so that a calibration error
-//! is not blamed on the physics model. Every pass is convex with a single optimum; that the passes
-//! converge is not proven.
+//! response counts as, `N` the number of frequencies in the grid. The prior standard deviations
+//! 0.05 s and 0.2 and the 20 passes are defaults (`PhysicsOptions`). The ln gains `a`, `b` belong
+//! to a condition, the delays `tau` are common to all; both are left free, so that a calibration
+//! error is not blamed on the physics model. Every pass is convex with a single optimum; that the
+//! passes converge is not proven.
 //!
 //! The result is a diagnosis. If the cause is a parameter without runs, another parameter with a
 //! similar effect is blamed for it (M18.7).

@@ -73,7 +73,7 @@ impl<'a> MatchedRuns<'a> {
     ) -> Self {
         let mut matched = Self::default();
         for moved in condition.moved_models() {
-            // A rerun at proposed values is only compared with the prediction for them.
+            // A rerun at proposed values is only compared with the prediction for these values.
             let Some(change) = moved.run() else {
                 continue;
             };

@@ -115,7 +115,8 @@ impl Scores {
             .position(|step| step.added == Some(parameter))
     }
 
-    /// Returns by how much the step that adds a parameter lowers the ratio.
+    /// Returns by how much the step that adds a parameter lowers the ratio; `None` if it is not
+    /// fitted.
     pub fn gain_of(&self, parameter: usize) -> Option<f64> {
         let step = self.step_of(parameter)?;
         let before = self.stepwise.get(step.checked_sub(1)?)?;

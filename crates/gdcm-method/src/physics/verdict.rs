@@ -104,7 +104,7 @@ impl WhyNotNamed {
 /// The facts that decide whether a fitted parameter is named.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NamingFacts {
-    /// Conditions in the fit.
+    /// Count of conditions with data in the fit.
     pub(super) conditions: usize,
     /// `None` without scores.
     pub(super) explained: Option<f64>,

@@ -6,7 +6,7 @@
 //! d_k <- (dH/dz_k) / H
 //! y <- l + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
 //! v <- (d_k of the fitted parameters, -j omega, 1, y)
-//! q^2 <- weight of the response at the frequency;  block += q^2 Re(conj(v) v')
+//! q^2 <- squared weight of the response at the frequency;  block += q^2 Re(conj(v) v')
 //! ```
 //!
 //! A response or derivative that is missing or not finite has no weight.

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! Theta = H / (j omega) for a rate, H for an attitude
-//! 1  evaluate Theta on the grid; keep the first run of values without a gap
+//! 1  evaluate Theta on the grid; keep the first values without a gap
 //! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency of the band
 //! 3  between grid points: evaluate Theta exactly, on the branch of the neighbouring phases
 //! 4  beyond the grid: unwrap from a known phase (`phases_from`)
@@ -51,7 +51,7 @@ pub enum AttitudeResponseError {
         quoted(unit)
     )]
     NotAnAttitude { output: String, unit: String },
-    /// No two neighbouring frequencies have a finite nonzero response.
+    /// The first finite nonzero values without a gap are fewer than two.
     #[error("the response has no values between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
         /// Lowest requested frequency \[rad/s\].
@@ -132,11 +132,11 @@ pub struct AttitudeResponse<'a> {
 impl<'a> AttitudeResponse<'a> {
     /// Creates an output's attitude response from `response`, evaluated at the ascending
     /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, the measured frequencies
-    /// for a measured response. The attitude response ends at the first missing value. The phase
-    /// branch is chosen at the first frequency in `band`.
+    /// for a measured response. The attitude response covers the first values without a gap. The
+    /// phase branch is chosen at the first frequency in `band`.
     ///
     /// # Errors
-    /// [`AttitudeResponseError::NoResponse`] if no two neighbouring frequencies have a value.
+    /// [`AttitudeResponseError::NoResponse`] if these are fewer than two values.
     pub fn new(
         response: &'a ResponseAt<'a>,
         output: AttitudeOutput,
@@ -191,8 +191,8 @@ impl<'a> AttitudeResponse<'a> {
     }
 
     /// Returns the phase \[deg\] at the lowest band frequency if it indicates an input or an output
-    /// with reversed sign: a phase of 45 to 135 deg, where an attitude that follows its input has 0
-    /// to -90 deg. The bandwidths are then wrong.
+    /// with reversed sign, so that the bandwidths are wrong: 45 to 135 deg. An attitude that
+    /// follows its input has 0 to -90 deg.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
         if NOT_REVERSED_DEG.contains(&phase_deg) {

@@ -194,8 +194,8 @@ impl Reading<'_> {
     }
 
     /// Returns `k` for the grid interval `[k, k + 1]` in which the phase falls through `level`
-    /// \[rad\]: the lowest in the band, unless the phase has fallen through `level` below the band
-    /// and stays below it.
+    /// \[rad\]: the lowest from the band's lower end on; but if the phase there is not above
+    /// `level`, the next interval below the band, if any.
     fn falling_interval(&self, level: f64) -> Option<usize> {
         let phase = &self.attitude.phase;
         let first = self.attitude.lowest_of_band;
@@ -209,7 +209,7 @@ impl Reading<'_> {
         (first..last).find(|&k| falls_at(phase, k, level))
     }
 
-    /// Returns the reason why the phase never crosses a level.
+    /// Returns the reason why the phase does not fall through a level.
     fn missing_crossing(&self, level_deg: f64) -> NoMetric {
         let omega = &self.attitude.omega;
         let first = self.attitude.lowest_of_band;

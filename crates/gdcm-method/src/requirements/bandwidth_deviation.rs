@@ -12,7 +12,7 @@
 //! of the phase crossing. The frequencies are defined in `bandwidth`.
 //!
 //! The phase delay follows its formula `-(Phi(2 omega_180) + pi) / (2 omega_180)`, with `omega_180`
-//! shifted by the phase error there: exact to first order if the phase is linear between
+//! shifted by the phase error at `omega_180`: exact to first order if the phase is linear between
 //! `omega_180` and `2 omega_180`.
 //!
 //! Magnitude and phase errors, and errors at distant frequencies, are assumed independent. Errors

@@ -38,8 +38,8 @@ pub enum NoMetric {
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
     },
-    /// The phase is below the level at the lowest band frequency, and never falls through the level
-    /// below the band.
+    /// The phase is at or below the level at the lowest band frequency, and does not fall through
+    /// the level at any searched frequency.
     #[error("the phase does not fall through {} deg: it is already below this level at {from:.3} \
         rad/s", number(*level_deg))]
     BelowFromStart {

@@ -195,7 +195,8 @@ impl LevelBoundary {
         Ok(())
     }
 
-    /// Checks that a boundary divides the plane into two sides; `entry` counts from 1.
+    /// Checks a boundary that gives a level: the level is not 0, and neither coordinate decreases,
+    /// so that the boundary has two sides. `entry` counts from 1.
     fn check_level(&self, entry: usize) -> Result<(), LevelBoundaryError> {
         let name = self.name.clone();
         if self.level == Some(0) {
@@ -445,7 +446,7 @@ mod tests {
         ));
     }
 
-    /// Two boundaries: vertical to 0.1 s, then 1 rad/s in 0.1 s up to 0.3 s.
+    /// Two boundaries: vertical up to 0.1 s, then rising by 0.1 s per 1 rad/s up to 0.3 s.
     const TWO: &str = r#"[
         {"name": "Level 1", "level": 1, "axis": "P", "points": [[2, 0], [2, 0.1], [4, 0.3]]},
         {"name": "Level 2", "level": 2, "axis": "P", "points": [[1, 0], [1, 0.1], [3, 0.3]]}]"#;

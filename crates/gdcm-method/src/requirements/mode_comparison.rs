@@ -160,7 +160,7 @@ struct PairedModel<'a> {
 }
 
 impl PairedModel<'_> {
-    /// Returns the model's counterpart to the flown mode in this row.
+    /// Returns the model's counterpart to the flown mode in this row; `None` if unpaired.
     fn counterpart(&self, row: usize) -> Option<ComparedMode> {
         let pair = self.pairs[row]?;
         Some(ComparedMode::new(pair.mode, &self.model.modes[pair.mode]))
@@ -214,8 +214,9 @@ struct Naming {
 }
 
 impl Naming {
-    /// Returns the name from the states in the first model with named states and a counterpart, the
-    /// flown model first; otherwise a guess from the flown mode's frequency.
+    /// Names a flown mode by its states: in the flown model, else in the first model whose paired
+    /// mode has named states. Without named states, guesses from the flown mode's frequency and
+    /// damping.
     fn from_states_or_frequency(
         flown: ModelModes<'_>,
         mode: usize,

@@ -41,7 +41,7 @@ impl ModeValues {
         }
     }
 
-    /// Computes the standard deviations from the pole's, to first order (M14.5).
+    /// Computes the standard deviations from those of the pole, to first order (M14.5).
     pub fn deviation(mode: &Mode, pole: &PoleEstimate) -> Self {
         let values = Self::new(mode);
         let re = mode.pole.re.abs();

@@ -8,7 +8,7 @@ const ROOT_TOLERANCE: f64 = 1e-12;
 ///
 /// ```text
 /// 1  [a, b] brackets the root, a the newest point; c is the point dropped last
-/// 2  inverse quadratic interpolation through a, b, c where these are monotonic, else the middle
+/// 2  inverse quadratic interpolation through a, b, c where it is monotonic, else the middle
 /// 3  no step closer to an end than the tolerance, so that both ends close in
 /// ```
 ///

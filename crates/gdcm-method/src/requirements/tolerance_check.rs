@@ -66,7 +66,7 @@ pub struct ToleranceCheck {
     pub width: Vec<f64>,
     /// Count of samples inside the corridor.
     pub inside: usize,
-    /// Maximum distance beyond the corridor; negative if all samples are inside.
+    /// Maximum distance beyond the corridor; zero or negative if all samples are inside.
     pub largest_excess: f64,
     /// Time at which `largest_excess` occurs \[s\].
     pub largest_excess_at_s: f64,

@@ -94,7 +94,7 @@ impl Airspeeds {
 }
 
 /// Clusters airspeeds \[kt\] like [`Airspeeds::new`], and returns the cluster indicators, a row for
-/// each condition.
+/// each condition; empty without conditions.
 pub fn airspeed_indicators(airspeeds_kt: Vec<f64>, tolerance_kt: f64) -> Vec<Vec<f64>> {
     match Airspeeds::new(airspeeds_kt, tolerance_kt) {
         Some(airspeeds) => airspeeds.indicators(),

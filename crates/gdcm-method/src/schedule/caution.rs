@@ -27,8 +27,9 @@ pub enum ScheduleCaution {
         /// Minimum and maximum gain over the conditions.
         range: [f64; 2],
     },
-    /// A channel's signed delay in a condition is far from its mean in the other conditions, or has
-    /// the opposite sign (M15.6).
+    /// A channel's signed delay in a condition is more than 20 ms from its mean over all
+    /// conditions, or some conditions need a lead and others a delay; the condition is the one
+    /// farthest from the mean (M15.6).
     SignedDelayApart {
         channel: Channel,
         condition: ConditionId,

@@ -26,7 +26,8 @@ use super::second_term::SecondTerm;
 use super::settings::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::correction::{ChannelCorrection, Channels, LeadPrice};
 
-/// Steps over the airspeed range at which a schedule is inspected.
+/// Number of steps over the airspeed range, or between two clusters, at which a schedule is
+/// inspected.
 pub(super) const STEPS: u32 = 100;
 
 /// Every channel's gain (and delay, where requested) as a function of airspeed.
@@ -46,7 +47,7 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Fits the schedule to the conditions' corrections and checks it between them.
+    /// Fits the schedule to the conditions' corrections and checks it between the conditions.
     ///
     /// # Errors
     /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if the
@@ -146,13 +147,14 @@ impl Schedule {
     /// end value applies.
     ///
     /// Scheduled delays are limited to their bounds: from zero to the conditions' upper bounds,
-    /// interpolated linearly. A second variable is set to its mid-range value.
+    /// interpolated linearly; signed delays to the conditions' widest bounds. A second variable is
+    /// set to its mid-range value.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
         self.evaluate(airspeed_kt, None)
     }
 
-    /// Evaluates the scheduled correction at a condition's airspeed and second variable; without
-    /// one, at the mid-range value.
+    /// Evaluates the scheduled correction at a condition's airspeed and second variable; if the
+    /// condition does not give this variable, at its mid-range value.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
         let second = self
             .settings
@@ -186,7 +188,7 @@ impl Schedule {
     }
 
     /// Returns the regression's design matrix `X`: a row for each condition, with the second
-    /// variable in the last column.
+    /// variable, if any, in the last column.
     pub fn design(&self) -> Vec<Vec<f64>> {
         let mut rows = self.airspeed_design();
         if let Some(term) = &self.second {

@@ -10,7 +10,8 @@ pub enum ScheduleError {
     NoCondition,
     #[error("no schedule with {0}: a condition chosen for it has no {0}")]
     NoSecondValue(SecondVariable),
-    /// In these conditions the second variable is constant, or a function of airspeed.
+    /// In these conditions the second variable is constant, or a linear combination of the
+    /// schedule's airspeed columns.
     #[error(
         "no schedule with {0}: its effect cannot be separated from the effect of airspeed in \
         these conditions"

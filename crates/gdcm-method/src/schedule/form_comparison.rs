@@ -101,7 +101,7 @@ pub struct FormFit {
     pub kind: ScheduleKind,
     /// Polynomial degree, possibly less than requested (M11b); `None` for a table.
     pub degree: Option<usize>,
-    /// Net gain residuals, `k_o k_i`.
+    /// Residuals in the net gain `k_o k_i`.
     pub pairs: PairTable<FitResiduals>,
 }
 

@@ -14,8 +14,8 @@ const TOLERATED_SHARE: f64 = 0.5;
 const ROUNDING: f64 = 1e-9;
 
 impl Schedule {
-    /// Returns whether interpolation between the conditions is unreliable: a gain overshoots there,
-    /// or is not positive.
+    /// Returns whether interpolation between the conditions is unreliable: a gain overshoots
+    /// between them, or is not positive.
     pub fn interpolation_fails(&self) -> bool {
         self.cautions.iter().any(|caution| {
             matches!(

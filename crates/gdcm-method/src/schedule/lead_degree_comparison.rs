@@ -8,8 +8,8 @@ use super::scheduled_point::ScheduledPoint;
 use super::settings::{HIGHEST_DEGREE, ScheduleKind, ScheduleSettings};
 use crate::correction::ChannelCorrection;
 
-/// Fits the signed delays with each degree from 0 to [`HIGHEST_DEGREE`]; empty if a condition's
-/// correction has no leads.
+/// Fits the signed delays with each degree from 0 to [`HIGHEST_DEGREE`]; empty without conditions,
+/// or if a condition's correction has no leads.
 pub fn compare_lead_degrees(
     points: &[ScheduledPoint<'_>],
     settings: ScheduleSettings,

@@ -9,8 +9,9 @@ use crate::correction::Channels;
 use crate::correction::channel_leads::ChannelLeads;
 use crate::correction::lead_design::LeadDesign;
 
-/// Every channel's signed delay as a function of airspeed: two regressions added up are the
-/// regression of the sum, so every response's net lead is scheduled exactly.
+/// Every channel's signed delay as a function of airspeed. Two regressions added up are the
+/// regression of the sum, so that a response's net signed delay is the regression of the
+/// conditions' net signed delays, unless a channel reaches a bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadSchedule {
     /// Design that gives the filter for a signed delay.

@@ -7,7 +7,6 @@ use crate::correction::ChannelCorrection;
 pub struct ScheduledPoint<'a> {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The condition's own correction.
     pub correction: &'a ChannelCorrection,
     /// The condition's upper delay bound \[s\].
     pub delay_upper_s: f64,

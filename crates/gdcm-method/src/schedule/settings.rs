@@ -111,7 +111,7 @@ impl ScheduleEntry {
             (FormEntry::Polynomial, Some(degree)) => Err(format!(
                 "degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"
             )),
-            // Worded like serde's own error, so that readers treat it alike.
+            // Worded like serde's own error, so that readers treat both alike.
             (FormEntry::Polynomial, None) => Err("missing field `degree`".to_owned()),
         }
     }

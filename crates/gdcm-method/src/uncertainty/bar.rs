@@ -28,8 +28,8 @@ pub enum IdentificationSource {
 pub struct Bar {
     /// Value with both representatives, `q_0`.
     pub value: f64,
-    /// Variance due to the unknown trim, `s_phys^2`; `None` if no other kept physics model yields a
-    /// value.
+    /// Variance due to the unknown trim, `s_phys^2`; `None` if no other accepted physics model
+    /// yields a value.
     pub trim: Option<VarianceComponent>,
     /// Variance from the identification, `s_id^2`; `None` if there is neither a spread, own or
     /// borrowed from other conditions, nor a standard error from coherence or a model's band.
@@ -57,7 +57,8 @@ impl Bar {
         [self.trim, self.identification].into_iter().flatten()
     }
 
-    /// Returns the degrees of freedom of `u`; `None` if the bundles have no spread.
+    /// Returns the degrees of freedom of `u`; `None` without spread, if no part has a positive
+    /// variance.
     pub fn degrees_of_freedom(&self) -> Option<f64> {
         satterthwaite(self.parts())
     }
@@ -134,7 +135,7 @@ pub enum BarRemark {
     NoTrim,
     /// The identification's uncertainty is not included.
     NoIdentification,
-    /// All models in both bundles give the same value.
+    /// All available models give the same value.
     NoSpread,
     /// The identification part is computed from the coherence.
     FromCoherence,

@@ -82,7 +82,8 @@ impl Design {
             .map_or(f64::NAN, |solved| solved.norm_squared())
     }
 
-    /// Returns the last diagonal entry of `(X'X)^-1`.
+    /// Returns the last diagonal entry of `(X'X)^-1`: the last coefficient's variance, relative to
+    /// the residual variance.
     pub fn last_variance(&self) -> f64 {
         let mut last = vec![0.0; self.rank()];
         last[self.rank() - 1] = 1.0;
@@ -130,7 +131,6 @@ pub struct Fit {
     pub residuals: Vec<f64>,
 }
 
-/// Sums the squared values.
 pub(super) fn sum_of_squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }

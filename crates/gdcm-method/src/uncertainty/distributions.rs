@@ -2,17 +2,17 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-/// Degrees of freedom above which the normal distribution replaces Student's: they differ by 2e-8
-/// there.
+/// Degrees of freedom above which the normal distribution replaces Student's: the two differ by
+/// 2e-8 at this value.
 const NORMAL_FROM: f64 = 1e8;
 
 /// Degrees of freedom above which Student's quantile is expanded about the normal quantile. Four
-/// terms have an error around 1e-12 there, and the inverse incomplete beta function does not
-/// converge for some larger values.
+/// terms have an error around 1e-12 at this value, and the inverse incomplete beta function does
+/// not converge for some larger values.
 const EXPANDED_FROM: f64 = 1e3;
 
-/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, which counts as 1 if
-/// smaller; the normal quantile for infinite `nu`.
+/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu = degrees`, which
+/// counts as 1 if smaller; the normal quantile for infinite `nu`.
 ///
 /// Above a thousand degrees of freedom the expansion 26.7.5 in M. Abramowitz, I. A. Stegun,
 /// *Handbook of Mathematical Functions*, 1964, is used.
@@ -41,7 +41,8 @@ fn expanded_quantile(z: f64, degrees: f64) -> f64 {
     z * relative + z
 }
 
-/// Computes the two-sided probability in Student's distribution, `2 (1 - T_nu(|ratio|))`.
+/// Computes the two-sided probability `2 (1 - T_nu(|ratio|))`, where `T_nu` is Student's
+/// distribution function with `nu = degrees` degrees of freedom, at least 1.
 pub fn student_two_sided(ratio: f64, degrees: f64) -> f64 {
     match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
         Ok(student) if degrees < NORMAL_FROM => 2.0 * student.sf(ratio.abs()),

@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!  1  for each condition c: q_0 <- the analysis with the representatives (a^, b^)
-//!  2     s_phys^2 <- mean (q(a, b^) - q_0)^2 over the other kept physics models a
-//!  3     s_own^2  <- mean (q(a^, b) - q_0)^2 over the n other kept identified models b
+//!  2     s_phys^2 <- mean (q(a, b^) - q_0)^2 over the other accepted physics models a
+//!  3     s_own^2  <- mean (q(a^, b) - q_0)^2 over the n other accepted identified models b
 //!  4  s_pooled^2 <- sum n s_own^2 / sum n,  over the conditions
 //!  5  for each c: s_id^2 <- (n s_own^2 + d_0 s_pooled^2) / (n + d_0),  d_0 = min(4, the others' n);  at least s_coh^2
 //!  6     u^2 <- s_phys^2 + s_id^2;  nu <- u^4 / sum s^4/nu;  bar <- q_0 +- t(nu) u

@@ -12,12 +12,11 @@ use super::design::Design;
 use super::distributions::student_quantile;
 use super::variance_decomposition::VarianceDecomposition;
 
-/// Bands about a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2,
-/// B)`.
+/// Bands about a schedule: `t(f) S' sqrt(h)` and `t(f) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBand {
     design: Arc<Design>,
-    /// `t(n - r) S'`.
+    /// `t(f) S'`.
     scaled_deviation: f64,
 }
 

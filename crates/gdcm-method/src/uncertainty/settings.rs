@@ -39,7 +39,7 @@ impl Default for UncertaintySettings {
 
 impl UncertaintySettings {
     /// Combines a measured response's own data with these defaults; `None` if the average count is
-    /// unknown.
+    /// unknown or not positive.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
         let averages = averages
             .or(self.averages)

@@ -1,8 +1,8 @@
 //! Changes in a condition's values if its models are substituted (M13.1).
 //!
 //! ```text
-//! s_phys^2 <- mean of (q - q_0)^2 over the other kept physics models, each instead of the representative
-//! s_own^2  <- the same over the other kept identified models
+//! s_phys^2 <- mean of (q - q_0)^2 over the other accepted physics models, each instead of the representative
+//! s_own^2  <- the same over the other accepted identified models
 //! ```
 //!
 //! `q` is one of the condition's scalars, `q_0` its value with both representatives.
@@ -30,8 +30,8 @@ pub struct ConditionSpread {
 
 impl ConditionSpread {
     /// Computes the mean squares about the representatives' scalars. `trim` has an entry for each
-    /// other kept physics model, `own` for each other kept identified model; `None` if the analysis
-    /// with that model failed.
+    /// other accepted physics model, `own` for each other accepted identified model; `None` if the
+    /// analysis with that model failed.
     pub fn new(
         representatives: &Figures,
         trim: &[Option<&Figures>],

@@ -4,7 +4,6 @@
 /// Variance of a gain's natural logarithm, or of a delay \[s^2\], with its degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceComponent {
-    /// The mean square.
     pub variance: f64,
     /// Degrees of freedom, at least 1; infinite for an exactly known variance.
     pub degrees_of_freedom: f64,
@@ -39,7 +38,7 @@ impl VarianceComponent {
         })
     }
 
-    /// Multiplies the variance by `factor`.
+    /// Multiplies the variance by `factor`; the degrees of freedom stay.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             variance: factor * self.variance,

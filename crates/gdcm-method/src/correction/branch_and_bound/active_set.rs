@@ -41,8 +41,8 @@ pub(super) struct QuadraticModel {
     /// Lower Cholesky factor for the free scales' Hessian. Its rows and columns are places in
     /// `free`, not scales; each row has memory for all scales.
     factor: Vec<f64>,
-    /// Further step to the unbounded minimum over the free scales, by scale; meaningless for the
-    /// others.
+    /// Further step to the unbounded minimum over the free scales, by scale; meaningless for scales
+    /// that are not free.
     move_to: Vec<f64>,
 }
 
@@ -81,8 +81,8 @@ impl QuadraticModel {
     ///    or after 8 n + 8 passes, with the decrease so far
     /// ```
     ///
-    /// Returns the decrease, or `None` if the effort is stopped or `H` is not positive definite on
-    /// a face that the method visits. Scales with `low == high` do not move.
+    /// Returns the decrease, or `None` if the effort is stopped or `H`, restricted to the free
+    /// scales in some pass, is not positive definite. Scales with `low == high` do not move.
     pub(super) fn minimise(&mut self, at: &Expansion, effort: &Effort<'_>) -> Option<f64> {
         let gradient = &at.gradient;
         let hessian = &at.hessian;
@@ -93,7 +93,6 @@ impl QuadraticModel {
                 || (self.high[scale] <= 0.0 && slope <= 0.0);
             self.is_free[scale] = self.low[scale] < self.high[scale] && !is_pressed;
         }
-        // Added to the diagonal.
         let ridge = RIDGE
             * (0..self.scales)
                 .map(|scale| hessian[scale * self.scales + scale])
@@ -126,8 +125,8 @@ impl QuadraticModel {
         Some(-change)
     }
 
-    /// Returns the work per pass: a Cholesky factorisation for the free scales, and products with
-    /// the whole Hessian.
+    /// Returns the work per pass, in term evaluations: a Cholesky factorisation for the free
+    /// scales, and products with the whole Hessian.
     fn work(&self) -> u64 {
         let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
         1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16

@@ -6,8 +6,8 @@ use super::expansion::Expansion;
 use super::node_exclusion::NodeExclusion;
 use crate::correction::interval::Interval;
 
-/// Distance from the minimum: much larger than the error in the scales, much smaller than a
-/// distance over which the curvature changes.
+/// Distance from the minimum in each scale: much larger than the error in the scales, much smaller
+/// than a distance over which the curvature changes.
 const WITHIN: f64 = 0.01;
 
 impl NodeExclusion<'_> {
@@ -50,8 +50,8 @@ impl NodeExclusion<'_> {
         quadratic_bound(at, &reach, WITHIN, |scale| pressures[scale] > 0.0)
     }
 
-    /// Returns how steeply the objective certainly presses the scale against its active bound, a
-    /// slope's magnitude; 0 without an active bound or a certain sign.
+    /// Returns the magnitude of the slope that presses the scale against its active bound, less its
+    /// rounding error; 0 without an active bound, or if the slope's sign is uncertain.
     fn pressure(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
         let is_stopped = if slope > 0.0 {

@@ -13,9 +13,10 @@ use crate::correction::interval::Interval;
 
 /// Maximum iterations for the quartic's minimum; a few are typical.
 const NEWTON_STEPS: usize = 60;
-/// Relative step at which the quartic's minimum is found: rounding level.
+/// Relative step at which the search for the quartic's minimum ends: rounding level.
 const NEWTON_ROUNDING: f64 = 1e-15;
-/// Maximum number of times that the outer end of a bracket is moved to double distance.
+/// Maximum number of times that a bracket's outer end is moved to twice its distance from the inner
+/// end.
 const DOUBLINGS: usize = 40;
 /// Relative bracket width at which the bisection ends. The bracket's convex side is returned, so
 /// that the remaining width only makes the concave interval slightly too wide.
@@ -37,7 +38,8 @@ const BRACKET_WIDTH: f64 = 1e-12;
 /// `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`. Its coefficients change sign twice, so that it has
 /// either no or two positive roots (Descartes); its derivative has a single positive root.
 pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Interval> {
-    // Far above the rounding error in a logarithm up to 83 (twice 180 dB, in both directions).
+    // Far above the rounding error in a logarithm up to 83, twice the widest range of a gain (-180
+    // to 180 dB).
     const SLACK: f64 = 1e-11;
     match (forward.is_zero(), backward.is_zero()) {
         (true, true) => return None,

@@ -26,19 +26,20 @@ pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>
 /// Bounds a convex function from below near a point at which its slopes are almost zero, by its
 /// tangent plane and Hessian. `None` if the slopes are too large.
 ///
-/// Let `H` be a matrix that the Hessian exceeds by a positive semidefinite matrix while no scale is
-/// further than `within` from the point, and `reach` the square roots of the diagonal of `H^-1` (0
-/// for a fixed scale). For a distance `d` from the point and `t = sqrt(d' H d)`, each scale moves
-/// by `|d_i| <= reach_i t`. With the gradient `g` and its error `e`, therefore
+/// Let `F` be the function, `s` the point, `H` a matrix that the Hessian exceeds by a positive
+/// semidefinite matrix while no scale is further than `within` from `s`, and `reach` the square
+/// roots of the diagonal of `H^-1` (0 for a fixed scale). For a displacement `d` and `t = sqrt(d' H
+/// d)`, each scale moves by `|d_i| <= reach_i t`. With the gradient `g` and its error `e`,
+/// therefore
 ///
 /// ```text
 /// F(s + d) - F(s)  >=  g' d + d' H d / 2  >=  t^2 / 2 - r t  >=  -r^2 / 2,      r = sum (|g_i| + e_i) reach_i
 /// ```
 ///
-/// At `t = r`, where no scale has moved by more than `r reach_i`, the function no longer falls
-/// along `d`; a convex function does not fall further out either, so that the bound holds
-/// everywhere if `r reach_i <= within`. A scale that its slope has `pressed` against its bound can
-/// only raise the function, and does not count in `r`.
+/// At `t = r`, where no scale has moved by more than `r reach_i`, `F` no longer falls along `d`; a
+/// convex function does not fall further out either, so that the bound holds everywhere if `r
+/// reach_i <= within`. A scale that its slope has `pressed` against its bound can only raise `F`,
+/// and does not count in `r`.
 pub(super) fn quadratic_bound(
     at: &Expansion,
     reach: &[f64],

@@ -2,7 +2,8 @@
 
 use super::rounded::Rounded;
 
-/// A function's value, slope and curvature at a point.
+/// A function's value and slope at a point, with bounds on their rounding errors, and its
+/// curvature.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Derivatives {
     pub(crate) value: Rounded,
@@ -31,6 +32,6 @@ impl Derivatives {
 pub(crate) struct Range {
     pub(crate) least: f64,
     pub(crate) most: f64,
-    /// Sum over the summands' magnitudes, to which their rounding errors are proportional.
+    /// Bound on the summands' magnitudes, added up; the rounding errors are proportional to it.
     pub(crate) size: f64,
 }

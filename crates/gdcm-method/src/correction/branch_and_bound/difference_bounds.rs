@@ -3,7 +3,7 @@
 
 use crate::correction::interval::Interval;
 
-/// Excess over a bound that counts as a rounding error.
+/// Largest excess over a bound that counts as a rounding error.
 const ROUNDING: f64 = 1e-13;
 
 /// Bounds on scale differences: `s_to - s_from <= bound(from, to)` for every two scales, the ground

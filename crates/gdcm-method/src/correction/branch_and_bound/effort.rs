@@ -1,5 +1,5 @@
 //! A search's work, counted instead of timed, so that the results are reproducible; and the request
-//! to stop it.
+//! to stop the search.
 
 use std::cell::Cell;
 
@@ -29,7 +29,7 @@ impl<'a> Effort<'a> {
         }
     }
 
-    /// Adds `work`, and polls `stop` if an interval has passed.
+    /// Adds `work`, and polls `stop` if [`Self::POLL_INTERVAL`] has passed since the last poll.
     pub(crate) fn spend(&self, work: u64) {
         let spent = self.work.get() + work;
         self.work.set(spent);
@@ -39,12 +39,12 @@ impl<'a> Effort<'a> {
         }
     }
 
-    /// Returns the total work so far.
+    /// Returns the total work so far, in term evaluations.
     pub(crate) fn spent(&self) -> u64 {
         self.work.get()
     }
 
-    /// Returns whether a stop was requested.
+    /// Returns whether a stop was requested at any poll so far.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.get()
     }

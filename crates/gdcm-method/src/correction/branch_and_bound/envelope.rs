@@ -13,8 +13,8 @@ use crate::correction::interval::Interval;
 
 /// Maximum iterations for the tangent; the work per term in `underestimator` allows for them.
 const TANGENT_STEPS: usize = 14;
-/// Distance between the tangent and the function at the left end, relative to the value there, at
-/// which the tangent is close enough.
+/// Distance between the tangent and the function at the left end, relative to the function's value,
+/// at which the tangent is close enough.
 const SUFFICIENT_CLOSENESS: f64 = 1e-9;
 
 /// Line that replaces the exponential below `until` in its convex envelope.

@@ -63,7 +63,7 @@ impl ProductEntry {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CombinedEntries {
     pub(crate) exponential: Exponential,
-    /// The combined entries' minimum.
+    /// The sum's minimum over `v`.
     pub(crate) least: Rounded,
 }
 

@@ -37,6 +37,9 @@
 //! 10  lower bound <- lowest bound of all closed and open nodes
 //! ```
 //!
+//! If `best` is below the objective's rounding level, the gap `2e-10` is relative to that level
+//! (`search`).
+//!
 //! | line | file |
 //! |---|---|
 //! | 1, 6 | `newton`, each step by `active_set` |

@@ -21,7 +21,7 @@ use super::objective::Objective;
 use super::term::Term;
 use crate::correction::interval::Interval;
 
-/// Distance from a box end that counts as a rounding error.
+/// Largest distance from a box end that counts as a rounding error.
 const ROUNDING: f64 = 1e-12;
 
 /// The objective with the structure needed by the exclusion tests.
@@ -60,8 +60,8 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Returns the work per test: the range for every slope, or the Hessian and its Cholesky
-    /// factorisation.
+    /// Returns the work per test, in term evaluations: the range for every slope, or the Hessian
+    /// and its Cholesky factorisation.
     pub(super) fn work(&self) -> u64 {
         let scales = self.objective.scales() as u64;
         4 * self.objective.terms.len() as u64 + scales * scales * scales / 96

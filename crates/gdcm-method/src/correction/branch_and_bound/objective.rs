@@ -50,7 +50,6 @@ impl Objective {
             .collect()
     }
 
-    /// Evaluates the objective at `scales`.
     pub(crate) fn value(&self, scales: &[f64]) -> f64 {
         let sum: f64 = self
             .terms
@@ -73,8 +72,7 @@ impl Objective {
     /// as far as the box allows.
     ///
     /// `shift(piece, scales)` returns the amount without regard to the box. The fit does not depend
-    /// on the shift, so that the output gains' (or delays') deviations from neutral determine it
-    /// (M8, M9).
+    /// on the shift, so that the regularised deviations from neutral determine it (M8, M9).
     pub(crate) fn shift_floating_pieces(
         &self,
         scales: &mut [f64],

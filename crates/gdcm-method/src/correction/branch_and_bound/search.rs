@@ -31,11 +31,10 @@ const LEAST_SPLIT_WIDTH: f64 = 1e-11;
 /// Minimum distance between a term and its envelope, relative to the gap's denominator, for
 /// branching at that term; smaller distances are negligible beside [`AIM`].
 const LEAST_ENVELOPE_GAP: f64 = 1e-13;
-/// Ratio between the underestimators' outer curvature and the objective's largest curvature at the
-/// best minimum.
+/// Ratio between the underestimators' outer curvature and the objective's largest Hessian entry, by
+/// magnitude, at the best minimum.
 const OUTER_CURVATURE_RATIO: f64 = 8.0;
 
-/// A local minimum.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
     pub(crate) scales: Vec<f64>,
@@ -43,7 +42,6 @@ pub(crate) struct Minimum {
     pub(crate) value: f64,
 }
 
-/// Result of a search.
 #[derive(Clone, Debug)]
 pub(crate) struct Minima {
     /// Distinct local minima within 1 % above the best, best first.
@@ -434,7 +432,7 @@ impl<'a> Search<'a> {
                 return;
             }
         }
-        // Not branched: the bound is as sharp as rounding permits. The node, also one closed before
+        // Not branched: the bound is as sharp as rounding permits. The node, even if closed before
         // the proof, could contain a further minimum within 1 % above the best.
         self.all_minima = false;
         self.close(bound);
@@ -481,8 +479,8 @@ impl<'a> Search<'a> {
 
     /// Line 10: returns the lower bound, and the minima within 1 % above the best.
     ///
-    /// A gap that is no proof is due to full memory; otherwise to exhausted work, if the bound is
-    /// that of an open node; otherwise to rounding.
+    /// If the gap is no proof, the limit is the memory if a node was rejected, else the work if an
+    /// open node has the lowest bound, else the rounding.
     fn into_minima(mut self) -> Minima {
         let left = self.open.least_bound();
         let cutoff = self.cutoff();

@@ -32,7 +32,6 @@ impl Term {
     }
 }
 
-/// A sum of terms and a constant.
 #[derive(Clone, Debug)]
 pub(crate) struct TermSum {
     pub(crate) terms: Vec<Term>,
@@ -68,7 +67,7 @@ impl Function {
         }
     }
 
-    /// Evaluates the function at `u`.
+    /// Returns value, slope and curvature at `u`.
     pub(crate) fn evaluate(&self, u: f64) -> Derivatives {
         match self {
             Function::Quadratic {

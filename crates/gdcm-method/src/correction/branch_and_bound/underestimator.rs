@@ -109,7 +109,8 @@ pub(crate) struct Underestimator<'a> {
 }
 
 impl<'a> Underestimator<'a> {
-    /// Work per term for building the underestimator: up to fourteen iterations for a tangent.
+    /// Work per term for building the underestimator, in term evaluations: up to fourteen
+    /// iterations for a tangent.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
     /// Creates the underestimator for `objective` over `region`, with `outer_curvature` outside the

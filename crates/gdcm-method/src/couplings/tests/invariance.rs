@@ -70,7 +70,8 @@ fn scaled_response(
     }))
 }
 
-/// Divides each column of `shares` by the peak magnitude of the physics responses of its output.
+/// Returns the feedback with these shares: each column divided by the peak magnitude in the
+/// output's physics responses.
 fn feedback_with_shares(problem: &CouplingProblem, shares: &DMatrix<f64>) -> DMatrix<f64> {
     let mut peaks = [0.0_f64; 3];
     for condition in &problem.conditions {

@@ -1,4 +1,4 @@
-//! Fits and coupled responses of data with missing responses.
+//! Fits to data with missing responses, and coupled responses computed from such data.
 
 use std::sync::Arc;
 

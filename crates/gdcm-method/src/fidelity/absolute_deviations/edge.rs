@@ -1,4 +1,5 @@
-//! Edges that leave a vertex: which ones do not increase the sum of deviations, and where they end.
+//! Edges that leave a vertex: those along which the sum of deviations does not grow, and their
+//! ends.
 //!
 //! ```text
 //! 1  slope of the sum along each edge                                                    (EdgeRates)
@@ -141,8 +142,8 @@ impl Edge {
 }
 
 /// Rates at which the summed deviations change along a direction and against it: a row whose
-/// deviation is zero adds `|change|` in both, another row adds its change times the sign of its
-/// deviation.
+/// deviation is zero adds `|change|` in both; another row adds its change times the sign of its
+/// deviation, and the opposite against the direction.
 struct EdgeRates {
     along: f64,
     against: f64,

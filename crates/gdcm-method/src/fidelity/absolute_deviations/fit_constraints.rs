@@ -25,7 +25,7 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// Returns the constraint count.
+    /// Returns the constraint count, rows plus weights.
     pub(super) fn count(&self) -> usize {
         self.y.len() + self.unknowns
     }
@@ -42,7 +42,7 @@ impl<'a> Fit<'a> {
         self.row(constraint).iter().zip(w).map(|(x, w)| x * w).sum()
     }
 
-    /// Returns a constraint's right-hand side.
+    /// Returns a constraint's right-hand side; 0 for a weight.
     pub(super) fn right(&self, constraint: usize) -> f64 {
         self.y.get(constraint).copied().unwrap_or(0.0)
     }

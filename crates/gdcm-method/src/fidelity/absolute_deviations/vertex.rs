@@ -4,8 +4,7 @@ use nalgebra::DVector;
 
 use super::fit_constraints::{Fit, ZERO};
 
-/// Minimum singular value above which constraints count as independent; their coefficients are
-/// around 1.
+/// Singular value above which constraints count as independent; their coefficients are around 1.
 const INDEPENDENT: f64 = 1e-6;
 
 /// A vertex: its weights, and the constraints that define it.
@@ -67,7 +66,7 @@ impl Vertex {
         }
     }
 
-    /// Returns whether two vertices coincide.
+    /// Returns whether two vertices coincide, up to rounding.
     pub(super) fn coincides_with(&self, other: &Self) -> bool {
         self.weights
             .iter()

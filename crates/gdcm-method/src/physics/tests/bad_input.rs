@@ -197,8 +197,8 @@ fn without_gains_or_delays_the_channels_stay_at_one() {
     }
 }
 
-/// Receiver that cancels after a number of polls, and asserts that no more steps are reported than
-/// there are.
+/// Receiver that cancels after a number of polls, and asserts that the reported steps do not exceed
+/// the total.
 struct Impatient(AtomicUsize);
 
 impl Progress for Impatient {

@@ -44,7 +44,7 @@ fn run(name: &str, parameter: &str, delta: f64, system: &StateSpace) -> MovedMod
     }
 }
 
-/// Plausible standard deviations of the reference parameters, in their unit.
+/// Plausible standard deviations of the reference parameters \[%\].
 const PLAUSIBLE: [f64; 2] = [5.0, 40.0];
 
 fn offered(plausible: [f64; 2]) -> Vec<OfferedParameter> {
@@ -72,8 +72,8 @@ fn toy_runs(condition: usize, scale: f64) -> Vec<MovedModel> {
     runs
 }
 
-/// Creates a condition with the reference model as nominal model and at another trim, and with
-/// these runs.
+/// Creates a condition with these runs, whose nominal and whose slower physics model are both the
+/// reference model.
 fn condition(index: usize, runs: Vec<MovedModel>) -> Condition {
     let base = &toy_conditions()[index].base;
     let state = FlightState::at(ConditionId(index as i64 + 1), 60.0);

@@ -630,6 +630,14 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
         [RecognitionFault::FrequencyUnit { unit: name("rps") }]
     );
     assert_eq!(of(r#""f": [1, 2, 3], "frequency_unit": "Hz""#), []);
+    let in_time_unit = r#""f": [1, 2, 3], "frequency_unit": "rad/TimeUnit""#;
+    assert_eq!(of(in_time_unit), []);
+    assert_eq!(
+        of(&format!(r#"{in_time_unit}, "TimeUnit": "minutes""#)),
+        [RecognitionFault::TimeUnit {
+            unit: name("minutes")
+        }]
+    );
     assert_eq!(
         of(r#""w": [1, 2, 3], "InputDelay": 0.03"#),
         [RecognitionFault::DelayOfResponse {
@@ -660,4 +668,14 @@ fn a_response_of_several_channels_is_put_in_order() {
     let response = found.items[0].draft.response.as_ref().unwrap();
     assert_eq!(response.re.values, [1.0, 2.0, 3.0, 10.0, 20.0, 30.0]);
     assert_eq!(response.omega[0], std::f64::consts::TAU);
+}
+
+#[test]
+fn a_small_letter_among_the_variables_of_a_file_is_no_matrix() {
+    let matrices = ["A", "B", "C"].map(|name| variable(name, numbers(1, 1, &[-1.0])));
+    let mut variables = matrices.to_vec();
+    variables.push(variable("d", numbers(1, 3, &[1.0, 2.0, 3.0])));
+    let found = recognise(&variables);
+    assert_eq!(found.faults, []);
+    assert_eq!(found.items.len(), 1);
 }

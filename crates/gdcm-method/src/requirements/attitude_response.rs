@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! Theta = H / (j omega) for a rate, H for an attitude
-//! 1  evaluate Theta on the grid; keep the first values without a gap
+//! 1  evaluate Theta on the grid; keep the longest run of values without a gap
 //! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency of the band
 //! 3  between grid points: evaluate Theta exactly, on the branch of the neighbouring phases
 //! 4  beyond the grid: unwrap from a known phase (`phases_from`)
@@ -51,7 +51,7 @@ pub enum AttitudeResponseError {
         quoted(unit)
     )]
     NotAnAttitude { output: String, unit: String },
-    /// The first finite nonzero values without a gap are fewer than two.
+    /// The longest run of finite nonzero values without a gap has fewer than two.
     #[error("the response has no values between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
         /// Lowest requested frequency \[rad/s\].
@@ -132,7 +132,7 @@ pub struct AttitudeResponse<'a> {
 impl<'a> AttitudeResponse<'a> {
     /// Creates an output's attitude response from `response`, evaluated at the ascending
     /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, the measured frequencies
-    /// for a measured response. The attitude response covers the first values without a gap. The
+    /// for a measured response. The attitude response covers the longest run of values without a gap. The
     /// phase branch is chosen at the first frequency in `band`.
     ///
     /// # Errors
@@ -144,7 +144,7 @@ impl<'a> AttitudeResponse<'a> {
         band: Band,
     ) -> Result<Self, AttitudeResponseError> {
         let polar = polar(response, output, omega);
-        let known = first_run(&polar);
+        let known = longest_run(&polar);
         if known.len() < 2 {
             return Err(AttitudeResponseError::NoResponse {
                 from: omega.first().copied().unwrap_or(f64::NAN),
@@ -262,15 +262,17 @@ fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Ve
     polar
 }
 
-/// Returns the index range of the first values without a gap.
-fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
-    let start = polar
-        .iter()
-        .position(Option::is_some)
-        .unwrap_or(polar.len());
-    let length = polar[start..]
-        .iter()
-        .position(Option::is_none)
-        .unwrap_or(polar.len() - start);
-    start..start + length
+/// Returns the index range of the longest run of values without a gap; the first of equally long
+/// runs.
+fn longest_run(polar: &[Option<Polar>]) -> Range<usize> {
+    let mut longest = 0..0;
+    let mut start = 0;
+    for run in polar.chunk_by(|a, b| a.is_some() == b.is_some()) {
+        let end = start + run.len();
+        if run[0].is_some() && run.len() > longest.len() {
+            longest = start..end;
+        }
+        start = end;
+    }
+    longest
 }

@@ -55,7 +55,8 @@ impl Places {
 
 /// Returns the element count; `None` on overflow.
 ///
-/// The product of the nonzero dimensions must not overflow even if another dimension is zero.
+/// The product of the nonzero dimensions must not overflow even if another dimension is zero,
+/// because the strides are such products.
 pub(crate) fn element_count(shape: &[usize]) -> Option<usize> {
     let mut product = 1_usize;
     for &side in shape {

@@ -1,7 +1,8 @@
-//! Imports files and folders: each file is read in the format that its bytes show, and passed on.
+//! Imports files and folders: each file is read in its format ([`importer_of`]), and its contents
+//! are passed on.
 //!
-//! [`import`] reads files and all files in folders, [`import_file`] a single file, and
-//! [`import_bytes`] a file whose bytes are in memory.
+//! [`import`] reads files and folders, [`import_file`] a single file, and [`import_bytes`] a file
+//! whose bytes are in memory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +19,8 @@ pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 
 /// Receives progress while files are read, and can cancel the reading.
 pub trait FolderProgress {
-    /// Called before a file is read, with its number (from 1), the number of files, and its name.
+    /// Called before a file is read, with its number (from 1), the number of files, and its name,
+    /// relative to the given folder.
     fn reading(&self, number: usize, count: usize, name: &str);
     /// Receives the memory taken so far for the current file \[bytes\], whenever more is taken.
     fn taken(&self, _bytes: u64) {}
@@ -38,7 +40,7 @@ pub(crate) struct ImportedFile<'f> {
     pub(crate) contents: Contents,
 }
 
-/// Reads a file whose bytes are in memory, in the format that they show.
+/// Reads a file whose bytes are in memory, in its format ([`importer_of`]).
 pub(crate) fn import_bytes<'f>(
     bytes: &[u8],
     path: &'f Path,
@@ -54,7 +56,7 @@ pub(crate) fn import_bytes<'f>(
     })
 }
 
-/// Reads a file in the format that its bytes show.
+/// Reads a file in its format ([`importer_of`]).
 ///
 /// # Errors
 /// [`FileError`] if the file exceeds `LARGEST_FILE`, or cannot be read.
@@ -66,13 +68,14 @@ pub(crate) fn import_file<'f>(
     import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
 }
 
-/// Reads files and folders recursively and passes each file to `take`; a cancellation ends the
-/// reading silently. Returns the number of files found, whether read or not, and the reasons why
-/// files were skipped or could not be read.
+/// Reads files and folders recursively and passes each file to `take`. A cancellation ends the
+/// reading; it is reported, as that file's error, only if it occurs within a file. Returns the
+/// number of files found, whether read or not, and the reasons why files were skipped or could not
+/// be read.
 ///
 /// # Errors
 /// [`FileError`] if a folder cannot be listed. If a single path leads to a single file, also the
-/// error from reading this file.
+/// error from reading this file, or from `take`.
 pub(crate) fn import(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,

@@ -11,12 +11,11 @@ use crate::file_reading::kind_of;
 use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
 
-/// Maximum number of listed files.
+/// Maximum number of files, over all given paths.
 pub(crate) const MOST_FILES: usize = 20_000;
-/// Maximum nesting depth of folders.
+/// Maximum number of folder levels below a given folder.
 pub(crate) const DEEPEST: usize = 16;
 
-/// A file to be read.
 pub(super) struct ListedFile {
     pub(super) path: PathBuf,
     /// Path relative to the listed folder; for a file given by itself, its name.
@@ -40,9 +39,9 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     }
 }
 
-/// Lists the given files, and the files with supported extensions in the given folders, sorted by
-/// name within each folder. Each pipe, socket or device in a folder is skipped with a message in
-/// `skipped`; [`Listing::add_folder`] says what is skipped silently.
+/// Lists the given files, and the files with known extensions ([`is_known`]) in the given folders,
+/// sorted by name within each folder. Each pipe, socket or device in a folder is skipped with a
+/// message in `skipped`; [`Listing::add_folder`] says what is skipped silently.
 ///
 /// # Errors
 /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many
@@ -86,8 +85,8 @@ struct Listing<'p> {
 impl Listing<'_> {
     /// Adds the files in a folder and in its subfolders, down to `deeper` subfolder levels; each
     /// recursion lowers `deeper` by 1. Skips silently: hidden entries, linked folders, files with
-    /// unsupported extensions, and `.log` and `.bin` files whose first bytes show no supported
-    /// format.
+    /// unknown extensions, and `.log` and `.bin` files in no recognisable format
+    /// ([`is_other_log`]).
     ///
     /// # Errors
     /// [`FileError`] if a folder cannot be read or is nested too deeply, or if there are too many
@@ -144,8 +143,8 @@ impl Listing<'_> {
     }
 }
 
-/// Returns whether this is a `.log` or `.bin` file whose first bytes show no supported format: many
-/// programs use these extensions.
+/// Returns whether this is a `.log` or `.bin` file whose first bytes are recognised only by the
+/// text importer, which accepts any file: many programs use these extensions.
 fn is_other_log(path: &Path) -> bool {
     /// Number of leading bytes by which the formats are recognised.
     const FIRST: usize = 64;
@@ -168,7 +167,7 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     let mut parts = Vec::new();
     let mut text = String::new();
     let mut digits = String::new();
-    // A part ends where another character follows its digits.
+    // A part ends before the first other character after its digits, or after `LONGEST` digits.
     for letter in name.chars() {
         if letter.is_ascii_digit() && digits.len() < LONGEST {
             digits.push(letter);

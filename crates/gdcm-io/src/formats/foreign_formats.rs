@@ -113,7 +113,7 @@ fn foreign_file(format: &'static str, remedy: &'static str) -> VariableFault {
     VariableFault::unsupported("", UnsupportedContent::ForeignFile { format, remedy })
 }
 
-/// Returns the format with which the bytes begin.
+/// Returns the unsupported format with whose signature the bytes begin.
 fn find_foreign(bytes: &[u8]) -> Option<&'static Foreign> {
     FOREIGN.iter().find(|format| {
         format

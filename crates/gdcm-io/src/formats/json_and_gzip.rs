@@ -28,8 +28,9 @@ pub(crate) const JSON: Importer = Importer {
     read: read_json,
 };
 
-/// Reads JSON as a dataset or as models if its member "format" names one of these, otherwise as
-/// variables; passes on gzip-compressed content that does not begin like JSON.
+/// Reads JSON as a dataset or as models if its member "format" names one of these (as models only
+/// if `found_models` accepts them), otherwise as variables; passes on gzip-compressed content that
+/// does not begin like JSON.
 fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
     let text = text_of(bytes, path, budget)?;
     let text = without_mark(&text);
@@ -43,7 +44,8 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
         .map_err(|fault| FileError::variables(path, fault))?;
     match format.as_deref() {
         Some("\"gdcm-dataset\"") => {
-            // Pass on the compressed bytes: `Source::from_bytes` decompresses them again.
+            // Pass on the bytes as stored: `Source::from_bytes` hashes and, if necessary,
+            // decompresses them.
             let source = Source::from_bytes(bytes, path, budget)?;
             let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
             let dataset = loaded.dataset.as_ref().clone();

@@ -11,7 +11,6 @@ use crate::variable_fault::line_fault::LineFault;
 /// Memory charged for an allocation: its overhead and a list's initial capacity \[bytes\].
 const ALLOCATION: usize = 64;
 
-/// Any JSON value.
 #[derive(Debug)]
 pub(super) enum Tree {
     Null,
@@ -51,8 +50,8 @@ impl Tree {
     }
 }
 
-/// Reads any JSON value and counts its memory, because a list, an object or a name with a few bytes
-/// in the text needs its own allocation.
+/// Reads any JSON value and takes its memory from the budget, because each list, object or name
+/// needs an allocation, however few bytes it has in the text.
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
     budget: &'r ReadingBudget<'r>,
@@ -63,7 +62,7 @@ struct TreeReader<'r> {
 impl TreeReader<'_> {
     /// Takes the memory for `size` bytes from the budget; keeps the budget's error in `refused`.
     fn take<E: Error>(self, size: usize) -> Result<(), E> {
-        // Lists grow by doubling, hence the factor 2; each value is one work step.
+        // Lists grow by doubling, hence the factor 2. Each call counts as one work step.
         self.budget.take(1, 2 * size as u64, "").map_err(|fault| {
             *self.refused.borrow_mut() = Some(fault);
             E::custom("refused")

@@ -10,7 +10,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Estimated memory per value \[bytes\]: the value, and the three allocations for shape, name and
 /// number.
 const VALUE_MEMORY: u64 = size_of::<Value>() as u64 + 3 * 64;
-/// Maximum number of array dimensions.
+/// Maximum number of array dimensions; more deeply nested lists become cell arrays.
 const MOST_DIMENSIONS: usize = 3;
 
 /// Reads the members of a JSON object as variables; any other JSON value becomes a variable
@@ -57,7 +57,8 @@ fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableF
 }
 
 /// Converts a list: strings become a string array; numbers, or rectangular nested lists of numbers
-/// (row by row), become a numeric array, as does an empty list; anything else becomes a cell array.
+/// (row by row) with at most `MOST_DIMENSIONS` levels, become a numeric array, as does an empty
+/// list; anything else becomes a cell array.
 fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     let shape = vec![1, list.len()];
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {

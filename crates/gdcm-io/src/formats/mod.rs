@@ -1,8 +1,8 @@
-//! File formats from other programs: the interface for a format, the list of formats, and the
-//! choice among them. `file_import.rs` reads files and folders with them.
+//! File formats: the interface for a format, the list of formats, and the choice among them.
+//! `file_import.rs` reads files and folders with them.
 //!
 //! ```text
-//! bytes -> format, by the first bytes         (the ending decides only between text formats)
+//! bytes -> format, by the first bytes         (extension: text formats and .mat only)
 //!       -> variables, text or archived files  (the formats, independent of models and records)
 //!       -> models or records                  (recognise)
 //! ```
@@ -109,7 +109,7 @@ pub(crate) enum Contents {
     Dataset(Box<Dataset>, Vec<FileCaution>),
     /// Models in this program's JSON format, with cautions about unknown keys.
     Models(Vec<FoundModel>, Vec<FileCaution>),
-    /// Aircraft logs: records whose columns may have different time axes.
+    /// Autopilot logs: records whose columns may have different time axes.
     Logs(Vec<Columns>),
     Archive {
         /// NumPy arrays in the archive; together they form one set of variables.
@@ -167,8 +167,8 @@ pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
         .unwrap_or(&TEXT)
 }
 
-/// Returns whether a file name has the extension of a supported format. Returns false for studies,
-/// which hold neither models nor records.
+/// Returns whether a file name has an extension in `FORMATS`, which includes unsupported formats
+/// that are recognised. Returns false for studies, which hold neither models nor records.
 pub(crate) fn is_known(path: &Path) -> bool {
     if path.to_string_lossy().ends_with(".gdcm-study.json") {
         return false;

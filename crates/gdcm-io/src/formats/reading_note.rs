@@ -61,9 +61,7 @@ pub enum ReadingNote {
     ReadAs {
         place: ColumnPlace,
         reading: ColumnReading,
-        /// Reason for the quantity.
         quantity: QuantityReason,
-        /// Reason for the unit.
         unit: UnitReason,
     },
     #[error("{place} is ignored: its name is not recognised")]
@@ -301,7 +299,6 @@ impl ReadingNote {
     }
 }
 
-/// Formats notes as messages for the user.
 pub(crate) fn note_texts(notes: &[ReadingNote]) -> Vec<String> {
     notes.iter().map(ToString::to_string).collect()
 }
@@ -322,7 +319,8 @@ fn assignment_list(assignments: &[ChannelAssignment]) -> String {
     assignments.join(", ")
 }
 
-/// Describes flight modes: "armed 3.2 to 88.1 s".
+/// Returns the message on flight modes, such as "flight modes: armed 3.2 to 88.1 s"; lists at most
+/// `SHOWN_MODES`.
 fn modes_words(spans: &[ModeSpan]) -> String {
     let mut shown = Vec::new();
     for span in spans.iter().take(SHOWN_MODES) {

@@ -35,7 +35,7 @@ impl Columns {
     }
 
     /// Returns a record with these columns. `name` and `sha256` identify the file; the record is
-    /// called after the file, without its extension, and after the variable.
+    /// named after the file, without its extension and a `.csv` before it, and after the variable.
     pub(crate) fn in_file(self, name: &str, sha256: &str) -> RecordTable {
         let file = name.rsplit('/').next().unwrap_or(name);
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);

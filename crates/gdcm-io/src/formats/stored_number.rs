@@ -115,7 +115,7 @@ impl StoredNumber {
 }
 
 /// Decodes a 16-bit float (IEEE 754, binary16): a sign bit, 5 exponent bits with bias 15, and 10
-/// fraction bits. The powers of 2 include dividing the fraction by 2^10.
+/// fraction bits. The powers of 2 in the code already divide the fraction by 2^10.
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let exponent = i32::from(bits >> 10 & 31);

@@ -1,12 +1,12 @@
 //! Named variables from other programs' files.
 //!
-//! All readers of such files (MATLAB, NumPy, text) return these values; what they mean for models
-//! and records is determined elsewhere.
+//! The readers of formats with named values (such as MATLAB, NumPy and JSON) return these;
+//! `recognise` determines what they mean for models and records.
 
 use crate::variable_fault::unread::Unread;
 
-/// Memory charged for a record in addition to its fields \[bytes\]; positive also for records
-/// without fields.
+/// Memory charged for a record in addition to its fields \[bytes\], so that records without fields
+/// also count.
 pub(crate) const RECORD_MEMORY: u64 = 64;
 /// Memory charged for a field in addition to its name and values \[bytes\].
 const FIELD_MEMORY: usize = 48;
@@ -57,20 +57,19 @@ impl Array {
     }
 }
 
-/// A named value.
+/// Value with its name; readers name a value that has no name in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
     pub name: String,
     pub value: Value,
 }
 
-/// A variable's value.
+/// Value of a variable, or inside another value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Numbers; a sparse matrix is expanded to a full matrix.
     Array(Array),
     Text(TextArray),
-    /// Array of values of any kind.
     Cell(CellArray),
     Struct(StructArray),
     /// Object of a class, as far as it could be decoded.

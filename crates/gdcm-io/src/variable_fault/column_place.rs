@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-/// Place of a column in a table.
+/// Column of a table by its number and its heading, displayed as `column 2 ("Q")`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnPlace {
     /// Column number, from 1.

@@ -20,7 +20,7 @@ pub enum Damage {
     // MATLAB files up to version 7.
     #[error("{found} at the expected start of a matrix")]
     NoMatrix {
-        /// Contradiction found there, for example "a negative size".
+        /// Contradiction at this start, for example "a negative size".
         found: &'static str,
     },
     #[error("the sparse matrix is inconsistent")]

@@ -17,7 +17,7 @@ pub enum FoundContent {
     OtherBytes,
     #[error("a binary file (byte {byte} is zero)")]
     Binary {
-        /// Position of the first zero byte.
+        /// Position of the first zero byte, from 0.
         byte: usize,
     },
     #[error("no row of numbers (the text begins with \"{start}\")")]

@@ -35,7 +35,6 @@ pub enum MatlabFault {
     },
     #[error("names and values must alternate: {function}(…,'InputName',{{'LAT'}})")]
     NamesAndValues { function: String },
-    /// The function `struct` is called with cells.
     #[error(
         "struct(…) with cells creates a struct array, which is not supported; write s.name = {{…}} \
         instead"

@@ -1,4 +1,4 @@
-//! Reasons why the variables in a file could not be read.
+//! Reasons why the variables in a file could not be read or written.
 
 pub mod column_place;
 pub mod damage;
@@ -21,7 +21,7 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 /// the variable is unknown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VariableFault {
-    /// The file has another format.
+    /// The file has another format, or contents other than those expected.
     #[error("expected {expected}, found {found}")]
     Format {
         expected: &'static str,
@@ -49,7 +49,8 @@ pub enum VariableFault {
         line: usize,
         fault: LineFault,
     },
-    /// The format permits the content, but this program does not read it.
+    /// The format permits the content, but this program does not read it; or the content cannot be
+    /// written.
     #[error("{}{content} cannot be {}; {}", at(variable), content.action(), content.remedy())]
     Unsupported {
         variable: String,
@@ -130,12 +131,13 @@ impl VariableFault {
         }
     }
 
-    /// Creates the error for a file with another format.
+    /// Creates the error for a file with another format, or with contents other than those
+    /// expected.
     pub(crate) fn format(expected: &'static str, found: FoundContent) -> Self {
         Self::Format { expected, found }
     }
 
-    /// Creates the error for bytes in another format; its message says so if there are no bytes.
+    /// Creates the error for bytes in another format, or for no bytes.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
         let found = if bytes.is_empty() {
             FoundContent::Nothing
@@ -171,7 +173,8 @@ impl VariableFault {
         }
     }
 
-    /// Creates the error for content that the format permits but this program does not read.
+    /// Creates the error for content that the format permits but this program does not read, or for
+    /// content that cannot be written.
     pub(crate) fn unsupported(variable: &str, content: UnsupportedContent) -> Self {
         Self::Unsupported {
             variable: variable.to_owned(),
@@ -222,7 +225,7 @@ impl VariableFault {
     }
 }
 
-/// Returns the prefix of a message that names the variable; empty without a variable.
+/// Returns the beginning of a message, which names the variable; empty without a variable.
 fn at(variable: &str) -> String {
     if variable.is_empty() {
         String::new()

@@ -83,7 +83,8 @@ impl UnsupportedContent {
                 "save it as CSV: blackbox_decode \"{file}\""
             }
             Self::UnlimitedDimensions => "write it with a fixed shape",
-            // A program that requests the latest HDF5 2.0 format writes a new chunk layout.
+            // A program that requests the latest HDF5 2.0 format writes a new chunk layout, which
+            // is not supported.
             Self::HdfDataset { .. } => {
                 "write it with gzip compression or none, in a single file, in the format of HDF5 \
                 1.14 or earlier"

@@ -9,11 +9,12 @@
 //! ```
 //!
 //! Intra and predicted frames are main frames, each a sample of all fields. An intra frame is
-//! decoded by itself, a predicted frame from the two main frames before it. A slow frame gives the
-//! flight mode.
+//! decoded by itself, a predicted frame from up to two main frames before it. A slow frame gives
+//! the flight mode.
 //!
-//! A frame is accepted if another frame begins where it ends. After a damaged frame, all frames
-//! predicted from it are omitted up to the next intra frame, which leaves a gap.
+//! A frame is accepted if another frame, or the end of the file, follows it, and if a main frame's
+//! time continues that of its predecessor. After a damaged frame, predicted frames are omitted up
+//! to the next intra frame, which leaves a gap.
 
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
@@ -43,7 +44,6 @@ const ONE: &str = "0x3f800000";
 /// Column names for the controller terms; an axis index follows in square brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
-/// Importer for blackbox logs.
 pub(crate) const BLACKBOX: Importer = Importer {
     name: "a blackbox log",
     endings: &["bbl", "bfl"],
@@ -117,7 +117,7 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
 /// A flight with its decoded frames.
 struct Flight {
     header: Header,
-    /// Index of the field "time".
+    /// Index of the field "time"; `None` if the frames have none.
     time_field: Option<usize>,
     /// Values from the main frames, one list for each field.
     values: Vec<Vec<f64>>,
@@ -186,9 +186,10 @@ impl Flight {
     /// 1. Decode a frame at the current byte; a main frame is predicted from its predecessors. It
     ///    is damaged if it cannot be decoded, if a byte other than a frame letter follows it, or if
     ///    a main frame's time does not continue that of its predecessor.
-    /// 2. By its kind: the end ends the reading; a main frame is a sample, and the next
+    /// 2. By its kind: the end event ends the reading; a main frame is a sample, and the next
     ///    predecessor; a slow frame is a mode sample; other frames are skipped.
-    /// 3. After a damaged frame there is no predecessor, and reading continues at the next byte.
+    /// 3. After a damaged frame there is no predecessor, and reading continues at the byte after
+    ///    its letter.
     fn read_frames(
         &mut self,
         bytes: &[u8],
@@ -351,7 +352,7 @@ fn flight_modes(samples: &[ModeSample]) -> Vec<ModeSpan> {
     mode_spans(&time_s, flags, |flags| Some(mode_name(flags).to_owned()))
 }
 
-/// Returns the flight mode in `flightModeFlags`.
+/// Returns the flight mode for `flightModeFlags`, the first field in slow frames.
 fn mode_name(flags: f64) -> &'static str {
     /// Bit of the angle mode, in which the stick sets the attitude.
     const ANGLE: u32 = 1 << 1;

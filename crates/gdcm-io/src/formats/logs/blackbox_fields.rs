@@ -18,11 +18,13 @@ mod encoding {
     pub(super) const SIGNED_VB: u8 = 0;
     /// Variable-length integer without a sign.
     pub(super) const UNSIGNED_VB: u8 = 1;
-    /// 14-bit integer with the opposite sign.
+    /// Variable-length integer whose lower 14 bits hold the number with the opposite sign.
     pub(super) const NEG_14BIT: u8 = 3;
-    /// Up to eight fields: a byte that marks the nonzero fields, then these.
+    /// Up to eight fields: a byte that marks the nonzero fields, then these; a single field has no
+    /// such byte.
     pub(super) const TAG8_8SVB: u8 = 6;
-    /// Three fields: two bits that give their lengths, then the fields.
+    /// Three fields after a two-bit tag, which gives their common length, or says that the next six
+    /// bits give a length for each.
     pub(super) const TAG2_3S32: u8 = 7;
     /// Four fields: a byte with two bits for each length, then the fields.
     pub(super) const TAG8_4S16: u8 = 8;
@@ -44,7 +46,6 @@ mod predictor {
     pub(super) const MOTOR_0: u8 = 5;
     /// Value in the preceding frame plus 1.
     pub(super) const INCREMENT: u8 = 6;
-    /// The number 1500.
     pub(super) const FIXED_1500: u8 = 8;
     /// Header value `vbatref`.
     pub(super) const VBATREF: u8 = 9;
@@ -72,7 +73,8 @@ pub(super) struct HeaderNumbers {
     pub(super) battery: i64,
 }
 
-/// The main frames that precede a frame; there are none at the beginning and after a damaged frame.
+/// The main frames that precede a frame; there are none at the beginning of a flight and after a
+/// damaged frame.
 #[derive(Default)]
 pub(super) struct Predecessors {
     pub(super) last: Option<Vec<i64>>,
@@ -92,7 +94,7 @@ impl FrameFields {
             && self.encodings.iter().all(|encoding| is_known(*encoding))
     }
 
-    /// Reads a frame's differences from its bytes; returns `None` if they are damaged.
+    /// Reads a frame's differences from its bytes; returns `None` if the bytes are damaged.
     pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
         let count = self.names.len();
         let mut values: Vec<i64> = Vec::with_capacity(count);

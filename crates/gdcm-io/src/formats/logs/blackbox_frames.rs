@@ -12,13 +12,12 @@ use crate::formats::logs::blackbox_fields::Predecessors;
 use crate::formats::logs::blackbox_header::Header;
 use crate::formats::logs::blackbox_integers::PackedBytes;
 
-/// Letters for all frame kinds.
+/// Letters with which a frame can begin.
 pub(super) const FRAME_LETTERS: &[u8] = b"IPSGHE";
 
 pub(super) enum Frame {
     /// Values in an intra or predicted frame.
     Main(Vec<i64>),
-    /// Values in a slow frame.
     Slow(Vec<i64>),
     /// Frame whose contents are not used.
     Other,
@@ -27,8 +26,9 @@ pub(super) enum Frame {
 }
 
 /// Parses a frame with the letter `kind` from the bytes after this letter; `before` holds the main
-/// frames that precede it. Returns `None` for an unknown letter, a damaged frame, a predicted frame
-/// without a predecessor, or a frame whose fields the header does not describe in a supported form.
+/// frames that precede it. Returns `None` for an unknown letter or event type, a damaged frame, a
+/// predicted frame without a predecessor, or a frame whose fields the header does not describe in a
+/// supported form.
 pub(super) fn parse_frame(
     header: &Header,
     kind: u8,
@@ -75,8 +75,8 @@ fn parse_event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
             bytes.unsigned()?;
             bytes.unsigned()?;
         }
-        // The adjusted function, then a four-byte float if its highest bit is set, otherwise a
-        // packed integer.
+        // A byte for the adjusted function, then a four-byte float if this byte's highest bit is
+        // set, otherwise a packed integer.
         event_type::INFLIGHT_ADJUSTMENT => {
             if bytes.byte()? & 0x80 == 0 {
                 bytes.signed()?;

@@ -66,7 +66,8 @@ impl Header {
         first.parse().unwrap_or(0)
     }
 
-    /// Returns the field descriptions for frames with the letter `kind`.
+    /// Parses the field descriptions for frames with the letter `kind`; a list without a header
+    /// line is empty.
     fn parse_fields(&self, kind: char) -> FrameFields {
         FrameFields {
             names: self.field_cells(kind, "name").map(str::to_owned).collect(),

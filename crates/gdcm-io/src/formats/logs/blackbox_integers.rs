@@ -76,11 +76,12 @@ impl<'b> PackedBytes<'b> {
         })
     }
 
-    /// Reads the encoding `TAG8_4S16`. The tags 0 to 3 mean integers with 0, 4, 8 and 16 bits,
-    /// which are packed without gaps, each byte's higher half first.
+    /// Reads the encoding `TAG8_4S16`. The first byte holds a two-bit tag for each integer, the
+    /// lowest bits for the first. The tags 0 to 3 mean integers with 0, 4, 8 and 16 bits, which are
+    /// packed without gaps, each byte's higher half first.
     pub(super) fn tag8_4s16(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
-        // Lower half of the last byte, if not yet used.
+        // Lower half of the byte read last, if not yet used.
         let mut half = None;
         let mut values = [0; 4];
         for (index, value) in values.iter_mut().enumerate() {

@@ -31,7 +31,7 @@ const HEADER: usize = 3;
 const FORMAT: u8 = 128;
 /// FMT message length \[bytes\].
 const FORMAT_LENGTH: usize = 89;
-/// Positions of the texts in the content of an FMT message \[bytes\].
+// Positions of the texts in the content of an FMT message [bytes].
 const NAME: Range<usize> = 2..6;
 const LETTERS: Range<usize> = 6..22;
 const FIELD_NAMES: Range<usize> = 22..86;
@@ -123,7 +123,8 @@ struct Messages<'b, 'm> {
     budget: &'m ReadingBudget<'m>,
     /// Offset of the next byte.
     at: usize,
-    /// Number of skipped bytes that belong to no message.
+    /// Number of skipped bytes: outside messages, or in messages that are cut or have no
+    /// description.
     skipped: usize,
 }
 
@@ -137,8 +138,8 @@ impl<'b, 'm> Messages<'b, 'm> {
         }
     }
 
-    /// Returns the next message whose type has a length in `lengths`, and counts the bytes before
-    /// it as skipped; `None` if the log ends.
+    /// Returns the next message whose type has a length in `lengths`, or `None` at the end; counts
+    /// the bytes passed over as skipped.
     fn next(&mut self, lengths: &Lengths) -> Result<Option<Message<'b>>, VariableFault> {
         while let Some([first, second, kind]) = array::<HEADER>(self.bytes, self.at) {
             self.budget.work(1, "")?;
@@ -160,7 +161,7 @@ impl<'b, 'm> Messages<'b, 'm> {
     }
 }
 
-/// Message descriptions so far.
+/// Message descriptions read so far.
 struct Descriptions {
     layouts: Layouts,
     lengths: Lengths,

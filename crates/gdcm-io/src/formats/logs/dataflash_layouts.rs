@@ -49,7 +49,7 @@ impl FieldKind {
         })
     }
 
-    /// Field length \[bytes\].
+    /// Returns the field length \[bytes\].
     pub(super) fn size(self) -> usize {
         match self {
             Self::Number { stored, .. } => stored.size(),

@@ -109,7 +109,8 @@ pub(super) struct Topics {
 
 impl Topics {
     /// Adds a sample from a message; `value` returns the number in the field with an index. A
-    /// missing number becomes NaN; a message without a time stamp is ignored.
+    /// missing number becomes NaN, a missing or invalid instance 0; a message without a time stamp
+    /// is ignored.
     pub(super) fn add(
         &mut self,
         fields: &SampleFields<'_>,

@@ -1,9 +1,9 @@
-//! Aircraft logs, in which each topic has its own time axis.
+//! Autopilot logs; in most formats, each topic has its own time axis.
 //!
 //! ```text
-//! bytes -> messages -> topics: stamps, and a column for each field  (ulog, dataflash)
-//!       -> frames   -> a single topic                               (blackbox)
-//!       -> documented units and channels                            (documented_channels)
+//! bytes -> messages -> topics: time stamps, and a column for each field  (ulog, dataflash)
+//!       -> frames   -> a single topic                                    (blackbox)
+//!       -> documented units and channels                                 (documented_channels)
 //! ```
 
 mod blackbox;

@@ -3,21 +3,21 @@
 use crate::formats::reading_note::ReadingNote;
 use gdcm_sysid::records::ModeSpan;
 
-/// Maximum number of spans per log; later spans are ignored.
+/// Maximum number of spans for one logged state; later spans are ignored.
 const MOST_SPANS: usize = 1000;
 
 /// Returns the time spans during which `values` is constant, at most `MOST_SPANS`. Each lasts until
-/// the sample with the next value. `name` returns a value's name, or `None` if it needs no span.
+/// the sample with the next value, or to the last sample. `name` returns a value's name, or `None`
+/// if it needs no span.
 ///
-/// A value continues the last span only if that span is its own: beyond `MOST_SPANS`, a named value
-/// has none.
+/// Beyond `MOST_SPANS`, another value ends the last span and begins none.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
     name: impl Fn(f64) -> Option<String>,
 ) -> Vec<ModeSpan> {
     let mut spans: Vec<ModeSpan> = Vec::new();
-    // Value in the preceding sample, and whether the last span is its own.
+    // Value in the preceding sample, and whether the last span is this value's.
     let mut last: Option<f64> = None;
     let mut is_open = false;
     for (&time, value) in time_s.iter().zip(values) {

@@ -34,7 +34,6 @@ impl TopicSamples {
         }
     }
 
-    /// Returns the field named `name`.
     pub(super) fn field(&self, name: &str) -> Option<&TopicField> {
         self.fields.iter().find(|field| field.name == name)
     }

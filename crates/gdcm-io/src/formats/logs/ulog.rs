@@ -7,8 +7,8 @@
 //!   D  message id, data of its topic     O  dropout [ms]    others: parameters, texts, marks
 //! ```
 //!
-//! Stamps are microseconds since the autopilot was started. A log truncated by a crash is read up
-//! to its last complete message.
+//! Time stamps count microseconds since the autopilot was started. A log truncated by a crash is
+//! read up to its last complete message.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -169,7 +169,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Stores a topic's layout; ignores invalid text and a second layout with the same name.
+    /// Stores a message layout; ignores invalid text and a second layout with the same name.
     fn add_layout(
         &mut self,
         content: &'b [u8],

@@ -197,7 +197,7 @@ fn number_type(name: &str) -> Option<StoredNumber> {
     Some(StoredNumber::little_endian(class, size))
 }
 
-/// Shortens a name for use in a message.
+/// Shortens a name for a message, without control characters.
 fn short(name: &str) -> String {
     name.chars()
         .take(60)

@@ -8,7 +8,7 @@ use crate::formats::logs::topic_samples::TopicSamples;
 /// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const ARMED: f64 = 2.0;
 
-/// `NAVIGATION_STATE_…` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
+/// Flight mode names for `NAVIGATION_STATE_…` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const NAVIGATION: [(u8, &str); 13] = [
     (0, "manual"),
     (1, "altitude"),

@@ -88,7 +88,7 @@ impl ArrayReader<'_> {
         Ok(value)
     }
 
-    /// Reads an array's value after its header.
+    /// Reads an array's value, after its header; errors contain `path`.
     pub(super) fn read_value(
         &self,
         header: &ArrayHeader,
@@ -276,7 +276,7 @@ impl ArrayReader<'_> {
             .take(count as u64, 2 * size_of::<Value>() as u64, "")
     }
 
-    /// Reads an opaque array after its name: an object, whose contents are stored in the file's
+    /// Reads an opaque array after its header: an object, whose contents are stored in the file's
     /// object part, an enumeration, or a value that cannot be read.
     fn read_opaque(
         &self,

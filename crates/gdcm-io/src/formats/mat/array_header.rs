@@ -53,7 +53,7 @@ pub(super) struct ArrayHeader {
 }
 
 impl ArrayHeader {
-    /// Reads an array's header, which precedes its contents.
+    /// Reads an array's header and moves `contents` past it.
     pub(super) fn read(
         contents: &mut Cursor<'_>,
         budget: &ReadingBudget<'_>,
@@ -73,8 +73,8 @@ impl ArrayHeader {
         } else {
             read_shape(contents, budget)?
         };
-        // Reject a shape whose nonzero dimensions have a product that overflows: no budget is so
-        // large.
+        // Reject a shape whose nonzero dimensions have a product that overflows, as too large for
+        // any budget.
         if element_order::element_count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }

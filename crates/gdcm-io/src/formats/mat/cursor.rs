@@ -35,8 +35,8 @@ pub(super) struct Cursor<'b> {
     /// Remaining bytes in the section.
     bytes: &'b [u8],
     pub(super) order: ByteOrder,
-    /// Position in the file \[bytes\]; for decompressed or embedded bytes, where the element that
-    /// contains them begins.
+    /// Position in the file \[bytes\]; for decompressed or embedded bytes, the position of the data
+    /// that contain them.
     pub(super) offset: u64,
     section: Section,
 }
@@ -48,8 +48,7 @@ enum Section {
     File,
     /// An element in the file. If it ends too early, its size is wrong.
     Element,
-    /// Decompressed or embedded bytes. Errors refer to the offset of the element that contains
-    /// them.
+    /// Decompressed or embedded bytes. Errors give the position of the data that contain them.
     Unpacked,
 }
 
@@ -75,7 +74,6 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// Returns the remaining bytes.
     pub(super) fn rest(&self) -> &'b [u8] {
         self.bytes
     }
@@ -85,7 +83,6 @@ impl<'b> Cursor<'b> {
         self.bytes.len()
     }
 
-    /// Returns whether no bytes remain.
     pub(super) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
@@ -129,14 +126,12 @@ impl<'b> Cursor<'b> {
         self.take(length.min(self.len())).map(drop)
     }
 
-    /// Reads the next 32-bit integer.
     pub(super) fn read_u32(&mut self) -> Result<u32, VariableFault> {
         let order = self.order;
         let bytes = self.read_array()?;
         Ok(order.u32(bytes))
     }
 
-    /// Reads the next `N` bytes.
     fn read_array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
         let taken = self.take(N)?;
         <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())

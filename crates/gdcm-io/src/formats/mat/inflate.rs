@@ -15,10 +15,10 @@ use crate::variable_fault::damage::Damage;
 const MOST_EXPANSION: u64 = 1040;
 /// Number of bytes decompressed between two checks against the budget.
 const CHUNK: u64 = 1 << 20;
-/// Length of the tag with which the decompressed bytes begin.
+/// Length of the tag with which the decompressed bytes begin \[bytes\].
 const TAG_BYTES: u64 = 8;
 
-/// Decompresses an element: its tag, and as many bytes as the tag announces.
+/// Decompresses an element: its tag, and at most as many bytes as the tag announces.
 pub(super) fn inflate(
     packed: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -64,7 +64,7 @@ impl Inflater<'_> {
                 })?;
             if (found as u64) < chunk {
                 // Accept fewer bytes, because GNU Octave announces too many; if bytes are really
-                // missing, decoding them fails.
+                // missing, decoding the element fails.
                 return Ok(());
             }
             left -= chunk;

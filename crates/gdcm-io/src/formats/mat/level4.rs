@@ -24,7 +24,6 @@ use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 
-/// Header of a level-4 matrix.
 struct MatrixHeader {
     /// Number type (digit P).
     number_type: StoredNumber,

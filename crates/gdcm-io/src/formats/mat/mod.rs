@@ -1,7 +1,7 @@
 //! MATLAB files (".mat") at level 4 and levels 5 to 7, including those from GNU Octave and SciPy.
 //!
-//! Source: "MAT-File Format", The MathWorks. Files at version 7.3 are HDF5 files and are read
-//! elsewhere; their objects are laid out as in `Subsystem`.
+//! Source: "MAT-File Format", The MathWorks. Files at version 7.3 are HDF5 files, which `mat73`
+//! reads; their objects are laid out as in `Subsystem`.
 
 mod array_contents;
 mod array_end;
@@ -36,7 +36,6 @@ const LEVEL_5: u8 = 1;
 /// Expected format, as named in error messages from [`read`].
 const EXPECTED: &str = "a MATLAB .mat file up to version 7";
 
-/// Importer for MATLAB files up to version 7.
 pub(crate) const MAT: Importer = Importer {
     name: "a MATLAB .mat file up to version 7",
     endings: &["mat"],
@@ -48,13 +47,13 @@ pub(crate) const MAT: Importer = Importer {
 
 /// Reads the variables in file order. The first that applies decides the level:
 ///
-/// 1. HDF5 signature: error, because version 7.3 is read elsewhere.
+/// 1. HDF5 signature: error, because `mat73` reads version 7.3.
 /// 2. Header of levels 5 to 7, unless the file does not begin with text and has a valid header of
 ///    level 4.
 /// 3. Header of level 4.
 /// 4. Header of another version, or anything else: error.
 ///
-/// Variable parts that cannot be decoded become [`super::variables::Value::Opaque`]; bytes that
+/// Parts of variables that cannot be decoded become [`super::variables::Value::Opaque`]; bytes that
 /// contradict the format are an error for the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {

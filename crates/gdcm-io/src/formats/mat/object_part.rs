@@ -8,7 +8,7 @@
 //! array of bytes, compressed or not                                  read_objects
 //!   array header, not needed
 //!   bytes of the embedded file                                       read_byte_array
-//!     2 bytes version, 2 bytes byte order ("IM" or "MI"), 4 bytes    read_embedded_file
+//!     2 bytes version, 2 bytes byte order ("IM" or "MI"), 4 unused   read_embedded_file
 //!     array: struct with a field for each class system               read_class_systems
 //!       field "MCOS": opaque array of the class "FileWrapper__"      read_wrapper
 //!         array: cell array, whose cells describe all objects        read_cells

@@ -113,12 +113,13 @@ fn pack(plain: Vec<u8>) -> Vec<u8> {
 }
 
 /// Appends an element, padded to a multiple of eight bytes. Up to four bytes are written within the
-/// tag, which MATLAB requires for some names.
+/// tag, which MATLAB requires for some names. Compressed data are neither padded nor written within
+/// the tag.
 fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
     // The cast is exact: the elements of an accepted variable are shorter than 4 GiB.
     let length = data.len() as u32;
     if (1..=4).contains(&length) && kind != DataKind::Packed {
-        // The length is in the tag's upper half.
+        // The length is in the upper half of a small element's first word.
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
         bytes.extend(data);
         bytes.resize(bytes.len() + 4 - data.len(), 0);

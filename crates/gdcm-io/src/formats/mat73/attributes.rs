@@ -20,8 +20,8 @@ pub(super) struct MatlabAttributes {
     /// Class name (`MATLAB_class`); `None` for values from other programs, and for the references
     /// in MATLAB's struct arrays.
     pub(super) class: Option<String>,
-    /// Whether the array is empty; the dataset then holds its shape (`MATLAB_empty`,
-    /// `OCTAVE_EMPTY_MATRIX`).
+    /// Whether the array is empty (`MATLAB_empty`, `OCTAVE_EMPTY_MATRIX`). A dataset then holds its
+    /// shape. Octave instead marks the group, whose members may hold shapes.
     pub(super) is_empty: bool,
     /// Number of rows of a sparse matrix (`MATLAB_sparse`).
     pub(super) sparse_height: Option<u64>,

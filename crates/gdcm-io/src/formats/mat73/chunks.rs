@@ -1,7 +1,7 @@
-//! Checks the chunks of compressed datasets.
+//! Checks the chunks of datasets.
 //!
-//! A dataset may be stored in chunks: equally shaped blocks that cover it and are compressed one by
-//! one. An index gives each chunk's position in the file.
+//! A dataset may be stored in chunks: equally shaped blocks that cover it and may each be
+//! compressed. An index gives each chunk's position in the file.
 
 use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 

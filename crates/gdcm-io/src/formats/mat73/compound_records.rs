@@ -43,7 +43,8 @@ pub(super) fn compound_records(
     }))
 }
 
-/// Decodes a member of a compound record.
+/// Decodes a member from the bytes of a record; a member that is neither a number nor a
+/// fixed-length string is opaque.
 fn member_value(
     member: &CompoundMember,
     record: &[u8],

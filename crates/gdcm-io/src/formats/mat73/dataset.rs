@@ -96,7 +96,6 @@ impl Elements {
         })
     }
 
-    /// Returns the element count.
     pub(super) fn count(&self) -> usize {
         self.bytes.len().checked_div(self.size).unwrap_or(0)
     }

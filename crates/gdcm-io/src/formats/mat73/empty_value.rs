@@ -10,7 +10,8 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
-/// Returns an empty value, or an opaque value for an unknown class; `elements` holds its shape.
+/// Returns an empty value with the shape that `elements` hold, or an opaque value for an unknown
+/// class.
 pub(super) fn empty_value(
     attributes: &MatlabAttributes,
     elements: &Elements,
@@ -66,7 +67,6 @@ fn stored_shape(
         .collect())
 }
 
-/// Returns an array without elements.
 fn empty_array(shape: Vec<usize>, kind: ElementKind) -> Array {
     Array {
         shape,

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hdf5_pure::{FormatError, Source};
 
-/// Factor between file size and maximum number of bytes read: headers and indices are read once for
-/// each query.
+/// Factor between file size and maximum number of bytes read: headers and indices are read again
+/// for each query.
 const TIMES: u64 = 16;
 /// Additional bytes that may be read from any file, whatever its size.
 const ADDITIONAL: u64 = 16 << 20;

@@ -9,9 +9,9 @@
 //! Arrays without MATLAB's attributes are stored in row-major order, as in C and Python: a dataset
 //! with r x c elements becomes an r x c array, a scalar a 1 x 1 array, and a dataset with n
 //! elements in one dimension a 1 x n array. (MATLAB's own `h5write` writes such datasets in
-//! column-major order; they are read transposed.) Groups become structs. Group members are sorted
-//! by name, unless MATLAB gives an order. Symbolic links, including links to other files, are
-//! skipped.
+//! column-major order; they are read transposed.) Groups become structs, with the exceptions in
+//! `reader.rs`. Group members are sorted by name, unless MATLAB gives an order. Symbolic links,
+//! including links to other files, are skipped.
 
 mod attributes;
 mod chunks;
@@ -58,7 +58,7 @@ fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, Varia
     convert_hdf5_groups(variables?, budget)
 }
 
-/// Reads all variables; groups become structs.
+/// Reads all variables; groups that GNU Octave wrote become structs like any others.
 fn read_variables(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,

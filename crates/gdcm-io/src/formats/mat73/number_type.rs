@@ -56,7 +56,6 @@ impl NumberType {
         })
     }
 
-    /// Returns whether the numbers are complex.
     pub(super) fn is_complex(self) -> bool {
         self.im.is_some()
     }

@@ -21,7 +21,6 @@ pub(super) struct SparseGroup<'g> {
 }
 
 impl SparseGroup<'_> {
-    /// Expands the sparse matrix to a full matrix.
     pub(super) fn full_matrix(&self) -> Result<Array, VariableFault> {
         let starts = self.integers("jc")?.ok_or_else(|| self.contradiction())?;
         let rows = self.integers("ir")?.unwrap_or_default();

@@ -108,8 +108,8 @@ impl HeaderText {
         let Some(text) = bytes.get(begin..end) else {
             return Err(VariableFault::cut_off(name, bytes.len()));
         };
-        // The header is in Latin-1 for versions 1 and 2, whose codes are the first Unicode
-        // characters, and in UTF-8 for version 3.
+        // Versions 1 and 2 use Latin-1, whose codes are those of the first Unicode characters;
+        // version 3 uses UTF-8.
         let text = match version {
             3 => String::from_utf8(text.to_vec())
                 .map_err(|_| VariableFault::damaged(name, Damage::HeaderNotUtf8, begin as u64))?,

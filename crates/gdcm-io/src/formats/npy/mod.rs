@@ -27,7 +27,6 @@ pub use crate::formats::npy::writer::write_npz;
 /// Offset of the header text length in a file \[bytes\], given as the position for header errors.
 const TEXT_LENGTH_AT: usize = 8;
 
-/// Importer for NumPy arrays.
 pub(crate) const NPY: Importer = Importer {
     name: "a NumPy array",
     endings: &["npy"],

@@ -42,15 +42,15 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, Damage> {
     serde_json::from_str(&json).map_err(|_| Damage::HeaderLiteral)
 }
 
-/// Converts the string that begins `rest`; returns its length including both quotation marks
+/// Converts the string with which `rest` begins; returns its length including both quotation marks
 /// \[bytes\].
 fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, Damage> {
     let Some(end) = rest[1..].find(quote) else {
         return Err(Damage::HeaderStringOpen);
     };
     let text = &rest[1..=end];
-    // Escapes occur only in unusual field names: with quotation marks, backslashes or control
-    // characters.
+    // Escapes are not supported: they occur only in unusual field names, with quotation marks,
+    // backslashes or control characters.
     if text.contains('\\') {
         return Err(Damage::HeaderEscape);
     }
@@ -58,7 +58,7 @@ fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, Dam
     Ok(end + 2)
 }
 
-/// Converts the word that begins `rest`; returns its length \[bytes\].
+/// Converts the word with which `rest` begins; returns its length \[bytes\].
 fn convert_word(rest: &str, json: &mut String) -> Result<usize, Damage> {
     let end = rest
         .find(|sign: char| !sign.is_alphanumeric())

@@ -12,7 +12,7 @@ use crate::formats::variables::{Array, ElementKind, TextArray, Value, Variable};
 use crate::reading_budget::VariableFault;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
-/// Element alignment \[bytes\], required by `numpy.lib.format`.
+/// Alignment of the first element in the file \[bytes\], required by `numpy.lib.format`.
 const ALIGNMENT: usize = 64;
 /// Number of bytes before the header text: signature, version and header length.
 const BEFORE_TEXT: usize = 10;

@@ -29,7 +29,6 @@ pub(super) struct ValueHeading {
 /// part at the current position and moves past it; `variable` is the value's name in errors.
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
-    /// Reads the next name and type.
     fn read_heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
     /// Reads array dimensions; there are at least two.
     fn read_sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
@@ -50,7 +49,6 @@ pub(super) trait Parts {
     fn read_text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
     /// Reads how many fields a struct or an object has.
     fn read_field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
-    /// Reads an object's class name.
     fn read_class(&mut self, variable: &str) -> Result<String, VariableFault>;
     /// Returns the error `fault` at the current position in the file.
     fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault;
@@ -140,7 +138,7 @@ impl Assembler<'_> {
 
     fn read_matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
         let Sides { shape, by_rows } = self.parts.read_sides(variable)?;
-        // Numbers in an element: real and imaginary part alternate.
+        // Number of numbers per element: a complex element has a real and an imaginary part.
         let width = if element.is_complex { 2 } else { 1 };
         let count = self.take_elements(&shape, 16 * width as u64, variable)?;
         let mut numbers = self.parts.read_numbers(element, count, variable)?;

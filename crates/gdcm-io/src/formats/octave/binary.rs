@@ -77,7 +77,6 @@ struct BinaryReader<'b> {
 }
 
 impl<'b> BinaryReader<'b> {
-    /// Takes the next `count` bytes.
     fn take(&mut self, count: usize, variable: &str) -> Result<&'b [u8], VariableFault> {
         let end = self.at.saturating_add(count);
         let Some(found) = self.bytes.get(self.at..end) else {
@@ -103,7 +102,6 @@ impl<'b> BinaryReader<'b> {
         usize::try_from(length).map_err(|_| self.fault(variable, OctaveFault::NegativeLength))
     }
 
-    /// Reads `count` lengths or indices.
     fn read_lengths(&mut self, count: usize, variable: &str) -> Result<Vec<usize>, VariableFault> {
         let mut lengths = Vec::new();
         for _ in 0..count {

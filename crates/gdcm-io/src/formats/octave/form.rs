@@ -72,7 +72,7 @@ impl Element {
 pub(super) enum Form {
     Scalar(Element),
     Matrix(Element),
-    /// Diagonal matrix; only the diagonal is stored.
+    /// Diagonal matrix; text and binary files store only the diagonal, HDF5 files the full matrix.
     Diagonal(Element),
     /// Sparse matrix; only the nonzero numbers are stored.
     Sparse(Element),

@@ -83,7 +83,7 @@ impl<'v> OctaveGroup<'v> {
 }
 
 /// Converts a group to the value that it represents, which is opaque if its type is not supported;
-/// `variable` is its name in errors.
+/// `variable` is the value's name in errors.
 fn convert_group(
     group: &Value,
     variable: &str,
@@ -301,7 +301,6 @@ impl<'v> GroupParts<'v> {
         damaged(self.variable, damage)
     }
 
-    /// Returns the group member `name`.
     fn member(&self, name: &str) -> Option<&'v Value> {
         self.parts.field(name)?.first()
     }

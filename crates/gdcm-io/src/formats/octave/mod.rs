@@ -1,10 +1,10 @@
 //! Files written by GNU Octave's `save` with `-text` (the default), `-binary` or `-hdf5`,
 //! compressed (`-zip`) or not.
 //!
-//! The formats are documented only in the Octave 7 source (`ls-oct-text.cc`, `ls-oct-binary.cc`,
-//! `ls-hdf5.cc` and the `ov-*.cc` files). Each value is preceded by its name and type, on which its
-//! storage form depends. The text and binary encodings store a value's parts in the same order, so
-//! both use the same assembly code.
+//! The formats are documented only in Octave's source code (version 7: `ls-oct-text.cc`,
+//! `ls-oct-binary.cc`, `ls-hdf5.cc` and the `ov-*.cc` files). Each value is preceded by its name
+//! and type, on which its storage form depends. The text and binary encodings store a value's parts
+//! in the same order, so both use the same assembly code.
 
 mod assembly;
 mod binary;

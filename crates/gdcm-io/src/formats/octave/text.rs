@@ -9,8 +9,8 @@
 //!  4 5 6
 //! ```
 //!
-//! Matrices are written row by row; arrays with other dimensions have `# ndims: 3`, a line with the
-//! dimensions, and their numbers in column-major order.
+//! Matrices are written row by row; arrays with more than two dimensions have a line such as `#
+//! ndims: 3`, a line with the dimensions, and their numbers in column-major order.
 
 use gdcm_model::message_text::shortened;
 
@@ -70,7 +70,7 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
         let ValueHeading { name, type_name } = reader.read_heading("")?;
         let value = match read_value(&mut reader, &type_name, &name) {
             Ok(value) => value,
-            // Reading continues with the next value, which begins at the next line with a name.
+            // Reading continues at the next line with a name, usually that of the next variable.
             Err(VariableFault::Unsupported { content, .. }) => {
                 Value::opaque(content.to_string(), Unread::Unsupported(content))
             }
@@ -184,7 +184,6 @@ impl<'t> TextReader<'t> {
         })
     }
 
-    /// Parses a word as a number.
     fn parse_number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
         // Octave writes NA for a missing number.
         if word == "NA" {
@@ -365,7 +364,7 @@ impl Parts for TextReader<'_> {
     }
 
     fn fault(&self, variable: &str, fault: OctaveFault) -> VariableFault {
-        // The line that contains the byte before the current position.
+        // The fault is on the line that contains the byte before the current position.
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
         VariableFault::line(variable, line, fault)

@@ -1,6 +1,5 @@
 //! Clock times, with or without a date.
 
-/// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
 /// Parses a clock time such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or

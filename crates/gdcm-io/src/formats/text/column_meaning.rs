@@ -25,7 +25,6 @@ pub(super) struct ColumnMeaning {
     /// Unit; `None` if it is neither given nor implied.
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Reason for the quantity.
     pub(super) reason: QuantityReason,
 }
 
@@ -196,7 +195,7 @@ fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     }
 }
 
-/// Returns whether a name ends in an entry of `WORDS`, such as "freq" in "freqHz" before the unit.
+/// Returns whether a name ends in an entry of `WORDS`, such as "freq", the front part of "freqHz".
 /// Ignores single-byte words.
 fn ends_with_known_word(name: &str) -> bool {
     let name = name.to_lowercase();

@@ -13,8 +13,8 @@ const SAMPLE: usize = 200;
 const GROWTH: u64 = 3;
 
 /// Replaces each complex column by two columns, whose headings begin with "re" and "im"; copies
-/// lines with more or fewer cells. Returns `None` if there is no complex column. Line numbers do
-/// not change.
+/// lines with more or fewer cells unchanged. Returns `None` if there is no complex column. Line
+/// numbers do not change.
 pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
     let Some(columns) = ComplexColumns::recognise(text) else {
         return Ok(None);
@@ -44,7 +44,7 @@ struct ComplexColumns {
 
 impl ComplexColumns {
     /// Recognises the columns from the first row with a complex number; `None` if there is no such
-    /// row.
+    /// row among the first `SAMPLE` lines.
     fn recognise(text: &str) -> Option<Self> {
         lines(text)
             .filter(|(_, line)| comment(line).is_none())

@@ -13,8 +13,8 @@ const WINDOWS_1252: [char; 32] = [
 /// otherwise code page 1252. The byte order mark is removed.
 ///
 /// # Errors
-/// [`VariableFault`] for a zero byte, which only a binary file has, for UTF-16 with an odd byte
-/// count, and if the budget is exhausted.
+/// [`VariableFault`] for a zero byte outside UTF-16, which only a binary file has, for UTF-16 with
+/// an odd byte count, and if the budget is exhausted.
 pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFault> {
     if let Some(body) = bytes.strip_prefix(&[0xff, 0xfe]) {
         return utf16(body, u16::from_le_bytes, budget);

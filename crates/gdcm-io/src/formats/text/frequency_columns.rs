@@ -121,8 +121,8 @@ fn reversed(table: &TextTable) -> TextTable {
     table
 }
 
-/// Describes why a frequency is invalid, with a remedy; `None` if it is valid. `before` is the
-/// preceding frequency.
+/// Returns the reason why a frequency is invalid; `None` if it is valid. `before` is the preceding
+/// frequency.
 fn frequency_fault(value: f64, before: f64) -> Option<FrequencyFault> {
     if !value.is_finite() {
         Some(FrequencyFault::NotFinite)

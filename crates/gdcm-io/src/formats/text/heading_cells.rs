@@ -1,8 +1,8 @@
 //! Splits a heading into a cell for each column.
 //!
-//! A heading may have another separator than the numbers below it, and blanks within its names.
-//! Cells are taken at most up to two more than there are columns, which suffices to detect that a
-//! line has too many.
+//! A heading may have another separator than the numbers below it, and blanks within its names. At
+//! most two cells more than there are columns are taken, which suffices to detect that a line has
+//! too many.
 
 use crate::formats::text::cell_number::has_number;
 use crate::formats::text::layout::Layout;
@@ -11,7 +11,8 @@ use crate::formats::text::separator::Separator;
 
 /// Splits a heading into a cell for each column; `None` if this is impossible. The separator may
 /// differ from the separator between the numbers; these are tried, in this order: the numbers'
-/// separator, the other separators, wide blanks, blanks outside brackets, any blanks.
+/// separator, the other separators, wide blanks, blanks outside brackets, any blanks. For a single
+/// column, only the numbers' separator and the whole line are tried.
 pub(super) fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
     if layout.separator != Separator::Blanks
@@ -51,13 +52,11 @@ fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
     if fits { Some(cells) } else { None }
 }
 
-/// Returns whether a cell contains a letter.
 fn has_letters(cell: &str) -> bool {
     cell.chars().any(char::is_alphabetic)
 }
 
-/// Splits a line into at most two cells more than there are columns, which suffices to detect that
-/// it has too many.
+/// Splits a line into at most two cells more than there are columns.
 fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String> {
     separator
         .cells(line)

@@ -10,7 +10,6 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Number of rows examined to recognise the layout.
 const SAMPLE: usize = 200;
 
-/// Layout of the lines in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) separator: Separator,

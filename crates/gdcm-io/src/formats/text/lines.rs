@@ -7,7 +7,7 @@ const TRAILING_MARKS: [&str; 7] = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", 
 /// Maximum excerpt length in a message \[characters\].
 const EXCERPT: usize = 40;
 
-/// A line that is kept, with its number.
+/// A line with its number in the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedLine {
     /// Line number, counted from 1.

@@ -17,7 +17,8 @@ pub(super) enum Function {
     Record(&'static [&'static str]),
     /// A matrix with zeros or ones, or the identity matrix.
     Fill(Fill),
-    /// A string, returned unchanged (`string` and `char`).
+    /// A string, returned unchanged (`string` and `char`); other arguments are treated as
+    /// dimensions.
     Text,
 }
 
@@ -55,7 +56,7 @@ impl Function {
 }
 
 impl Call<'_> {
-    /// Returns the function's value.
+    /// Creates the function's value; rejects unsuitable arguments at the position of the call.
     pub(super) fn value(
         self,
         arguments: Vec<Value>,
@@ -110,7 +111,6 @@ impl Call<'_> {
     }
 }
 
-/// Numbers of rows and columns.
 struct MatrixSize {
     rows: usize,
     columns: usize,

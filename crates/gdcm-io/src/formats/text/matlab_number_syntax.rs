@@ -14,7 +14,7 @@ fn past_digits(bytes: &[u8], from: usize) -> usize {
     at
 }
 
-/// Returns the offset after digits, which may include a decimal point.
+/// Returns the offset after the digits at the beginning, which may include a decimal point.
 pub(super) fn past_mantissa(bytes: &[u8]) -> usize {
     let end = past_digits(bytes, 0);
     // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".

@@ -11,12 +11,10 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
 use crate::variable_fault::matlab_fault::MatlabFault;
 
-/// Returns whether a name can contain this character.
 pub(super) fn is_name_character(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// Returns whether a text begins like a name.
 pub(super) fn begins_name(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
@@ -296,7 +294,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Returns whether a quotation mark begins a string; a single one after an operand denotes the
-    /// transpose.
+    /// transpose, unless a blank precedes it in a matrix.
     fn begins_text(&self, quote: char, is_spaced: bool, open: &OpenBrackets) -> bool {
         if quote == '"' || (is_spaced && open.is_in_matrix()) {
             return true;
@@ -316,8 +314,8 @@ impl<'t> Scanner<'t> {
         Ok(())
     }
 
-    /// Returns whether the text after a name changes its value in part or in place: "+= 1", "++",
-    /// "(2,1) = 3".
+    /// Returns whether the text after a name changes the named value in part or in place: "+= 1",
+    /// "++", "(2,1) = 3".
     pub(super) fn changes_part(&self) -> bool {
         let line = self.rest_of_line();
         match line.chars().next() {

@@ -56,8 +56,8 @@ impl<'t> Workspace<'t> {
     /// the text.
     ///
     /// # Errors
-    /// [`ValueError`] if the variable or field does not exist or is opaque, or if the budget is
-    /// exhausted.
+    /// [`ValueError`] if the variable or field does not exist, is opaque or is nested too deeply,
+    /// or if the budget is exhausted.
     pub(super) fn copy(
         &self,
         path: &[&str],
@@ -101,7 +101,6 @@ impl<'t> Workspace<'t> {
     }
 }
 
-/// Returns a record without fields.
 fn empty_struct() -> Value {
     Value::Struct(StructArray::one(Vec::new()))
 }

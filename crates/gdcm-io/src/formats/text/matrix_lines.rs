@@ -2,7 +2,6 @@
 
 use crate::formats::text::cell_number::is_number;
 
-/// A line with a matrix name.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct NameLine<'t> {
     pub(super) name: &'t str,

@@ -19,7 +19,6 @@ const MOST_WORDS: usize = 500;
 const FEWEST_NUMBER_COLUMNS: usize = 2;
 /// Minimum number of cells in a line: `FEWEST_NUMBER_COLUMNS`, and one with words or clock times.
 const FEWEST_CELLS: usize = FEWEST_NUMBER_COLUMNS + 1;
-/// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
 /// A text whose columns have numbers instead of words and clock times.
@@ -39,9 +38,9 @@ enum Kind {
     Words,
 }
 
-/// Replaces words in columns by numbers, counted by first occurrence, and clock times by seconds.
-/// Returns `None` if the text does not have such columns next to numeric columns, with a separator
-/// other than blanks.
+/// Replaces words in columns by numbers, in the order of their first occurrence, and clock times by
+/// seconds. Returns `None` if the text does not have such columns next to numeric columns, with a
+/// separator other than blanks.
 pub fn numbered_words(
     text: &str,
     budget: &ReadingBudget,

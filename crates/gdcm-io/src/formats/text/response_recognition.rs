@@ -22,14 +22,13 @@ use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{UnitNotGiven, Unrecognised, unrecognised};
 use crate::variable_fault::found_content::ResponseLack;
 
-/// Maximum difference between a response's rectangular and polar forms, relative to its magnitude;
-/// tables are printed with few digits.
+/// Maximum difference between a response's rectangular and polar forms, relative to the larger of
+/// the two magnitudes; tables are printed with few digits.
 const FORM_TOLERANCE: f64 = 0.01;
 /// Maximum coherence that counts as a fraction; larger values are in percent. Values slightly above
 /// 1 result from rounding and noise.
 const LARGEST_COHERENCE: f64 = 1.5;
 
-/// Column with the frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
     /// Column index, from 0.
@@ -62,8 +61,8 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Finds the frequency column and its unit; a missing or ambiguous unit is added to `unsaid`,
-    /// and the factor is then 1.
+    /// Finds the frequency column and its unit; unless the unit is rad/s or Hz, the column is added
+    /// to `unsaid`, and the factor is 1.
     ///
     /// # Errors
     /// [`Unrecognised`] if there is no frequency column.
@@ -110,9 +109,10 @@ impl<'t> Recognition<'t> {
     /// Returns the responses in the order of their first columns.
     ///
     /// 1. Group the columns by response; columns without a known quantity are unused.
-    /// 2. In each group: a column with standard deviations is unused.
-    /// 3. The two columns with the complex number; a group without them is unused, with a note.
-    /// 4. The coherence, if there is a column.
+    /// 2. In each group, note a column with standard deviations as unused.
+    /// 3. Find the two columns with the complex number; a group without them is unused, with a
+    ///    note.
+    /// 4. Read the coherence, if a column holds it.
     pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
@@ -379,8 +379,8 @@ impl Group {
 }
 
 /// Returns the index of the group to which a column belongs, among the groups that do not have the
-/// quantity yet: first the last group, if the column has no label; else the last group with the
-/// same label; else `None`, and the column begins a group.
+/// quantity yet: first the last group, if the column has no label or holds an error; else the last
+/// group with the same label; else `None`, and the column begins a group.
 fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
     // An error column's label names a quantity, not a channel, so the column joins the last group.
     let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
@@ -395,7 +395,6 @@ fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Opt
         .rposition(|group| group.label == *label && group.column(quantity).is_none())
 }
 
-/// Returns each column's meaning.
 fn column_meanings(table: &TextTable) -> Vec<ColumnMeaning> {
     let mut meanings = Vec::with_capacity(table.columns.len());
     for column in 0..table.columns.len() {

@@ -19,7 +19,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         }
         let is_heading = is_heading(line);
         if is_heading && has_rows {
-            // Line offset: the line is a slice of the text.
+            // The line's offset in the text, of which the line is a slice.
             let end = line.as_ptr() as usize - text.as_ptr() as usize;
             sections.extend(text.get(start..end).map(|part| (first_line, part)));
             first_line = number;

@@ -167,7 +167,7 @@ impl<'m> Reading<'m> {
         }
     }
 
-    /// Keeps a line that is not a row.
+    /// Stores a line that is not a row.
     fn skip_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         self.budget.take(2 * line.len() as u64 + 64, 1, "")?;
         self.skipped.push(NumberedLine {
@@ -219,7 +219,7 @@ impl<'m> Reading<'m> {
         Ok(())
     }
 
-    /// Describes a cell that is not a number, or a line without numbers, with a remedy.
+    /// Returns the fault of a cell that is not a number, or of a line without numbers.
     fn no_number(&self, index: usize, cell: &str, line: &str) -> LineFault {
         /// Maximum number of cells examined in a line.
         const EXAMINED: usize = 20;

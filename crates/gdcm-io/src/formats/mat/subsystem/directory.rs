@@ -4,7 +4,7 @@
 //! header     10 words of 32 bits: version, number of names, offsets [bytes] of 8 regions
 //! names      of properties and classes, each ended by a zero byte; counted from 1
 //! region 0   classes, 4 words each: index of the package name, of the class name, 2 unused
-//! region 1   property lists of objects whose class saves another value ("created" by the class)
+//! region 1   property lists of objects whose class saves another value instead (`created`)
 //! region 2   objects, 6 words each: class, 2 unused, index of the list in region 1 (0 if there is
 //!            none), index of the list in region 3, 1 unused
 //! region 3   property lists of all other objects
@@ -30,7 +30,7 @@ const PROPERTY_WORDS: usize = 3;
 /// Newest supported layout version.
 const NEWEST: u32 = 4;
 
-/// Regions after the names that are read; the values are their numbers.
+/// The regions that are read; the values are their numbers.
 #[derive(Clone, Copy)]
 enum Region {
     Classes = 0,
@@ -77,7 +77,7 @@ pub(super) struct Property {
     pub(super) content: Content,
 }
 
-/// Place of a property value.
+/// Value of a property, or its place.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Content {
     /// The value is the name with this index, counted from 1.
@@ -179,7 +179,7 @@ impl Directory {
 }
 
 impl<'b> DirectoryBytes<'b> {
-    /// Reads the header; determines the byte order.
+    /// Reads the header, and determines the byte order from the version.
     fn read(bytes: &'b [u8]) -> Result<Self, VariableFault> {
         let head = bytes.get(..HEADER_BYTES).unwrap_or_default();
         let little = decode_words(head, ByteOrder::Little);
@@ -242,7 +242,6 @@ fn decode_words(bytes: &[u8], order: ByteOrder) -> Vec<u32> {
     words.iter().map(|&word| order.u32(word)).collect()
 }
 
-/// Decodes all object entries.
 fn object_entries(words: &[u32]) -> Vec<ObjectEntry> {
     let (entries, _) = words.as_chunks();
     entries
@@ -266,7 +265,8 @@ fn property_lists(words: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
         };
         let (properties, _) = list.as_chunks();
         lists.push(properties.iter().copied().map(decode_property).collect());
-        // With its count, a list has `length` + 1 words; one padding word makes them even.
+        // With its count, a list has `length` + 1 words; one padding word follows if this number is
+        // odd.
         let padding = (length + 1) % 2;
         rest = after.get(padding..).unwrap_or_default();
     }

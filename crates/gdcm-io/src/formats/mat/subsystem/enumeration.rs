@@ -1,7 +1,7 @@
 //! Members of enumeration classes, saved as a record with these fields:
 //!
 //! ```text
-//! EnumerationInstanceTag   recognises the record
+//! EnumerationInstanceTag   marks the record
 //! ClassName                class number
 //! ValueNames               for each member, the index of its name in the directory
 //! ValueIndices             for each value, an index in `ValueNames`, from 0
@@ -75,7 +75,6 @@ impl<'d> EnumerationMembers<'d> {
     }
 }
 
-/// Returns whether records are enumeration members.
 pub(super) fn is_enumeration(records: &StructArray) -> bool {
     records.field(TAG).is_some()
 }

@@ -72,7 +72,7 @@ impl Subsystem {
             Some(Value::Cell(defaults)) => defaults.values,
             _ => Vec::new(),
         };
-        // The defaults, removed above, were in one of the cells after the values.
+        // `cells_after_values` includes the cell with the defaults, which was removed above.
         let unused = directory.cells_after_values.saturating_sub(1);
         values.truncate(values.len().saturating_sub(unused));
         Ok(Self {

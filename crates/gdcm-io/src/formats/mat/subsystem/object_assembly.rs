@@ -104,7 +104,7 @@ impl<'s> Assembly<'s> {
         }
         let open_before = self.open.len();
         let records = self.records(reference, path);
-        // After an error, the objects inside are still marked as open.
+        // After an error, the objects that were being assembled are still marked as open.
         self.open.truncate(open_before);
         match records {
             Ok(records) => Ok(Value::Object(Object {
@@ -238,7 +238,6 @@ impl<'s> Assembly<'s> {
         Ok(properties)
     }
 
-    /// Returns a saved property's value.
     fn property(
         &mut self,
         property: &Property,
@@ -255,7 +254,7 @@ impl<'s> Assembly<'s> {
                 subsystem.directory.name(name).unwrap_or_default(),
             )),
             Content::Number(number) => {
-                // The directory stores logical values like integers.
+                // The directory stores logical values like integers: 0 and 1 are taken as logical.
                 let kind = if number <= 1 {
                     ElementKind::Logical
                 } else {
@@ -339,7 +338,7 @@ impl<'s> Assembly<'s> {
     }
 }
 
-/// Converts numbers to integers; `None` if any may have been rounded.
+/// Converts numbers to integers; `None` if any is negative or may have been rounded.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
     let mut words = Vec::with_capacity(array.re.len());
     for &number in &array.re {

@@ -40,7 +40,8 @@ pub fn is_unprintable(character: char) -> bool {
     is_invisible || character.is_control()
 }
 
-/// Returns the beginning of a text in quotation marks, with unprintable characters escaped.
+/// Escapes unprintable characters in a text, shortens it to 80 characters, and puts it in quotation
+/// marks.
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
@@ -48,7 +49,8 @@ pub fn quoted(text: &str) -> String {
 /// Shortens each long word in a message, then the message if it is still too long, by replacing the
 /// middle with an ellipsis.
 pub fn shortened_message(text: &str) -> String {
-    /// Maximum length \[characters\]: longer than any program message with sixty column names.
+    /// Maximum length \[characters\]: more than any message of the program needs, even with sixty
+    /// column names.
     const LONGEST: usize = 2000;
     /// Number of characters that remain at each end.
     const KEPT: usize = 900;

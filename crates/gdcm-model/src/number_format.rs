@@ -69,7 +69,7 @@ pub fn without_sign_of_zero(text: &str) -> &str {
 /// Formats a value with the given number of decimals. A nonzero value that is smaller than one unit
 /// in the last decimal gets two significant digits instead.
 pub fn telling(value: f64, decimals: usize) -> String {
-    /// Maximum number of decimals; beyond it, the exponent form is shorter.
+    /// Maximum number of decimals; a value that needs more is given an exponent.
     const MOST: i32 = 6;
     if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
         return format!("{value:.decimals$}");

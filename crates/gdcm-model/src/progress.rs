@@ -14,10 +14,10 @@ pub trait Progress: Sync {
     /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
 
-    /// Called when `done` of `total` steps are complete.
+    /// Called when `done` of `total` parts of the computation are complete.
     fn advanced(&self, done: usize, total: usize);
 
-    /// Called at the start of a step.
+    /// Called with the name of the step in progress, possibly several times for the same step.
     fn step(&self, _name: &str) {}
 
     /// Called with a preliminary identified model, in the units of the record; a better model
@@ -83,7 +83,7 @@ impl<'a> Shares<'a> {
     /// Reports the step `name`; `done` returns the new completed share (0 to 1), given the previous
     /// one.
     fn report(&self, done: impl Fn(f64) -> f64, name: &str) -> Result<(), Cancelled> {
-        /// Number of steps in which progress is reported.
+        /// Number of parts in which progress is reported.
         const PARTS: f64 = 1000.0;
         if self.progress.cancelled() {
             return Err(Cancelled);
@@ -156,7 +156,7 @@ impl Progress for Portion<'_> {
 mod tests {
     use super::*;
 
-    /// Receiver that records every reported count of completed steps.
+    /// Receiver that records every reported count of completed parts.
     #[derive(Default)]
     struct Heard(Mutex<Vec<usize>>);
 

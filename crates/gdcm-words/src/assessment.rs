@@ -62,9 +62,9 @@ pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     )
 }
 
-/// Compares the held-out conditions' assessment with that of the fitted conditions: "held out (3,
-/// 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45 responses, mean
-/// ΔJ −15.0". `None` where no condition is held out.
+/// Compares the held-out conditions' assessment with the other conditions': "held out (3, 8):
+/// better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45 responses, mean ΔJ
+/// −15.0". `None` where no condition is held out.
 pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
     let study = &analysis.study;
     let held_out: Vec<String> = study

@@ -123,7 +123,8 @@ fn names(pairs: &[Pair], pair_name: &impl Fn(Pair) -> String) -> String {
     names.join(", ")
 }
 
-/// Describes a model that is set aside, and why; empty for any other caution.
+/// Describes a model that is set aside, because it lacks responses that another model in its bundle
+/// has, and why it lacks them; empty for any other caution.
 ///
 /// Among the missing responses `lacks`, those in `zero` are zero at every frequency with a value.
 /// `why` is the reason why others are not finite; if it is `None`, all others are zero somewhere.

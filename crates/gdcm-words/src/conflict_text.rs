@@ -8,7 +8,7 @@ use gdcm_method::correction::solution::Unmatched;
 use gdcm_method::correction::{Channel, Quantity};
 use gdcm_model::units::{s_to_ms, telling, told_apart};
 
-/// Describes the conflict and its possible resolutions, with the given channel names.
+/// Describes a conflict and its possible resolutions, with the given channel names.
 pub fn conflict_text(conflict: &Conflict, inputs: &[String], outputs: &[String]) -> String {
     ConflictText {
         conflict,
@@ -55,8 +55,8 @@ pub fn remedy_text(remedy: &Remedy, inputs: &[String], outputs: &[String]) -> St
     }
 }
 
-/// Describes a constrained response's deviation: in a gain; in a signed delay that should be a
-/// lead; else in a delay. The latter two with the phase error that remains at `omega_top`
+/// Describes a constrained response's deviation in gain, in lead (a signed delay that should be
+/// negative) or in delay. For lead and delay, adds the phase error that remains at `omega_top`
 /// \[rad/s\], the upper end of the band.
 pub fn miss_text(
     miss: &Unmatched,

@@ -16,8 +16,8 @@ use gdcm_study::results::couplings_assessment::{NoPoles, UnstablePole};
 
 use crate::coupling_error::coupling_error_text;
 
-/// Returns a remark on couplings in a sentence: "LAT receives 4.7 % of LON, equivalent to a
-/// swashplate phase of 2.7°."
+/// Returns a remark on couplings as one or more sentences: "LAT receives 4.7 % of LON, equivalent
+/// to a swashplate phase of 2.7°."
 pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> String {
     match remark {
         CouplingRemark::Unavailable(error) => format!(

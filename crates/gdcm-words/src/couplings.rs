@@ -142,8 +142,8 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates each physics representative's poles without and with couplings, by condition, the
-/// largest shift first.
+/// Tabulates each physics representative's poles without and with couplings; within each condition,
+/// the largest shift comes first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",

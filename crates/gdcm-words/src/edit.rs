@@ -1,5 +1,5 @@
-//! Names decisions: for the undo list, and for decisions made with another dataset that do not
-//! apply to the present one.
+//! Short descriptions of decisions, for the undo list and for the report on decisions that were
+//! made with another dataset and do not apply to the present one.
 
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_study::Edit;
@@ -99,7 +99,7 @@ fn requirement_part_text(part: RequirementPart) -> &'static str {
     }
 }
 
-/// Names a decision made with another dataset, where it does not apply to the present one.
+/// Names a decision that was made with another dataset and does not apply to the present one.
 pub(crate) fn carried_decision_text(decision: &CarriedDecision) -> String {
     match decision {
         CarriedDecision::Edit { edit, dataset } => edit_text(edit, dataset),

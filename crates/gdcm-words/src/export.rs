@@ -214,7 +214,7 @@ pub fn export_remedy_text(remedy: ExportRemedy) -> String {
     }
 }
 
-/// Describes the first channel, and counts the others.
+/// Describes the first delayed channel, and counts the others; empty for no channels.
 fn delayed_channels_text(channels: &[DelayedChannel], dataset: &Dataset) -> String {
     match channels {
         [] => String::new(),

@@ -113,7 +113,7 @@ fn half_width(half_db: f64) -> String {
     }
 }
 
-/// Returns an interval in a sentence: `± 0.7 dB`.
+/// Returns an interval in a sentence: `± 0.7 dB`, or `more than ± 20 dB`.
 fn interval_text(half_db: f64) -> String {
     if half_db > UNKNOWN_DB {
         format!("more than ± {UNKNOWN_DB:.0} dB")
@@ -251,7 +251,7 @@ pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String
     lines
 }
 
-/// Returns an interval in a sentence with two decimals: `± 0.52 dB`.
+/// Returns an interval as [`interval_text`], but with two decimals: `± 0.52 dB`.
 fn interval_text_fine(half_db: f64) -> String {
     if half_db > UNKNOWN_DB {
         interval_text(half_db)
@@ -261,7 +261,8 @@ fn interval_text_fine(half_db: f64) -> String {
 }
 
 /// Returns a line on one way to reach the target interval: the flights needed, in the words of
-/// `describe`, and the resulting interval.
+/// `describe`, and the resulting interval; it begins with "not enough" if even the largest amount
+/// misses the target.
 fn need_line<T: Copy>(need: &Need<T>, describe: impl Fn(T) -> String) -> String {
     match *need {
         Need::Least { amount, half_db } => {

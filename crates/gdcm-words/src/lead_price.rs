@@ -1,4 +1,5 @@
-//! Sentences about the price that lead filters have (M15.6).
+//! Sentences about the price of lead filters: the frequency above which the corrected model is
+//! invalid, and the gain that the filters add above the band (M15.6).
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::Pair;
@@ -14,7 +15,7 @@ pub fn limit_text(price: &LeadPrice) -> String {
 
 /// Describes the frequency limit, and the gain that each filter adds to its channel: "not valid
 /// above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; the gain of a response
-/// increases by the sum of those at its input and output".
+/// increases by the sum of those at its input and output". Only the limit, if no filter adds gain.
 pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> String {
     let mut gains = Vec::new();
     for (channel, &gain_db) in price.gains_db.iter() {

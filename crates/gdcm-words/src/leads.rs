@@ -56,7 +56,8 @@ pub fn lead_words(
     words
 }
 
-/// Describes the lead or delay that a response needs, and what its two channels contribute.
+/// Describes the lead or delay that a response needs, and the contributions of its two channels;
+/// `None` if leads are not requested, or the response has no delta delay.
 fn wanted_lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -103,7 +104,8 @@ fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }
 
-/// Formats the half-width of the band delay's error bar \[ms\]: " ± 4".
+/// Formats the half-width of the band delay's error bar \[ms\]: " ± 4"; `None` without an error
+/// bar.
 fn half_width_words(
     result: &ConditionAnalysis,
     uncertainty: Option<&Uncertainty>,

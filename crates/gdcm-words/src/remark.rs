@@ -14,7 +14,7 @@ use crate::convention_doubt::doubt_text;
 use crate::coupling_remark::coupling_remark_text;
 use crate::schedule::schedule_caution_text;
 
-/// Returns a remark in one or two sentences.
+/// Returns a remark as one or more sentences.
 pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
     match remark {
         Remark::ConventionDoubt(doubt) => doubt_text(doubt, dataset),

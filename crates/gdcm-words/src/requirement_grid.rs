@@ -48,7 +48,8 @@ impl RequirementNames<'_> {
         }
     }
 
-    /// Names a response's axis; also its input if several responses have the same output.
+    /// Names a response's axis; also its input if several of [`Dataset::measuring_pairs`] have the
+    /// same output.
     fn axis(&self, pair: Pair) -> String {
         let output = &self.dataset.outputs()[pair.output].name;
         let axis = match output.as_str() {
@@ -86,7 +87,7 @@ pub fn group_name(group: RequirementGroup) -> &'static str {
     }
 }
 
-/// Describes what a group's values are compared with.
+/// Describes a group's values and their reference: "difference from the identified model".
 pub fn group_description(group: RequirementGroup) -> &'static str {
     match group {
         RequirementGroup::Bandwidth => "difference from the identified model",
@@ -96,7 +97,7 @@ pub fn group_description(group: RequirementGroup) -> &'static str {
     }
 }
 
-/// Returns the unit for the values in a row, empty for a cost.
+/// Returns the displayed unit for the values in a row; empty for a cost or a level.
 pub fn unit_text(unit: RequirementUnit) -> &'static str {
     match unit {
         RequirementUnit::Percent => "%",
@@ -120,7 +121,7 @@ pub fn shown_value(unit: RequirementUnit, value: f64) -> f64 {
 /// Rounding must not move a value outside its limit to the other side (100.4 % of a tolerance is
 /// "101"):
 ///
-/// - a peak error and J outside their limits are rounded up
+/// - a peak error and mean J on-axis outside their limits are rounded up
 /// - a share of the band is rounded down: only the whole is "100"
 /// - differences in bandwidth and phase delay outside their limits are rounded away from zero
 /// - all others to the nearest number
@@ -315,12 +316,12 @@ pub fn not_determined_text(why: &NotDetermined) -> String {
     }
 }
 
-/// Counts the cells: "156 of 173 met".
+/// Formats how many of the judged cells are met: "156 of 173 met".
 pub fn met_text(count: GridCount) -> String {
     format!("{} of {} met", count.met, count.judged)
 }
 
-/// Completes the count: "physics alone 73; 14 not determined".
+/// Completes [`met_text`]: "physics alone 73; 14 not determined".
 pub fn count_details_text(count: GridCount) -> String {
     let physics = format!("physics alone {}", count.physics_met);
     match count.not_determined {

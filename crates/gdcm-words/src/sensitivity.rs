@@ -26,7 +26,8 @@ pub fn sensitivity_text(
         }
     };
     let step = sensitivity.step();
-    // `min(100.0)`: an objective close to zero would become negative even for the minimum step.
+    // `min(100.0)`: by the linear prediction, an objective close to zero would become negative even
+    // for the minimum step.
     let percent = (100.0 * step * sensitivity.share_per_unit.abs()).min(100.0);
     let change = if sensitivity.quantity.is_gain() {
         gain_change_words(sensitivity, &number(step))

@@ -26,7 +26,7 @@ pub fn setting_words(setting: &Setting) -> &'static SettingWords {
     words.unwrap_or(&NO_WORDS)
 }
 
-/// Fields that most settings share, and the texts for an unknown setting.
+/// Empty texts, for an unknown setting and for the fields that a setting does not need.
 const NO_WORDS: SettingWords = SettingWords {
     key: "",
     caption: "",

@@ -1,4 +1,5 @@
-//! Sentences and a file template for the runs worth making first (M18.4).
+//! Sentences and a file template for the runs (physics models with a moved parameter) worth making
+//! first (M18.4).
 
 use gdcm_model::dataset::Dataset;
 use gdcm_model::number_format::{decimals, signed};

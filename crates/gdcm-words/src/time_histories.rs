@@ -48,7 +48,8 @@ pub(crate) fn cost_heads(histories: &TimeHistories) -> Vec<String> {
     heads
 }
 
-/// Formats a model's `J_rms`, and Theil's coefficient for every output.
+/// Formats a model's `J_rms`, and Theil's coefficient for each output in
+/// [`TimeHistories::moved_outputs`].
 pub(crate) fn cost_cells(
     histories: &TimeHistories,
     condition: ConditionId,
@@ -139,7 +140,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     table
 }
 
-/// Returns the result for the model in a role, in a tolerance row.
+/// Returns the result for the model in a role, in a tolerance row; `None` without such a model.
 fn finding_of_role<'a>(
     models: &[&'a HistoryFinding],
     role: RequirementRole,

@@ -102,7 +102,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
-/// Formats a value with this many decimals; a placeholder if it is missing.
+/// Formats a value with this many decimals; a missing value becomes [`NO_VALUE`].
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
@@ -239,7 +239,8 @@ fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
     }
 }
 
-/// Tabulates every condition's on-axis net gains with their error bars.
+/// Tabulates every condition's on-axis net gains (all net gains, if no response is on-axis) with
+/// their error bars.
 pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
     let level = format!("± [%] at {:.0} %", 100.0 * uncertainty.level);
     let columns = [

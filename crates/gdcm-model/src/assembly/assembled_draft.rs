@@ -1,6 +1,5 @@
-//! Dataset draft, assembled from the models with a condition and a role: its channels and
-//! conditions. Their models are built in `assembled_models.rs`, their flight records in
-//! `assembled_records.rs`.
+//! Assembles a dataset draft from the models with a condition and a role. The draft's models are
+//! built in `assembled_models.rs`, its flight records in `assembled_records.rs`.
 
 use std::collections::BTreeSet;
 

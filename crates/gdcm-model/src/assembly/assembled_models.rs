@@ -14,7 +14,7 @@ use crate::names::RowRole;
 use crate::number_format::number;
 
 /// Builds a physics model, or a run with a moved parameter. Coordinates that are perturbed only in
-/// the bundle's other models get a zero offset.
+/// the condition's other physics models get a zero offset.
 pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let mut offsets = BTreeMap::new();
     for coordinate in coordinates {

@@ -5,8 +5,8 @@ use crate::dataset::condition::ConditionRecord;
 
 /// Returns the distinct flight records listed in the models' files.
 ///
-/// If several files list the same record, the first entry that gives the used pieces is kept. A
-/// different record whose name is already taken is numbered: "name (2)".
+/// If several files list the same record, the first entry with used intervals is kept, or else the
+/// first entry. A different record whose name is already taken is numbered: "name (2)".
 pub(super) fn flight_records(parts: &[&Part]) -> Vec<ConditionRecord> {
     let mut records: Vec<ConditionRecord> = Vec::new();
     let mut known: Vec<&ConditionRecord> = Vec::new();

@@ -102,8 +102,8 @@ impl Assembly {
     }
 }
 
-/// Finds all problems in the dataset's channels, in each model and in each condition. If there are
-/// none, checks the dataset itself.
+/// Finds all problems in the dataset's channels, in each model and in each condition, with their
+/// scopes. If there are none, checks the dataset draft as a whole.
 fn find_problems(parts: &[Part], rules: &Rules) -> Vec<Problem> {
     let mut problems = channel_problems(rules);
     let in_use = parts_in_use(parts);
@@ -128,7 +128,7 @@ fn find_problems(parts: &[Part], rules: &Rules) -> Vec<Problem> {
     problems
 }
 
-/// Prefixes relative file names with a folder.
+/// Prefixes the relative file names of models and flight records with a folder.
 fn prefix_files(draft: &mut DatasetDraft, folder: &str) {
     for condition in &mut draft.conditions {
         for model in condition

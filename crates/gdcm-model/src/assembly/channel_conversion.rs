@@ -13,7 +13,7 @@ pub(super) struct ChannelUses<'u> {
     pub outputs: &'u [Option<ChannelUse>],
 }
 
-/// Whether table values are multiplied by the channels' unit factors.
+/// Whether table values are converted with the channels' unit factors.
 #[derive(Clone, Copy, PartialEq)]
 enum Scaling {
     Converted,
@@ -108,7 +108,7 @@ fn pick_delays(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
 }
 
 /// Returns the matrix columns in the order of the dataset's inputs, each divided by its unit
-/// factor.
+/// factor; zeros for a missing channel.
 fn pick_inputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), uses.len(), |row, column| {
         match &uses[column] {
@@ -121,7 +121,7 @@ fn pick_inputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f6
 }
 
 /// Returns the matrix rows in the order of the dataset's outputs, each multiplied by its unit
-/// factor.
+/// factor; zeros for a missing channel.
 fn pick_outputs(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(uses.len(), matrix.ncols(), |row, column| match &uses[row] {
         Some(used) if used.index < matrix.nrows() => {

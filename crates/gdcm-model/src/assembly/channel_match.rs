@@ -18,8 +18,8 @@ pub struct ChannelUse {
     pub index: usize,
     /// Dataset units per file unit; negative if the file has the opposite sign.
     pub factor: f64,
-    /// The conversion ("rad/s → deg/s"), a declared factor, an assumed unit or a reversed sign, in
-    /// words; `None` if none of these applies.
+    /// Conversion ("rad/s → deg/s"), declared factor, assumed unit and reversed sign in words, as
+    /// far as they apply; `None` if none does.
     pub words: Option<String>,
 }
 
@@ -41,9 +41,9 @@ pub struct ChannelMatch {
 #[derive(Clone, Copy)]
 pub(super) struct ChannelMatcher<'a> {
     pub side: ChannelSide,
-    /// The model's channels in the file's order.
+    /// The model's channels on this side, in the file's order.
     pub labels: &'a [ChannelLabel],
-    /// The dataset's channels.
+    /// The dataset's channels on this side.
     pub rules: &'a [ChannelRule],
     pub declared: &'a ModelDeclarations<'a>,
     /// Whether channels may be missing, as in a measured response; at least one must be found.
@@ -302,7 +302,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the problem that a measured response has no dataset channel on this side.
+    /// Returns the problem for a measured response without a dataset channel on this side.
     fn unmatched(&self) -> ProblemKind {
         let found: Vec<&str> = self
             .labels

@@ -32,7 +32,6 @@ pub struct ChannelDeclarations {
     /// Dataset units per file unit; negative for the opposite sign.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub factors: BTreeMap<String, f64>,
-    /// 1 or -1.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub signs: Signs,
 }
@@ -54,7 +53,6 @@ impl ChannelDeclarations {
         }
     }
 
-    /// Renames a channel.
     pub(super) fn rename(&mut self, old: &str, new: &str) {
         rename_key(&mut self.units, old, new);
         rename_key(&mut self.factors, old, new);

@@ -59,7 +59,8 @@ impl FileScope {
         }
     }
 
-    /// Returns the precedence: a narrower scope overrides a wider one.
+    /// Returns the precedence, from 0 for all models to 3 for a single file or model; a scope with
+    /// a higher precedence overrides one with a lower.
     pub(super) fn rank(&self, found: &FoundModel) -> u8 {
         match self {
             Self::All => 0,

@@ -10,7 +10,8 @@ use crate::names::NameFacts;
 
 /// Maximum difference \[kt\] between an airspeed in a file and the rounded airspeed in its name.
 const AIRSPEED_TOLERANCE_KT: f64 = 1.0;
-/// Maximum relative difference between another value in a file and the rounded value in its name.
+/// Maximum relative difference between an altitude, mass or trim offset in a file and the rounded
+/// value in its name; condition numbers must be equal.
 const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Compares the values in a file with the rounded values in its name and folder names. If a file
@@ -91,7 +92,8 @@ impl Comparison {
     }
 }
 
-/// Returns the trim offsets stated in the file, by coordinate.
+/// Returns the trim offsets stated in the file, by coordinate; empty for an identified model, or if
+/// the file states none.
 pub(super) fn trim_offsets(origin: &Origin) -> BTreeMap<String, f64> {
     match origin {
         Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {

@@ -12,7 +12,7 @@ pub(super) enum Likeness {
     Alias,
     /// Same as the name or an alias from the rules, apart from sign marks.
     SameButForSign,
-    /// Another name for the same channel in the alias table.
+    /// Same channel, by the alias table, as the name or an alias from the rules.
     Channel,
 }
 
@@ -49,7 +49,8 @@ fn unsigned_name(name: &str) -> String {
     SignedName::parse(name).name
 }
 
-/// Returns the alias from the rules that agrees with a name in a file, or else the channel's name.
+/// Returns the channel's name or alias that equals a name in a file; otherwise the first alias that
+/// equals it apart from sign marks, or else the channel's name.
 pub(super) fn matched_name<'r>(name: &str, rule: &'r ChannelRule) -> &'r str {
     if name == rule.name {
         return &rule.name;

@@ -14,7 +14,7 @@ use crate::names::KnownChannels;
 pub struct Part {
     pub found: FoundModel,
     pub row: Row,
-    /// Input and output labels, with names from the rules, the file, or the file's name.
+    /// Input and output labels, with names from the rules, the file, or the variable or file name.
     pub labels: [Vec<ChannelLabel>; 2],
     pub inputs: ChannelMatch,
     pub outputs: ChannelMatch,
@@ -26,9 +26,9 @@ pub struct Part {
 impl Part {
     /// Places a model in the dataset and matches its channels.
     ///
-    /// 1. Name the channels: from the rules, or else the file, or else the file's name.
+    /// 1. Name the channels: from the rules, or else the file, or else the variable or file name.
     /// 2. Match them to the dataset's channels.
-    /// 3. Add problems if the rules give a wrong count of names, or if the file's name is
+    /// 3. Add problems if the rules give a wrong count of names, or if the variable or file name is
     ///    ambiguous.
     pub(super) fn new(found: FoundModel, row: Row, rules: &Rules) -> Self {
         let rule = rules.rows.get(&found.key());

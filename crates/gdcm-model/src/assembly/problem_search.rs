@@ -229,7 +229,8 @@ fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Ve
     problems
 }
 
-/// Returns the first response that a measured model's part shares with an earlier part.
+/// Returns a problem for the first response that a measured model's part shares with an earlier
+/// part; `None` if they share no response.
 fn duplicate_response(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<ProblemKind> {
     for (output, output_rule) in rules.outputs.iter().enumerate() {
         for (input, input_rule) in rules.inputs.iter().enumerate() {

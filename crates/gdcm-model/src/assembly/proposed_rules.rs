@@ -34,7 +34,8 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     }
 }
 
-/// Returns the dataset's name for a channel given by any alias.
+/// Returns the dataset's name for a channel given by any alias; `None` if the dataset does not have
+/// it.
 fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
     let channel = channels
         .iter()
@@ -42,7 +43,7 @@ fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
     Some(channel.name.clone())
 }
 
-/// A model with its channel names, from the file or from the file name.
+/// A model with its channel names, from the file, or else from its variable or file name.
 struct LabelledModel<'m> {
     found: &'m FoundModel,
     /// Inputs and outputs.

@@ -86,7 +86,8 @@ impl Rules {
     /// Renames a dataset channel.
     ///
     /// 1. The old name becomes an alias.
-    /// 2. On-axis responses are renamed, and the standard ones of the new name are marked.
+    /// 2. On-axis responses are renamed, and those that are on-axis by convention under the new
+    ///    name are added.
     /// 3. Conversions, values for single models, signs and declarations are renamed.
     ///
     /// Does nothing for a missing index or an unchanged name.
@@ -129,7 +130,7 @@ impl Rules {
         }
     }
 
-    /// Marks a channel's responses that are on-axis by convention.
+    /// Adds the channel's responses that are on-axis by convention to the on-axis responses.
     fn mark_standard_on_axis(&mut self, side: ChannelSide, name: &str) {
         for other in side.pick(&self.outputs, &self.inputs) {
             let [output, input] = match side {
@@ -165,11 +166,11 @@ impl Rules {
         }
     }
 
-    /// Adds declarations; they override earlier declarations for the same channels and models.
+    /// Adds declarations; they override earlier declarations for the same channels and scope.
     ///
-    /// 1. For files or folders: all in [`Self::declarations`].
-    /// 2. Otherwise, signs in [`Self::signs`] for all models, in [`Self::role_signs`] for a role;
-    ///    units and factors in [`Self::declarations`].
+    /// 1. Store all declarations for files or folders in [`Self::declarations`].
+    /// 2. Otherwise, store signs in [`Self::signs`] (all models) or [`Self::role_signs`] (a role),
+    ///    and units and factors in [`Self::declarations`].
     pub fn declare(&mut self, scope: FileScope, declared: &ChannelDeclarations) {
         // `None` if there are no signs for a role, which then needs no entry in `role_signs`.
         let signs = match &scope {

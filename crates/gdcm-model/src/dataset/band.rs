@@ -54,6 +54,9 @@ impl From<Band> for [f64; 2] {
 
 impl Band {
     /// Creates the band from `min` to `max` \[rad/s\].
+    ///
+    /// # Errors
+    /// [`BandError`] unless `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
     pub fn new(min: f64, max: f64) -> Result<Self, BandError> {
         if LEAST_OMEGA <= min && min < max && max <= GREATEST_OMEGA {
             Ok(Self { min, max })
@@ -62,8 +65,10 @@ impl Band {
         }
     }
 
-    /// Creates a band that may exceed the frequency limits, `0 < min < max`, such as a plotted
-    /// range.
+    /// Creates a band that may exceed the frequency limits, such as a plotted range.
+    ///
+    /// # Errors
+    /// [`BandError`] unless `0 < min < max` and `max` is finite.
     pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
         if 0.0 < min && min < max && max.is_finite() {
             Ok(Self { min, max })

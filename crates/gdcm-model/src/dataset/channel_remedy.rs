@@ -1,4 +1,4 @@
-//! Corrects a channel in a single flight record.
+//! Correction to a channel in a single flight record.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {
-    /// Extra logging delay \[s\] relative to the other records; it is removed.
+    /// Extra logging delay \[s\] relative to the other records; the correction removes it.
     pub delay_s: f64,
     /// Factor on the channel's samples, in addition to the unit conversion.
     pub factor: f64,

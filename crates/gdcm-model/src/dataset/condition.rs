@@ -100,8 +100,8 @@ impl Condition {
     /// Creates a condition without flight records from its models in file order.
     ///
     /// # Errors
-    /// [`ConditionError`] for an invalid value, an empty physics bundle, a duplicate name, or if
-    /// there is not exactly one nominal model.
+    /// [`ConditionError`] for an invalid value in the flight state, an empty physics bundle, a
+    /// duplicate name, or if there is not exactly one nominal model.
     pub fn new(
         flight_state: FlightState,
         physics: Vec<Model>,
@@ -261,7 +261,8 @@ impl Condition {
         Some(&self.bundle(kind)[self.position(kind, name)?])
     }
 
-    /// Returns the memory that all models' numbers take \[bytes\].
+    /// Returns the memory taken by all models' dynamics \[bytes\]
+    /// ([`Dynamics::bytes`](super::Dynamics::bytes)).
     pub fn model_bytes(&self) -> usize {
         let mut bytes = 0;
         for kind in BundleKind::BOTH {

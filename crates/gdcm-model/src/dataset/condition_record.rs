@@ -66,8 +66,9 @@ impl ConditionRecord {
         Ok(())
     }
 
-    /// Returns whether both entries refer to the same record in the same file. Only the file names
-    /// in the paths are compared, because the folders may be relative to different places.
+    /// Returns whether both entries refer to the same record in the same file. The hashes are
+    /// compared if both are known. Only the file names in the paths are compared, because the
+    /// folders may be relative to different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let contents_differ = match (&self.sha256, &other.sha256) {
             (Some(a), Some(b)) => a != b,

@@ -13,7 +13,7 @@ use super::physics_parameter::{ParameterError, PhysicsParameter, check_parameter
 
 /// Channels, on-axis responses, default band, and the flight conditions with their models (M1).
 ///
-/// Consistent since construction: every model has `p` outputs and `m` inputs.
+/// Checked at construction: every model has the dataset's `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
     header: DatasetHeader,
@@ -102,7 +102,7 @@ impl Dataset {
     /// Creates a dataset from conditions in file order.
     ///
     /// # Errors
-    /// [`DatasetError`] for an empty list, a duplicate channel name or condition identifier, or a
+    /// [`DatasetError`] for an empty list, a duplicate channel name or condition identifier, a
     /// wrong channel count in a model or in `on_axis`, or an invalid parameter.
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;

@@ -67,7 +67,8 @@ impl DatasetDraft {
             }
             conditions.extend(checker.condition(index + 1, draft));
         }
-        // A fault in a condition alone leaves both values in place.
+        // If only a condition has a fault, `band` and `on_axis` are `Some`; therefore the faults
+        // are tested too.
         let (Some(band), Some(on_axis), true) = (band, on_axis, checker.faults.is_empty()) else {
             return Err(checker.faults);
         };
@@ -101,7 +102,8 @@ impl Dataset {
     }
 }
 
-/// Returns the on-axis table for responses given by output and input names.
+/// Returns the on-axis table for responses given by output and input names; fails for an unknown
+/// channel or a duplicate response.
 fn on_axis_table(
     outputs: &[Channel],
     inputs: &[Channel],
@@ -117,7 +119,8 @@ fn on_axis_table(
     Ok(table)
 }
 
-/// Marks a response by the names of its channels, each response once.
+/// Marks a response given by its channel names; fails if a channel is unknown, or the response is
+/// marked already.
 fn mark_on_axis(
     table: &mut PairTable<bool>,
     outputs: &[Channel],

@@ -22,7 +22,8 @@ impl Dynamics {
         }
     }
 
-    /// Returns the memory that the numbers take \[bytes\].
+    /// Returns the memory \[bytes\] taken by the matrices, or by the measured frequencies, values
+    /// and coherence; delays and valid bands are not counted.
     pub fn bytes(&self) -> usize {
         const REAL: usize = size_of::<f64>();
         match self {

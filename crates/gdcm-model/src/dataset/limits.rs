@@ -4,7 +4,8 @@
 /// about 500 conditions of the example's size.
 pub const LARGEST_TEXT: u64 = 128 << 20;
 /// Maximum number of inputs, and of outputs: the largest number tested with gains and delays.
-/// Response tables grow with the product of both, and the search for the best gains grows faster.
+/// Response tables grow with the product of both, and the time to search for the best gains grows
+/// faster.
 pub const MOST_CHANNELS: usize = 32;
 /// Maximum number of on-axis, constrained or ignored responses.
 pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
@@ -14,7 +15,8 @@ pub const MOST_CONDITIONS: usize = 5000;
 pub const MOST_MODELS: usize = 5000;
 /// Maximum number of records in a condition: comparing names takes quadratic time.
 pub const MOST_RECORDS: usize = 1000;
-/// Maximum number of pieces in a record, and of source records listed by a model.
+/// Maximum number of used intervals in a record, and of notes, source records and unused variables
+/// listed by a model.
 pub const MOST_PIECES: usize = 1000;
 /// Maximum number of models in all conditions together.
 pub const MOST_MODELS_IN_ALL: usize = 50_000;

@@ -20,9 +20,9 @@ pub struct MeasuredResponse {
     estimate: Estimate,
 }
 
-/// Settings with which a response was estimated; `None` if its author does not give them. With the
-/// coherence, they determine error bars (M13) and the weight in the coupling fit (M16.2), but not
-/// the gains and delays of the condition itself.
+/// Settings with which a response was estimated, each `None` if the response's author does not give
+/// it. With the coherence, the settings determine error bars (M13) and the weight in the coupling
+/// fit (M16.2), but not the gains and delays of the condition itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Number of independent averages.
@@ -149,7 +149,7 @@ impl MeasuredResponse {
         })
     }
 
-    /// Returns the measurement with valid bands: each response's first and last trusted frequency
+    /// Returns the response with valid bands: each response's first and last trusted frequency
     /// \[rad/s\] (M4a).
     ///
     /// # Errors

@@ -24,7 +24,6 @@ pub struct PhysicsParameter {
 /// A named parameter's change from its nominal value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterChange {
-    /// Parameter name.
     pub name: String,
     /// Change, in `unit`; not zero.
     pub delta: f64,
@@ -88,7 +87,7 @@ pub enum ParameterError {
 }
 
 impl ParameterError {
-    /// Returns the stable code used in files.
+    /// Returns the stable code by which scripts and tests distinguish the errors.
     pub fn code(&self) -> &'static str {
         match self {
             Self::EmptyName { .. } => "parameter-without-name",

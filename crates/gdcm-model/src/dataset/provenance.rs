@@ -1,4 +1,4 @@
-//! A model's source: file, variable, flight records, and the notes added when it was read.
+//! A model's source: file, variable, flight records, and notes on its import.
 
 use super::channel::ChannelSide;
 
@@ -13,7 +13,7 @@ pub struct Provenance {
     pub variable: Option<String>,
     /// Creation date, in any format.
     pub made: Option<String>,
-    /// Notes added when the file was read.
+    /// Notes on reading, unit conversion and joining, separated by semicolons.
     pub note: Option<String>,
     /// Flight records from which an identified model was estimated, by name; empty if unknown.
     pub records: Vec<String>,

@@ -189,7 +189,8 @@ pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
     unread
 }
 
-/// Sets the field named by a group to its text, unless the field already has a value.
+/// Sets the field named by a group to the group's text, unless the field already has a value. The
+/// groups `nominal`, `perturbed` and `identified` set the role, whatever their text.
 fn put_if_empty(group: &str, text: &str, facts: &mut NameFacts) {
     match group {
         "condition" => facts.condition = facts.condition.or_else(|| text.parse().ok()),
@@ -216,7 +217,8 @@ fn put_if_empty(group: &str, text: &str, facts: &mut NameFacts) {
     }
 }
 
-/// Returns the parameter change in a match: a name and a signed number other than zero.
+/// Returns the parameter change in a match: a name and a signed number; `None` if either is
+/// missing, or the number is zero.
 fn parameter_change(found: &Captures<'_>) -> Option<ParameterChange> {
     let name = found.name(PARAMETER)?.as_str();
     let delta = parse_offset(found.name(DELTA)?.as_str())?;

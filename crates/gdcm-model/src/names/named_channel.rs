@@ -107,7 +107,8 @@ pub(super) struct Word<'t> {
     pub(super) text: &'t str,
 }
 
-/// Splits a text into words, which consist of letters and digits.
+/// Splits a text into words, which consist of letters and digits; at most [`MOST_WORDS`] are
+/// returned.
 pub(super) fn split_words(text: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
     let mut start = None;

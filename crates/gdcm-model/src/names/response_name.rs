@@ -160,8 +160,8 @@ fn only_channel(
     })
 }
 
-/// Returns whether a word is a number, a unit with or without a number, or a filler: "run2",
-/// "60kt", "v2".
+/// Returns whether a word is a number, with at most one letter beside it ("v2"); a unit for speed,
+/// length, level or frequency ("60kt"); or a filler ("run2").
 fn is_filler(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
@@ -175,7 +175,8 @@ fn is_filler(word: &str) -> bool {
     plain.is_empty() || is_number || is_unit || FILLERS.contains(&plain)
 }
 
-/// Words in file names that do not name a channel. Numbers and units are also ignored.
+/// Words in file names that do not name a channel. [`is_filler`] also ignores numbers and some
+/// units.
 const FILLERS: [&str; 44] = [
     "frf",
     "fr",

@@ -13,8 +13,8 @@ pub const SAMPLE_TIME_NAMES: [&str; 7] = [
     "Tsample",
 ];
 
-/// Ranks a name by how likely it denotes the sample times: 0 is the most likely, `None` if it does
-/// not denote a time. A trailing time unit does not change the rank: `time_s`, `t [ms]`.
+/// Ranks a name by how likely it denotes a record's time stamps: 0 is the most likely, `None` if it
+/// does not denote a time. A trailing time unit does not change the rank: `time_s`, `t [ms]`.
 pub fn time_name_rank(name: &str) -> Option<u8> {
     let lower_case: Vec<String> = name
         .split(|letter: char| !letter.is_alphanumeric())

@@ -43,7 +43,6 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns `self - other`.
     #[inline(always)]
     pub(super) fn minus(self, simd: S, other: Self) -> Self {
         Self {
@@ -70,7 +69,6 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns `self * other`.
     #[inline(always)]
     pub(super) fn product(self, simd: S, other: Self) -> Self {
         let re = simd.mul_f64s(self.re, other.re);

@@ -333,8 +333,9 @@ fn subtract_multiple<S: Simd>(
     }
 }
 
-/// Step 4: in some lanes `u` clears the column and the next row becomes active, in the others as in
-/// step 5. With `u_k`, `w_k` and `h_k` as in the steps, the rows become in the former lanes
+/// Step 4 in a column: in the lanes with `|u_k| > |h_k|`, `u` clears the column and the next row
+/// becomes active; in the other lanes, `r` clears it as in step 5. With the symbols of the steps,
+/// the rows become in the former lanes
 ///
 /// ```text
 /// active row:  h_k r - (h_k / u_k) u

@@ -1,8 +1,9 @@
-//! Logarithmically spaced frequency grids.
+//! Frequency grids, usually logarithmically spaced.
 
 use crate::dataset::Band;
 
-/// `N` frequencies \[rad/s\], rising, logarithmically spaced over a band, both ends included (M2).
+/// `N` rising frequencies \[rad/s\]: logarithmically spaced over a band, both ends included (M2),
+/// unless created by [`FrequencyGrid::at`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyGrid {
     omega: Vec<f64>,
@@ -37,8 +38,8 @@ impl FrequencyGrid {
     }
 }
 
-/// Returns `omega_k = exp(ln low + (k / (N - 1)) (ln high - ln low))` \[rad/s\], k = 0 ... N - 1,
-/// for `N = max(count, 2)`; the ends are exact.
+/// Returns `omega_k = lowest (highest / lowest)^(k / (N - 1))` \[rad/s\], k = 0 ... N - 1, for `N =
+/// max(count, 2)`; the ends are exact.
 #[must_use]
 pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
     let low = lowest.ln();

@@ -7,7 +7,8 @@ use crate::dataset::{Pair, PairTable};
 /// A model's values `H(j omega)` on a grid of `N` frequencies: a p x m table of curves.
 ///
 /// A value is not finite if the response is undefined: at a pole on the imaginary axis, at and
-/// above `pi / T` in discrete time, or outside the measured frequencies.
+/// above `pi / T` in discrete time, outside the measured frequencies, or for a model with a
+/// [`LargeEntry`](super::large_entry::LargeEntry).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
     pub(super) curves: PairTable<Vec<Complex<f64>>>,

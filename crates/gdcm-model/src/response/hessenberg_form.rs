@@ -56,7 +56,8 @@ pub(super) struct HessenbergForm {
     pub subdiagonals: Vec<Subdiagonal>,
     /// First row of `[G K]`, then all rows of `[L D^T]` except the first.
     pub complex_rows: Vec<f64>,
-    /// All rows of `[G K]` except the first, each divided by its subdiagonal entry.
+    /// All rows of `[G K]` except the first, each divided by its subdiagonal entry unless this is
+    /// negligible.
     next_rows: Vec<f64>,
     /// First row of `D^T`.
     pub feed_through: Vec<f64>,
@@ -254,7 +255,7 @@ impl ReversedSystem {
         }
     }
 
-    /// Returns a row, multiplied by a factor.
+    /// Returns a row of `[G K; L D^T]`, multiplied by a factor.
     fn scaled_row(&self, row: usize, factor: f64) -> impl Iterator<Item = f64> {
         (0..self.order + self.outputs).map(move |column| factor * self.entry(row, column))
     }

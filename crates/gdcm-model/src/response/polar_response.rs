@@ -80,7 +80,7 @@ impl PolarResponse {
     /// largest peak for the same input; `false` for a response without a curve. Numerical
     /// differentiation produces such values instead of exact zeros.
     pub fn numerically_zero(&self) -> PairTable<bool> {
-        /// Level of a numerically zero response, relative to the largest peaks.
+        /// Level \[dB\] below which a response is numerically zero, relative to the largest peaks.
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| match curve {
             Some(curve) => largest(curve.magnitude_db.iter()),
@@ -106,7 +106,8 @@ impl PolarResponse {
         }
     }
 
-    /// Returns the curves, `[output, input]`; `None` for an undefined response.
+    /// Returns the curves, `[output, input]`; `None` for a response that is undefined, not marked
+    /// or cleared.
     pub fn curves(&self) -> &PairTable<Option<PolarCurve>> {
         &self.curves
     }

@@ -88,8 +88,9 @@ impl PreparedModel {
     /// | discrete time | `C (zI - A)^-1 B + D`, `z = e^(j omega T)`; NaN at and above `pi / T` |
     /// | measured | interpolated; NaN outside the measured frequencies |
     ///
-    /// Channel delays multiply it by `e^(-j omega (tau_o + tau_i))`. A response whose input cannot
-    /// reach its output is exactly zero; all responses of a model with a [`LargeEntry`] are NaN.
+    /// Channel delays multiply it by `e^(-j omega (tau_o + tau_i))`, with the output's delay
+    /// `tau_o` and the input's delay `tau_i`. A response whose input cannot reach its output is
+    /// exactly zero; all responses of a model with a [`LargeEntry`] are NaN.
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
         self.at(grid.omega())
     }
@@ -155,7 +156,7 @@ impl PreparedStateSpace {
     }
 }
 
-/// Multiplies a curve by `e^(-j omega tau)`.
+/// Multiplies a curve by `e^(-j omega tau)`, where `tau` is `delay_s`.
 fn delay(curve: &mut [Complex<f64>], omega: &[f64], delay_s: f64) {
     for (value, omega) in curve.iter_mut().zip(omega) {
         *value *= Complex::from_polar(1.0, -omega * delay_s);

@@ -64,7 +64,7 @@ impl ResponseShape {
         }
     }
 
-    /// Returns the shape after a correction in gain and delay (M10).
+    /// Returns the shape after a correction in gain, delay and leads (M10, M15.5).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase = radians(self.phase_deg.iter());
         Self {

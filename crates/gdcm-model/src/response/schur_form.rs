@@ -5,7 +5,8 @@
 //! 1  A = Q T Q', T with 1 x 1 and 2 x 2 blocks on its diagonal: Francis' implicit double shifts
 //! 2  for each 2 x 2 block [p q; r s]: mean and half difference m = (p + s) / 2, h = (p - s) / 2
 //!       lambda = m +- j sqrt(-(h^2 + q r)), exact conjugates; or two real eigenvalues
-//! 3     rotate its rows so that the block becomes triangular: first column (lambda - s, r) / norm
+//! 3     rotate its rows and columns so that the block becomes triangular; the rotation's first
+//!       column is (lambda - s, r) / norm
 //! ```
 //!
 //! On request, neighbouring eigenvalues are exchanged by rotating their rows and columns, so that

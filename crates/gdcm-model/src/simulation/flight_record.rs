@@ -9,7 +9,6 @@ use crate::dataset::channel::ChannelSide;
 /// A flight record: time stamps and samples for all inputs and outputs, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightRecord {
-    /// Display name.
     pub name: String,
     /// Time stamps \[s\]; NaN if missing.
     pub time_s: Vec<f64>,
@@ -26,7 +25,6 @@ pub struct Segment {
     pub record: usize,
     /// First sample's time \[s\], on the record's time axis.
     pub start_s: f64,
-    /// Sample time \[s\].
     pub sample_time_s: f64,
     /// Inputs: one row per sample, one column per channel.
     pub inputs: DMatrix<f64>,

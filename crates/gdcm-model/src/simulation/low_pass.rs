@@ -19,7 +19,8 @@ const LONGEST: f64 = 1e5;
 /// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
 /// ```
 ///
-/// Its phase is zero. All channels in a record pass through the same filter, so that the responses
+/// Here n counts samples, wc is the cut-off frequency \[rad/s\], and dt the sample time \[s\]. The
+/// phase is zero. All channels in a record pass through the same filter, so that the responses
 /// between channels are unchanged. At both ends the signal is extended by odd reflection, `2 x[0] -
 /// x[n]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +32,8 @@ pub struct LowPass {
 impl LowPass {
     /// Creates the filter with the cut-off frequency `omega` \[rad/s\] for a sample time \[s\].
     ///
-    /// Returns `None` if `omega dt > 0.8 pi` (nothing to remove), if either argument is not
-    /// positive, or if `M` would exceed 100 000.
+    /// Returns `None` if `omega sample_time_s > 0.8 pi` (nothing to remove), if either argument is
+    /// not positive, or if `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
         let step = omega * sample_time_s;

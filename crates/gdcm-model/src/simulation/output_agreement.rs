@@ -16,7 +16,6 @@ pub struct ValidationWindow {
     pub record: usize,
     /// First sample's time \[s\], on the record's time axis.
     pub start_s: f64,
-    /// Sample time \[s\].
     pub sample_time_s: f64,
     /// Measured outputs, filtered if requested: one row per sample, one column per output.
     pub measured: DMatrix<f64>,

@@ -16,11 +16,12 @@ use crate::executor::{Executor, each};
 /// offsets.
 ///
 /// ```text
-/// 1  window: 3 / max Re lambda, at most longest_window_s; each segment is divided into equal
-///    windows without a remainder; a segment that is too short has none
+/// 1  window: longest_window_s, or 3 / max Re lambda over the poles lambda if this is positive
+///    and shorter; each segment is divided into equal windows without a remainder; a segment
+///    that is too short has none
 /// 2  low-pass filter of all signals, if the settings have one
 /// 3  y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples,
-///    Phi = e^(A T)
+///    Phi = e^(A T); n counts the samples in the window, T is the sample time
 ///    x0, offset: least squares over all outputs, each divided by its standard deviation
 /// 4  fit and Theil's coefficient of each output, over all windows
 /// ```
@@ -117,11 +118,11 @@ fn simulated_windows(
 pub struct Validation {
     /// The windows, by segment and time; at least one.
     pub windows: Vec<ValidationWindow>,
-    /// Each output's fit, `100 (1 - rms(e) / std(y))`, at most 100; `None` if the output is
-    /// constant.
+    /// Each output's fit, `100 (1 - rms(y - y^) / std(y))` with measured output y and simulated
+    /// output y^, at most 100; `None` if the measured output is constant.
     pub fit_percent: Vec<Option<f64>>,
-    /// Each output's Theil coefficient, `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
-    /// `None` if both are constant and equal.
+    /// Each output's Theil coefficient, `rms(y - y^) / (rms(y) + rms(y^))` with the rms values of y
+    /// and y^ about the mean of y, 0 to 1; `None` if both are constant and equal.
     pub theil: Vec<Option<f64>>,
 }
 
@@ -130,7 +131,8 @@ pub struct Validation {
 pub enum ValidationError {
     #[error("no record is available for the comparison with the model")]
     NoSegments,
-    /// The inputs or outputs differ from a segment's; its record's index, counted from 0.
+    /// The model's channel counts differ from a segment's; holds the index of the segment's record,
+    /// counted from 0.
     #[error("the channels of record {} differ from those of the model", .0 + 1)]
     ChannelsDiffer(usize),
     /// A model that cannot be discretised, or whose poles cannot be computed.
@@ -138,7 +140,7 @@ pub enum ValidationError {
     NotSimulated,
     #[error("the window length must be greater than 0 s")]
     NoWindow,
-    /// Too few samples to estimate an initial state; window length \[s\].
+    /// Too few samples to estimate an initial state; holds the window length \[s\].
     #[error(
         "windows of {0:.2} s (limited by the record, or by {TIME_CONSTANTS} time constants of the \
         model's fastest diverging mode) contain too few samples to estimate the initial state"

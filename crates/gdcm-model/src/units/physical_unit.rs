@@ -49,7 +49,6 @@ struct UnitRow {
     spellings: &'static [&'static str],
 }
 
-/// Creates a row in [`UNITS`].
 const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str]) -> UnitRow {
     UnitRow {
         dimension,

@@ -141,7 +141,7 @@ impl AirspeedResponse<'_> {
     }
 }
 
-/// Returns the line style that tells a role apart.
+/// Returns the line style that distinguishes a role from the others at the same airspeed.
 pub fn line_of(role: AcrossRole) -> AirspeedLine {
     match role {
         AcrossRole::Identified => AirspeedLine::Identified,
@@ -208,7 +208,7 @@ struct ConditionShapes {
     nominal: Option<ResponseShape>,
 }
 
-/// A response's shapes in each condition, kept until their source changes.
+/// A response's shapes in each condition, kept until the responses or the pair change.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
     curves: Option<Arc<AcrossCurves>>,
@@ -249,7 +249,7 @@ impl AirspeedCache {
     }
 }
 
-/// Model responses in one condition.
+/// Source of the shapes in one condition.
 struct ShapeSource<'a> {
     response: &'a AirspeedResponse<'a>,
     condition: &'a Condition,

@@ -121,7 +121,7 @@ pub fn airspeeds_figure(
     Some(figure.caption(caption))
 }
 
-/// Both plots for one response.
+/// Contents of a response's two plots: its curves, and the schedule's error.
 struct AirspeedPlots<'a> {
     curves: AirspeedCurves,
     analysis: &'a Analysis,

@@ -53,7 +53,8 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// Plots ΔJ and its parts over the conditions, for each pair; negative values are improvements.
+/// Plots ΔJ and its parts over the conditions, for each of `pairs`; negative values are
+/// improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
     let table = AssessmentTable::assess(analysis, choice);
     let dataset = &analysis.study.dataset;

@@ -17,14 +17,14 @@ pub struct BodeOptions {
     pub phase_error: PhaseErrorUnit,
     pub hidden: BTreeSet<Role>,
     pub hidden_models: BTreeSet<ModelId>,
-    /// Model to be shown alone, besides the representatives.
+    /// Model to be shown alone, besides the representatives; `None` shows all models.
     pub isolated: Option<ModelId>,
     /// Full turns (360°) by which the engineer shifts a curve's phase.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
     /// Whether to show the envelopes for maximum unnoticeable added dynamics (MUAD), about the
     /// identified response and in the error plots.
     pub shows_muad: bool,
-    /// Response whose zeros are shown in the pole plot.
+    /// Response whose zeros are shown in the pole plot; `None` shows no zeros.
     pub zeros_of: Option<Pair>,
     /// Names and values \[rad/s\] of the frequencies at which a bandwidth is read, marked by
     /// vertical lines.

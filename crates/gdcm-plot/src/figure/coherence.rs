@@ -14,7 +14,7 @@ use super::role::Role;
 
 /// Height of the coherence panel; the phase panel has height 1.
 const WEIGHT: f64 = 0.45;
-/// Line at the minimum coherence at which frequencies count.
+/// Line at the minimum coherence at which a frequency is used in the fit.
 const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 
 /// A measured response's coherence.
@@ -63,8 +63,8 @@ impl ConditionSource<'_> {
         })
     }
 
-    /// Returns the minimum coherence at which a frequency counts: the value from the settings,
-    /// otherwise the default.
+    /// Returns the minimum coherence at which a frequency is used in the fit (M4a): the value from
+    /// the settings; if the settings ignore coherence, the default.
     pub fn least_coherence(&self) -> f64 {
         self.study
             .settings

@@ -33,7 +33,7 @@ pub enum Hue {
 }
 
 impl Hue {
-    /// Returns red, green and blue on paper (sRGB): the light theme's colours on white.
+    /// Returns red, green and blue on paper (sRGB), mostly as in the light theme.
     pub fn on_paper(self) -> [u8; 3] {
         let rgb: u32 = match self {
             Self::Background => 0xffffff,

@@ -266,7 +266,8 @@ impl<'a> ConditionSource<'a> {
         })
     }
 
-    /// Returns the representative physics model with couplings alone.
+    /// Returns the representative physics model with couplings alone; `None` as for
+    /// [`Self::corrected_model`].
     fn coupled_model(
         &self,
         analysis: &'a ConditionAnalysis,
@@ -285,7 +286,8 @@ impl<'a> ConditionSource<'a> {
         Some(model)
     }
 
-    /// Returns the representative physics model in the variant `name`.
+    /// Returns the representative physics model in the variant `name`; `None` as for
+    /// [`Self::corrected_model`].
     fn variant_model(
         &self,
         name: &str,

@@ -29,7 +29,7 @@ const SHOWN_POLES: f64 = 1.5;
 /// Plots the minimum singular value of `I - K H` over frequency for every condition, and the
 /// physics representative's poles without and with couplings for the condition `shown`, whose curve
 /// is drawn on top. If `shown` is `None` or was not assessed, uses the condition with the smallest
-/// margin. Returns `None` if there are no conditions.
+/// [`LoopMargin`]. Returns `None` if there are no conditions.
 pub fn couplings_figure(
     assessment: &CouplingsAssessment,
     shown: Option<ConditionId>,
@@ -49,8 +49,8 @@ pub fn couplings_figure(
     Some(figure)
 }
 
-/// Returns the condition with the smallest margin; a missing margin counts as infinite. `None` if
-/// there are no conditions.
+/// Returns the condition with the smallest [`LoopMargin`]; a missing margin counts as infinite.
+/// `None` if there are no conditions.
 fn nearest_to_ringing(assessment: &CouplingsAssessment) -> Option<ConditionId> {
     let ids = assessment.conditions.keys().copied();
     ids.min_by(|a, b| least_margin(assessment, *a).total_cmp(&least_margin(assessment, *b)))

@@ -12,7 +12,7 @@ const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
 const FAR: f64 = 1e3;
 /// Maximum number of arcs.
 const ARCS: u32 = 8;
-/// Intervals between the points of an arc.
+/// Number of intervals between the points of an arc.
 const ARC_POINTS: usize = 60;
 /// Distances, as fractions of plot width and height, below which two labels overlap.
 const BESIDE: [f64; 2] = [0.11, 0.07];

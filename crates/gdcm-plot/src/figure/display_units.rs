@@ -30,8 +30,8 @@ impl FrequencyUnit {
         }
     }
 
-    /// Rounds the angular frequency `omega` \[rad/s\] so that it has three significant digits in this
-    /// unit: what a dragged limit displays is then its value.
+    /// Rounds the angular frequency `omega` \[rad/s\] to three significant digits in this unit. The
+    /// number displayed for a dragged limit is then exactly its value.
     pub fn rounded_omega(self, omega: f64) -> f64 {
         let value = self.of_omega(omega);
         let rounded = format!("{value:.2e}").parse().unwrap_or(value);

@@ -7,9 +7,9 @@ use super::marks::{DotShape, Dots};
 pub(super) const DOT: f64 = 2.1;
 /// Line width for an open dot, a cross or a plus in the usual size \[pt\].
 const DOT_LINE: f64 = 0.9;
-// Corners and line ends, relative to the radius; y runs downwards. They extend beyond the radius
-// where a shape would otherwise have less area than the circle.
 
+// Corners and line ends, relative to the radius; y runs downwards. Some lie outside the radius, so
+// that all shapes have about the circle's area.
 const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
 const SQUARE: [[f64; 2]; 4] = [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];

@@ -23,8 +23,8 @@ use super::error_cache::{ErrorKey, ErrorSource};
 use super::figure::{Figure, Plot};
 use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 
-/// Plots the deviations used by the fit for `pairs`: for every kept physics model, and for the
-/// representative before and after its correction, with G, D and the bounds.
+/// Plots the deviations used by the fit for `pairs`: for every physics model that is not rejected,
+/// and for the representative before and after its correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, Some("Error"), |pair| {
         error_plot(source, pair, options)
@@ -58,9 +58,9 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 }
 
 impl ConditionSource<'_> {
-    /// Returns the deviations over the band: for every kept physics model; if there are any, for
-    /// the reference as the line at zero; and for the representative after each correction. `cache`
-    /// keeps the computed deviations until their sources change.
+    /// Returns the deviations over the band: for every physics model that is not rejected; if there
+    /// are any, for the reference as the line at zero; and for the representative after each
+    /// correction. `cache` keeps the computed deviations until their sources change.
     pub fn error_curves(
         &self,
         pair: Pair,

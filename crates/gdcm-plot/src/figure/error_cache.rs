@@ -1,5 +1,7 @@
 //! Deviations between a response and its reference at each frequency, computed once and kept until
-//! their sources change. H_sim and H_ref are defined in `error.rs`.
+//! their sources change. H_sim and H_ref are defined in `error.rs`. If coherence is ignored, all
+//! frequencies *count*; otherwise those in the reference's valid band at which its coherence
+//! reaches the minimum in the settings (M4a).
 
 use std::sync::Arc;
 
@@ -56,8 +58,8 @@ impl ErrorShape {
         })
     }
 
-    /// Returns the deviation, as drawn over `omega` \[rad/s\], after a gain and a delay are added
-    /// to the simulated response (M10); the phase stays on its branch.
+    /// Returns the deviation, as drawn over `omega` \[rad/s\], after the correction is applied to
+    /// the simulated response (M10); the phase stays on its branch.
     pub(super) fn drawn(
         &self,
         correction: GainDelay,
@@ -190,7 +192,8 @@ impl ErrorCache {
         Some(error.shape.clone())
     }
 
-    /// Computes a deviation that is not in the cache.
+    /// Computes the deviation of a response that is not in the cache; `None` as for
+    /// [`ErrorSource::shape`], or if the cache is empty.
     pub(super) fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.source.as_ref()?.shape(response, &self.omega)
     }

@@ -16,9 +16,9 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 
 impl ConditionSource<'_> {
     /// Returns lines at G and D, at the channel bounds, and at quantiles of the representative's
-    /// deviation (M6, M7); where requested, also the MUAD envelopes. There are none before the
-    /// condition is compared; they do not depend on whether the representative's curve in `drawn`
-    /// is hidden.
+    /// deviation (M6, M7); where requested, also the MUAD envelopes. Empty before the condition is
+    /// compared. Lines at quantiles are returned even if the representative's curve in `drawn` is
+    /// hidden.
     pub fn error_references(
         &self,
         pair: Pair,
@@ -72,7 +72,7 @@ fn delta_lines(
     lines
 }
 
-/// Returns lines at the channel bounds: both gains, and the upper delay (M7).
+/// Returns lines at the channel bounds: the lower and the upper gain, and the upper delay (M7).
 fn bound_lines(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let bounds = analysis.gain_bounds();
     let delay_s = analysis.delay_upper_s();

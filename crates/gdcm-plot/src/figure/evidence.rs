@@ -25,8 +25,9 @@ const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Positions \[%\] for the ratios above the shares, and for the note on a missing decomposition.
+/// Position \[%\] for the ratios above the shares.
 const ABOVE: f64 = 109.0;
+/// Position \[%\] for the note on a missing decomposition.
 const MIDDLE: f64 = 50.0;
 
 /// Names of the axis positions: scatter between conditions at equal airspeed, and scatter about the

@@ -24,20 +24,22 @@ const UNCORRECTED: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.6);
 /// Part of the error bar due to identification alone.
 const INNER_BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(50), 2.4);
-/// How far the axis may extend to show error bars, relative to the range of the dots.
+/// Maximum extension of the axis at either end to show error bars, relative to the range of the
+/// dots.
 const BARS_EXTENSION: f64 = 0.5;
 /// Bracket between net gains at the same airspeed that differ significantly.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::new(Hue::Warning), 0.7);
 /// Bracket between other net gains at the same airspeed.
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
-/// Names for both kinds of bracket, in the legend and in the tables.
+/// Name for brackets at significant differences, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
+/// Name for the other brackets, in the legend and in the tables.
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background that marks the bounds.
 const BOUNDS: Color = Color::new(Hue::Accent).tint(16);
-/// Background width on an airspeed axis \[kt\].
+/// Width of the bounds' background on an airspeed axis \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
-/// Background width on an axis that counts conditions.
+/// Width of the bounds' background on an axis of conditions, which are 1 apart.
 const BOUNDS_WIDTH: f64 = 0.7;
 
 /// A gain or a delay from an analysis, with its uncertainty if available.

@@ -23,7 +23,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// Formats a value with its unit.
+    /// Formats a gain with three decimals, or a delay with one and its unit.
     pub fn text(self, value: f64) -> String {
         match self {
             Self::Gain => decimals(value, 3),

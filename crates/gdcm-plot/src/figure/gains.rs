@@ -25,7 +25,7 @@ const ASPECT_WITH_BARS: f64 = 1.3;
 const VARIANT_DOT: f64 = 0.7;
 /// Colour of optima and schedule from before the settings changed.
 const PREVIOUS: Color = Color::new(Hue::Rejected);
-/// Size of these optima, relative to the usual dot.
+/// Size of the previous optima, relative to the usual dot.
 const PREVIOUS_DOT: f64 = 0.5;
 
 /// Plots each pair's net gain at every condition's optimum, and the schedule (Figures 6 and 7);
@@ -119,7 +119,7 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
 }
 
 /// Overlays a variant's optima and schedule on plots against airspeed: small open dots behind the
-/// existing dots, and a dotted line. `quantities` lists what each plot shows, in order.
+/// existing dots, and a dotted line. `quantities` contains each plot's quantity, in order.
 pub fn add_variant(
     figure: &mut Figure,
     quantities: &[GainQuantity],
@@ -136,7 +136,8 @@ pub fn add_variant(
 }
 
 /// Adds the optima and the schedule from before the settings changed to plots against airspeed, in
-/// grey behind the existing schedule and dots. `quantities` lists what each plot shows, in order.
+/// grey behind the existing schedule and dots. `quantities` contains each plot's quantity, in
+/// order.
 pub fn add_previous(figure: &mut Figure, quantities: &[GainQuantity], analysis: &Analysis) {
     let panels = figure
         .plots

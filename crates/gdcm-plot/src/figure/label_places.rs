@@ -87,10 +87,10 @@ const LEADER_ON_LABEL: f64 = 20.0;
 const AMBIGUOUS: f64 = 6.0;
 /// Cost of each direction that precedes the chosen direction in [`DIRECTIONS`].
 const LATER_DIRECTION: f64 = 0.2;
-/// Cost per point of distance from the dot.
+/// Cost per point of distance from the dot's edge.
 const FARTHER: f64 = 0.6;
-/// Maximum fraction of a label's area over other labels, over dots, or outside the bounds. A label
-/// that covers more is removed as unreadable.
+/// Maximum sum of the fractions of a label's area over other labels, over dots and outside the
+/// bounds. A label with a larger sum is removed as unreadable.
 const MOST_COVERED: f64 = 0.12;
 /// Side of the square that approximates a dot, relative to the dot's radius.
 const DOT_SIDE: f64 = 1.9;
@@ -115,7 +115,7 @@ pub struct LabelPlace {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelledDot {
     pub center: [f64; 2],
-    /// Minimum distance between labels and the centre \[pt\].
+    /// Radius \[pt\] of the dot or of the ring around it, which labels should not cover.
     pub radius: f64,
     /// Label width and height; no label is placed if its width is zero.
     pub size: [f64; 2],
@@ -294,7 +294,8 @@ impl Placing<'_> {
         worst
     }
 
-    /// Returns the fraction of a label's area over other labels, over dots, and outside the bounds.
+    /// Returns the sum of the fractions of a label's area over other labels, over dots and outside
+    /// the bounds.
     fn covered_part(&self, index: usize) -> f64 {
         let Some(place) = self.places[index] else {
             return 0.0;
@@ -338,8 +339,8 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     candidates
 }
 
-/// Returns what leaders across labels cost: this leader across other labels, and other leaders
-/// across this label.
+/// Returns the cost for leaders across labels: the label's own leader across other labels, and
+/// other leaders across the label.
 fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
     let mut length = 0.0;
     for other in others {

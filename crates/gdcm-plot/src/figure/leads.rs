@@ -15,7 +15,7 @@ use super::gains::all_channels;
 use super::marks::{Band, Curve, Rule};
 use super::role::Role;
 
-/// Points in each curve.
+/// Number of points in each curve.
 const POINTS: usize = 240;
 /// Channels other than the response's input and output.
 const OTHERS: Stroke = Stroke::solid(Color::new(Hue::Perturbed).tint(60), 0.8);
@@ -132,7 +132,8 @@ impl PairLeads {
         ]
     }
 
-    /// Returns `: ` and the leads' price in the response; empty without leads.
+    /// Returns `: ` and the leads' price in the response; empty without leads, or if the price
+    /// rounds to 0.
     fn price_words(&self) -> String {
         let price = self.price.as_ref();
         match price.and_then(|price| pair_price_text(price, self.pair)) {

@@ -40,7 +40,7 @@ pub fn letters(words: &str) -> Vec<Letter> {
 }
 
 /// Returns a character's glyph in the first font that contains it, otherwise the first font's empty
-/// box.
+/// box; `None` if no font can be read.
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     let found = fonts
         .iter()

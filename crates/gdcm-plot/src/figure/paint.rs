@@ -189,7 +189,7 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
 #[derive(Clone, Debug)]
 pub struct PaintedPanel {
     pub shapes: Vec<Shape>,
-    /// Labels omitted for lack of room.
+    /// Number of labels omitted for lack of room.
     pub labels_left_out: usize,
 }
 

@@ -17,7 +17,7 @@ const DIGIT_HEIGHT: f64 = 0.74;
 /// Painted dots and labels.
 pub(super) struct PaintedDots {
     pub(super) shapes: Vec<Shape>,
-    /// Labels omitted for lack of room.
+    /// Number of labels omitted for lack of room.
     pub(super) labels_left_out: usize,
 }
 
@@ -90,7 +90,7 @@ fn add_dots<'m>(
     }
 }
 
-/// Adds bracket labels, about the middle of each spine.
+/// Adds bracket labels, to be placed around the middle of each bracket's line.
 fn add_bracket_labels<'m>(placed: &Placed<'_>, group: &'m Brackets, labels: &mut Vec<Label<'m>>) {
     for bracket in &group.brackets {
         if let Some(ends) = placed.bracket(bracket) {

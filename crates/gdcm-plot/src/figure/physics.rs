@@ -34,8 +34,8 @@ const AIRSPEED_MARGIN_KT: f64 = 4.0;
 /// Factor that converts a ratio to percent.
 const PERCENT: f64 = 100.0;
 
-/// Builds the figure for the parameter at index `shown` among those that are on; `None` if there is
-/// no such parameter.
+/// Builds the figure for the parameter at index `shown` among the enabled parameters; `None` if
+/// there is no such parameter.
 pub fn physics_figure(
     findings: &PhysicsFindings,
     dataset: &Dataset,
@@ -68,7 +68,7 @@ pub fn physics_figure(
 
 /// A parameter in every condition.
 struct ShownParameter<'a> {
-    /// Index among the parameters that are on.
+    /// Index among the enabled parameters.
     index: usize,
     parameter: &'a OfferedParameter,
     diagnosis: &'a ParameterDiagnosis,

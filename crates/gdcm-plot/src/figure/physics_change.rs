@@ -18,9 +18,9 @@ use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 
 /// Identified representative.
 const IDENTIFIED: Stroke = Stroke::solid(Color::new(Hue::Identified), 2.4);
-/// Physics representative without the parameters.
+/// Physics representative with unchanged parameters.
 const BEFORE: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.2, Dash::Short);
-/// Physics representative with the parameters.
+/// Physics representative with changed parameters.
 const AFTER: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.6);
 /// Magnitude up to which poles are displayed, relative to the band's upper end.
 const SHOWN_POLES: f64 = 1.5;
@@ -111,7 +111,8 @@ impl ResponsePlots<'_> {
     }
 }
 
-/// Magnitudes or phases for a response: identified, and without and with the parameters.
+/// Magnitudes \[dB\] or phases \[deg\] for a response: identified, and physics with unchanged and
+/// with changed parameters.
 struct Traces<'a> {
     identified: &'a [f64],
     before: &'a [f64],
@@ -128,8 +129,8 @@ impl Traces<'_> {
     }
 }
 
-/// Plots the physics representative's poles without and with the parameters, up to the magnitude
-/// `near` \[rad/s\].
+/// Plots the physics representative's poles with unchanged and with changed parameters, up to the
+/// magnitude `near` \[rad/s\].
 fn pole_plot(effect: &ConditionPhysics, near: f64) -> Plot {
     let mut shown: Vec<PoleShift> = Vec::new();
     for shift in effect.poles.iter().flatten() {

@@ -13,7 +13,8 @@ use super::role::Role;
 /// Arrow width \[pt\].
 const ARROW: f64 = 1.0;
 
-/// Legend for the poles before and after, and the colour of those after.
+/// Legend texts for the poles before and after the change, and the colour of the arrows and of the
+/// poles after it.
 pub(super) struct PoleShiftNames {
     pub(super) before: &'static str,
     pub(super) after: &'static str,

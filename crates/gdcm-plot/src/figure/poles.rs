@@ -36,7 +36,7 @@ const MARGINS: [f64; 2] = [0.06, 0.08];
 /// Minimum width and height in the plot of all poles \[rad/s\].
 const LEAST: f64 = 1.0;
 
-/// Function that returns a model's zeros.
+/// Function that returns a model's zeros \[rad/s\] in the selected response.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
 /// Computed contents for the pole figure.

@@ -39,7 +39,7 @@ pub enum FigureKind {
     Bode,
     /// Deviations between a condition's responses and the reference, as used by the fit.
     Error,
-    /// All responses in a condition, in a table.
+    /// Every response's magnitude in a condition: outputs in rows, inputs in columns.
     Overview,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
@@ -57,7 +57,8 @@ pub enum FigureKind {
     Couplings,
     /// A physics parameter in every condition, and the misfit that remains as parameters are added.
     Physics,
-    /// Most improved responses and poles in a condition, without and with the physics parameters.
+    /// Most improved responses and poles in a condition, with unchanged and with changed physics
+    /// parameters.
     PhysicsChange,
     /// Phase delay over bandwidth for attitude responses, or model responses over time.
     Requirements,
@@ -163,8 +164,8 @@ pub struct FigureRequest {
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,
     pub physics: Option<Arc<PhysicsAssessment>>,
-    /// Parameter name in [`FigureKind::Physics`]; if `None` or not on, the first parameter in the
-    /// ranking.
+    /// Parameter name in [`FigureKind::Physics`]; if `None` or not enabled, the first parameter in
+    /// the ranking.
     pub parameter: Option<String>,
     pub requirements: Option<Arc<Requirements>>,
     /// Model responses that [`FigureKind::Requirements`] shows instead of bandwidths.
@@ -257,7 +258,8 @@ impl FigureRequest {
         ))
     }
 
-    /// Plots a physics parameter in every condition, and the misfit that remains.
+    /// Plots a physics parameter in every condition, and the misfit that remains; `None` without a
+    /// diagnosis of the parameters.
     fn physics_figure(&self, analysis: &Analysis) -> Option<Figure> {
         let assessment = self.physics.as_deref()?;
         let findings = assessment.applied.findings.as_deref()?;
@@ -284,7 +286,8 @@ impl FigureRequest {
         Some(poles_figure(source, contents, &self.bode))
     }
 
-    /// Plots model responses over time if requested, otherwise bandwidths.
+    /// Plots model responses over time if requested, otherwise bandwidths; `None` if the request
+    /// contains neither.
     fn requirements_figure(&self, analysis: &Analysis) -> Option<Figure> {
         let study = &analysis.study;
         match &self.over_time {

@@ -35,8 +35,9 @@ const DEPENDENT_TINT: u8 = 45;
 const OTHER_TINT: u8 = 60;
 /// Strength \[%\] in a shaded tolerance.
 const TOLERANCE_TINT: u8 = 9;
-/// Size of dots in the selected condition, and in the others, relative to the usual dot.
+/// Size of dots in the selected condition, relative to the usual dot.
 const SELECTED_SIZE: f64 = 1.2;
+/// Size of dots in the other conditions, relative to the usual dot.
 const OTHER_SIZE: f64 = 0.8;
 
 /// Key for the bandwidth in a finding.
@@ -105,7 +106,7 @@ pub struct BandwidthDetail<'a> {
     pub pair: Pair,
     /// Selected condition: its dots are larger and in full colour, and its tolerances are shaded.
     pub condition: ConditionId,
-    /// Role of the corrected model, which says whether its own or the scheduled correction applies.
+    /// Role of the corrected model: with its condition's own correction, or with the scheduled one.
     pub role: RequirementRole,
     /// Maximum relative difference between a bandwidth and the identified model's.
     pub bandwidth: f64,
@@ -339,7 +340,7 @@ impl<'a> PairFindings<'a> {
         arrows
     }
 
-    /// Draws the phase delays' intervals as vertical lines.
+    /// Draws the phase delays' intervals as vertical lines; `None` if there are none.
     fn delay_intervals(&self) -> Option<Intervals> {
         let mut ends = Vec::new();
         for finding in self.iter() {

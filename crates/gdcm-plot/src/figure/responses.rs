@@ -78,8 +78,8 @@ struct Presentation<'a> {
 }
 
 impl Presentation<'_> {
-    /// Returns a curve with the values from a shape; its phase is displayed as chosen, and shifted
-    /// by whole turns.
+    /// Returns a curve with the values from a shape; its phase is wrapped, or unwrapped and shifted
+    /// by whole turns, as chosen.
     fn curve(&self, curve: BodeCurve, shape: &ResponseShape) -> BodeCurve {
         let key = (self.condition, self.pair, curve.id.clone());
         let turns = self.options.turns.get(&key).copied().unwrap_or(0);
@@ -160,8 +160,8 @@ impl ResponseCache {
     }
 
     /// Computes a response's shapes, unless they are known. Phases are aligned with the reference
-    /// up to the limit of the displayed band. The identified models' curves end there, because they
-    /// carry no information beyond.
+    /// up to the limit of the displayed band. The identified models' curves end at this limit,
+    /// because they carry no information beyond it.
     fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
         if let Some(known) = &self.source
             && known.is_same(&source)

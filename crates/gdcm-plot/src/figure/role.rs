@@ -32,7 +32,8 @@ pub enum Role {
     Variant,
     /// Rejected model, other than the nominal model.
     Rejected,
-    /// Model in one of several conditions; 0 at the lowest airspeed, 255 at the highest.
+    /// Model in one of several conditions: its airspeed, from 0 at the lowest to 255 at the
+    /// highest, and its line.
     OfAirspeed(u8, AirspeedLine),
 }
 

@@ -31,8 +31,8 @@ const BEFORE_SIZE: f64 = 0.55;
 /// Ratio of plot height to width.
 const ASPECT: f64 = 0.62;
 
-/// Plots a response's net gain and J over airspeed; both are coloured by airspeed. `None` if the
-/// response cannot be compared in any condition.
+/// Plots a response's net gain and J over airspeed; the dots for net gains and for J under the
+/// schedule are coloured by airspeed. `None` if the response cannot be compared in any condition.
 pub fn schedule_cost_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,

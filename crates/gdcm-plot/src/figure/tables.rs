@@ -32,9 +32,9 @@ impl Figure {
             .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
     }
 
-    /// Returns a table for each panel: a column for each curve if all have the same x, otherwise a
-    /// row for each point. Areas sampled at other x have separate tables at the end. Tables without
-    /// rows are omitted.
+    /// Returns a table for each panel: a column for each curve if all have the same x and no texts,
+    /// otherwise a row for each point. Areas sampled at other x have separate tables at the end.
+    /// Tables without rows are omitted.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = Vec::new();
         let mut tables_of_areas = Vec::new();
@@ -244,13 +244,14 @@ fn rows_of_points(
 /// The tables for one panel.
 struct PanelTables {
     main: Table,
-    /// Areas that are sampled at other x than the first series; `None` if there are none.
+    /// All areas without lines, if any of them is sampled at other x than the first series;
+    /// otherwise `None`, and the areas are in `main`.
     areas: Option<Table>,
 }
 
 impl PanelTables {
-    /// Builds the main table from all marks; areas without lines that are sampled at other x than
-    /// the first series have a table of their own.
+    /// Builds the main table from all marks; areas without lines have a table of their own if any
+    /// of them is sampled at other x than the first series.
     fn new(panel: &Panel, plot_title: &str) -> Self {
         let mut main = Vec::new();
         let mut areas = Vec::new();

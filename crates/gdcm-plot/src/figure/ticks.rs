@@ -9,7 +9,8 @@ use super::range::Range;
 pub enum Scale {
     /// Linear, with ticks at 1, 2 and 5 times a power of ten.
     Linear,
-    /// Linear, with ticks at fractions of a turn.
+    /// Linear, with ticks at fractions or multiples of a turn; on a narrow range, as for
+    /// [`Self::Linear`].
     Degrees,
     Logarithmic,
 }
@@ -107,8 +108,8 @@ pub fn step_above(least: f64) -> f64 {
     10.0 * power
 }
 
-/// Returns the ticks on a logarithmic axis: within decades, or at equal steps if the range is below
-/// [`LINEAR_BELOW`] and equal steps give more labels.
+/// Returns the ticks on a logarithmic axis: within decades, or at equal steps if the range is
+/// narrower than [`LINEAR_BELOW`] and equal steps give more labels.
 fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let decades = range.max.log10() - range.min.log10();
     let decade_pt = length_pt / decades;

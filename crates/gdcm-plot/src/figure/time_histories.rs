@@ -17,7 +17,6 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Envelope, Mark};
 use super::role::Role;
 
-/// Line style for inputs.
 const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
 /// Line style for the flight data.
 const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
@@ -25,7 +24,7 @@ const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
 const CORRIDOR: Color = Color::new(Hue::Text).tint(10);
 /// Height of the panel with the difference from flight; the panel with the record has height 1.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
-/// Height of the panel with the input, above a single quantity.
+/// Height of the panel with the input, above a single quantity's record with height 1.
 const INPUT_WEIGHT: f64 = 0.36;
 /// Line width for a model's curve \[pt\]: thin, so that all models and the flight data can be told
 /// apart.
@@ -149,8 +148,8 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .plots(plots)
 }
 
-/// Plots a single quantity from a record: the input that was moved, the quantity with its corridor,
-/// and the difference from flight, above each other over the same time.
+/// Plots a single quantity from a record: the input with index `input`, the quantity with its
+/// corridor, and the difference from flight, below one another over the same time.
 pub fn quantity_figure(
     history: &RecordHistory,
     quantity: &QuantityHistory,

@@ -12,14 +12,14 @@ use super::bode_curve::{BodeCurve, CurveId};
 pub struct BodeBand {
     /// Frequencies \[rad/s\], ascending.
     pub omega: Vec<f64>,
-    /// Lower and upper magnitude \[dB\].
+    /// Magnitudes of both lines \[dB\], usually the lower first.
     pub magnitude_db: Vec<[f64; 2]>,
-    /// Lower and upper phase \[deg\].
+    /// Phases of both lines \[deg\], usually the lower first.
     pub phase_deg: Vec<[f64; 2]>,
 }
 
-/// Returns the 95 % band about every identified model among `curves` that is visible, kept, and has
-/// an uncertainty.
+/// Returns the 95 % band about every identified model among `curves` that is visible, is not
+/// rejected, and has an uncertainty.
 pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
     let mut bands = Vec::new();
     for curve in curves {

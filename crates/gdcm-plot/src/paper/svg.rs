@@ -70,7 +70,7 @@ struct Svg<'a> {
     text: String,
     /// Prefix for the names of clip areas.
     name: &'a str,
-    /// Clip areas so far; each area's name ends with its number.
+    /// Number of clip areas so far; a clip area's name ends with its number, counted from 1.
     clips: usize,
 }
 

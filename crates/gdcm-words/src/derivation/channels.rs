@@ -12,7 +12,7 @@ use crate::solution_details::proof_text;
 /// An objective as an equation, with its value's unit.
 struct Objective {
     equation: &'static str,
-    /// The displayed value's unit, with a leading space.
+    /// The displayed value's unit, with a leading space; empty without a unit.
     unit: &'static str,
     /// Factor from the stored to the displayed value.
     scale: f64,

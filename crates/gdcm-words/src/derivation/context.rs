@@ -45,7 +45,8 @@ impl<'a> Context<'a> {
         format!("{figure}, condition {}", self.result.condition.id())
     }
 
-    /// Returns the mismatch between the two representatives in a response, without leads.
+    /// Returns the mismatch between the two representatives in a response, without leads; `None` if
+    /// the response cannot be compared.
     pub(super) fn mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         self.result
             .comparison
@@ -56,7 +57,7 @@ impl<'a> Context<'a> {
     }
 
     /// Returns the mismatch with the channels' leads applied, or without leads if there are none
-    /// (M15.5).
+    /// (M15.5); `None` if the response cannot be compared.
     pub(super) fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         match &self.result.compensated {
             Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),

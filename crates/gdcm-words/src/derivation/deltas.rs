@@ -28,7 +28,7 @@ pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Describes the median over the frequencies with nonzero weight.
+/// Describes the median of `values`, weighted if coherence is used.
 fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     match mismatch.coherence_weights {
         None => median_words(values),
@@ -37,8 +37,9 @@ fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
 }
 
 /// Derives a response's delta gain `G`: with leads, the median of the representatives' ratio that
-/// remains after them (M15.5); else, if the settings ask for it, the mean over all pairs of kept
-/// models; else the median of the representatives' ratio.
+/// remains after them (M15.5); else, if the settings ask for it, the mean over all pairs of models
+/// that are not rejected; else the median of the representatives' ratio. `None` if the response has
+/// no delta gain.
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;
@@ -63,8 +64,8 @@ pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Derives a delta gain that is the geometric mean over all pairs of kept models, not that of the
-/// representatives.
+/// Derives a delta gain that is the geometric mean over all pairs of models that are not rejected,
+/// not that of the representatives.
 fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     let [physics, identified] = BundleKind::BOTH.map(|kind| {
         let scores = &context.result.representative(kind).scores;
@@ -88,7 +89,7 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
 }
 
 /// Derives a response's delta delay `D`: the band delay if the delays are fitted to it, otherwise
-/// the median.
+/// the median; `None` if the response has no delta delay.
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;

@@ -68,7 +68,8 @@ pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     found.into_iter().map(|(_, term)| term).collect()
 }
 
-/// Returns a symbol's position in an equation; occurrences inside a longer symbol do not count.
+/// Returns a symbol's position in an equation; `None` if it occurs only inside a longer symbol, or
+/// not at all.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     for (place, _) in equation.match_indices(symbol) {
         let before = equation[..place].chars().next_back();

@@ -2,7 +2,7 @@
 //!
 //! The build script finds the commit (`build.rs`); [`gdcm_io::software`] states it in every file.
 
-/// Words about the commit, from the build script: "commit 0123456789ab", with ", modified" if a
+/// Description of the commit, from the build script: "commit 0123456789ab", with ", modified" if a
 /// source file differed from it, or "commit unknown".
 pub const BUILT_FROM: &str = env!("GDCM_BUILT_FROM");
 

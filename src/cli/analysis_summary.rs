@@ -35,7 +35,7 @@ pub(super) struct Summary {
     pub(super) verdict: String,
     /// Settings, each condition's results, cautions, schedule, and evidence.
     pub(super) details: String,
-    /// Output files.
+    /// Line that lists the output files.
     pub(super) written: String,
 }
 
@@ -136,7 +136,6 @@ pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String 
     words
 }
 
-/// Describes the settings.
 fn settings_lines(analysis: &Analysis) -> String {
     let study = &analysis.study;
     let settings = &study.settings;
@@ -197,7 +196,8 @@ fn held_words(analysis: &Analysis) -> String {
     }
 }
 
-/// Explains the couplings, with their benefit and cost; empty without couplings.
+/// Explains the couplings, with their benefit and cost, and adds the cautions to the JSON object;
+/// empty without couplings.
 fn couplings_section(analysis: &Analysis) -> String {
     let remarks = analysis_coupling_remarks(analysis);
     if remarks.is_empty() {
@@ -233,7 +233,7 @@ fn couplings_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Lists the conditions that were not assessed.
+/// Lists the conditions that were not assessed, with the reasons.
 fn left_out_lines(analysis: &Analysis) -> String {
     let mut text = String::new();
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
@@ -245,7 +245,7 @@ fn left_out_lines(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns how the schedule was assessed in the held-out conditions.
+/// Returns the verdict on the schedule in the held-out conditions; empty without one.
 fn held_out_line(analysis: &Analysis) -> String {
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
     match held_out_verdict(analysis, choice) {

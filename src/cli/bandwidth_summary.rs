@@ -69,7 +69,6 @@ fn has_number(finding: &BandwidthFinding) -> bool {
     finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
 }
 
-/// Returns the reasons for missing bandwidths.
 fn absent_bandwidths(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
     responses
         .iter()
@@ -101,7 +100,6 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
 struct AbsentReason<'a> {
     /// First result to which the reason applies.
     finding: &'a BandwidthFinding,
-    /// Code for the reason.
     code: &'static str,
     /// Response, roles and reason: "LON → Q (physics, corrected): …".
     words: String,

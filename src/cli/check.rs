@@ -28,7 +28,7 @@ use super::study_arguments::OpeningArguments;
 use super::study_options::apply_signs;
 use super::terminal::{error, keep_caution, print};
 
-/// Prints what a dataset or study contains.
+/// Prints what a dataset or study contains, with cautions about its models; or every fault in it.
 pub(super) fn check(
     file: &Path,
     arguments: &OpeningArguments,
@@ -60,8 +60,8 @@ fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
-/// Prints every fault in a dataset. Returns the failure with the number of faults; if there is only
-/// one, the failure is that fault.
+/// Prints every fault in a dataset, and returns the failure with their number. A single fault is
+/// not printed: it is the returned failure.
 fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {

@@ -154,8 +154,8 @@ fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String
     headings
 }
 
-/// Returns all channels' gains, and their delays or leads: first, with leads, as a table; else as
-/// lists, without the delays that round to zero.
+/// Returns all channels' gains, and their delays or leads: with leads as a table, otherwise as
+/// lists without the delays that round to zero.
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
     let correction = &result.correction;
@@ -215,7 +215,8 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
     table
 }
 
-/// Lists the unmatched responses with reasons, and the results without an optimality proof.
+/// Lists the responses with unmatched gains, with reasons and remedies, and gains without an
+/// optimality proof.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let mut text = String::new();
     // `condition_remarks` gives the unmatched responses first, then the reasons and remedies.

@@ -32,7 +32,7 @@ pub(super) fn condition_ids(dataset: &Dataset) -> String {
     ids.join(", ")
 }
 
-/// Returns the responses listed in an option.
+/// Returns the responses listed in an option; an error if the dataset lacks one.
 pub(super) fn pairs_of(
     dataset: &Dataset,
     list: &[PairName],

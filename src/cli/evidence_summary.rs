@@ -51,8 +51,8 @@ fn difference_lines(study: &Study, uncertainty: &Uncertainty) -> String {
     text
 }
 
-/// Returns the responses that need a second variable, and a caution if the schedule has a variable
-/// that no response needs.
+/// Returns the responses that need a second variable, and a caution, also added to the JSON object,
+/// if the schedule has a variable that no response needs.
 fn second_variable_lines(study: &Study, uncertainty: &Uncertainty) -> String {
     let mut text = String::new();
     if let Some(variable) = unneeded_variable(study, uncertainty) {

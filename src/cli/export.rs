@@ -120,7 +120,8 @@ fn export_set(
     print(&text)
 }
 
-/// Describes what files omit or approximate: "No error bars: still being computed (corrections.csv)".
+/// Describes what files omit or approximate: "No error bars: still being computed, or stopped
+/// (corrections.csv)".
 fn note_words(planned: &PlannedNote, plan: &ExportPlan, analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let scheduling = analysis.study.settings.schedule_delays;
@@ -134,7 +135,7 @@ fn note_words(planned: &PlannedNote, plan: &ExportPlan, analysis: &Analysis) -> 
     format!("{title}: {detail} ({})", names.join(", "))
 }
 
-/// Builds the request from the command line; its format is not set.
+/// Builds the request from the command line, with the default format.
 fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRequest, Failure> {
     let mut conditions = BTreeSet::new();
     for &id in &arguments.condition {

@@ -14,7 +14,7 @@ pub(super) const NOT_DONE: u8 = 1;
 /// Exit status if the command line or an input file is wrong.
 pub(super) const WRONG_INPUT: u8 = 2;
 
-/// Reason why a command was not carried out.
+/// Reason why a command failed, in some cases after it has written its files.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Failure {
     #[error("{0}{remedy}", remedy = file_remedy(.0))]

@@ -6,7 +6,7 @@
 //! 3  assign the columns of each record to channels; leave out parts without samples
 //!                                                            (RecordLayouts)
 //! 4  an error if a requested part has samples in no record   (check_parts)
-//! 5  repeat step 3 if a unit became known only from a later record
+//! 5  repeat step 3 with the final units, if some channel had no unit beforehand
 //! 6  leave out records with the same samples as another one
 //! 7  an error if the columns of a remaining record are unclear
 //! ```

@@ -26,9 +26,10 @@ use super::progress::ProgressReceiver;
 use super::record_table::record_table;
 use crate::executor::Pool;
 
-/// Models that the file contains in addition to the bundle: the refined and the unrefined one.
+/// Number of models that the file contains in addition to the bundle: the refined and the unrefined
+/// one.
 const REFINED_AND_UNREFINED: usize = 2;
-/// File name for the identified models.
+/// File name for the identified models, except with `--every-condition` (`output_path`).
 pub(super) const IDENTIFIED_FILE: &str = "identified.json";
 
 /// Records from which models are identified jointly.
@@ -74,7 +75,7 @@ impl IdentificationTask {
         self.request.identify(&Pool, &*receiver.begin(&work))
     }
 
-    /// Returns whether a record with this name is used.
+    /// Returns whether a record with this name is among the task's records.
     pub(super) fn has_record(&self, name: &str) -> bool {
         self.records.iter().any(|record| record.table.name == name)
     }
@@ -122,9 +123,9 @@ impl IdentificationTask {
         })
     }
 
-    /// Appends the options that solve the problem to a caution's note. Only records that contradict
-    /// each other have such options, for each record with an identified fault: a delay of a
-    /// channel, or a factor other than 1.
+    /// Appends to a caution's note the options that remove its cause. Only a contradiction between
+    /// records has such options: for each record with an identified fault, a channel's delay, or a
+    /// factor other than 1.
     fn with_remedy(&self, mut note: CautionNote, caution: &IdentificationCaution) -> CautionNote {
         let IdentificationCaution::Contradiction { records, .. } = caution else {
             return note;
@@ -200,7 +201,7 @@ impl IdentificationTask {
     }
 }
 
-/// Returns the channels' names and units, in the same order as in the records.
+/// Returns the channels' names, and the inputs' units, in the same order as in the records.
 pub(super) fn planned_channels(channels: &RecordChannels) -> PlannedChannels {
     let mut planned = PlannedChannels::default();
     for input in &channels.inputs {
@@ -215,7 +216,7 @@ pub(super) fn planned_channels(channels: &RecordChannels) -> PlannedChannels {
     planned
 }
 
-/// Returns the prefix for messages about a condition.
+/// Returns the prefix for messages about a condition; empty without a condition.
 pub(super) fn prefix(condition: Option<ConditionId>) -> String {
     match condition {
         Some(id) => format!("condition {id}: "),

@@ -46,9 +46,9 @@ pub(super) struct Identifications<'a> {
     outputs: OutputSet,
     /// Lines to be printed about the results.
     lines: String,
-    /// Successful identifications.
+    /// Number of successful identifications.
     count: usize,
-    /// Whether any records identify at least one input.
+    /// Whether any task's records identify at least one input.
     identifies_input: bool,
     cautions: Vec<ConditionMessage>,
 }
@@ -71,8 +71,9 @@ impl<'a> Identifications<'a> {
         }
     }
 
-    /// Checks the output files, prints the records, and runs all tasks. A failure ends the command
-    /// if there is a single task; otherwise it becomes a caution about the condition.
+    /// Checks the output files, prints the records, and runs all tasks. Cancellation, or a failed
+    /// identification if there is a single task, ends the command; other failed identifications
+    /// become cautions about their conditions.
     pub(super) fn run(&mut self, tasks: &[IdentificationTask]) -> Result<(), Failure> {
         let files: Vec<PathBuf> = tasks
             .iter()

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[cfg(unix)]
 use std::sync::{Arc, LazyLock};
 
-/// Marks work that queries [`Interruptible::is_requested`]; the mark is removed when it is dropped.
+/// Marks work that queries [`Interruptible::is_requested`]; dropping the value removes the mark.
 pub(super) struct Interruptible {
     /// Prevents construction without [`Interruptible::begin`].
     _private: (),
@@ -19,7 +19,7 @@ pub(super) struct Interruptible {
 
 #[cfg(unix)]
 impl Interruptible {
-    /// From now on, the next Ctrl+C does not end the process.
+    /// Begins interruptible work: the next Ctrl+C only sets a flag.
     pub(super) fn begin() -> Self {
         INTERRUPTION.ends_process.store(false, Ordering::SeqCst);
         Self { _private: () }

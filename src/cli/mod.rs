@@ -153,7 +153,7 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
 }
 
 /// Opens a dataset or a study, whose dataset is at `--dataset` if it has moved. If the dataset has
-/// changed since, the differences are reported on standard error, one per line.
+/// changed since the study was saved, the differences are reported on standard error, one per line.
 ///
 /// # Errors
 /// The file holds models, which are to be assembled first; it cannot be read; with `--strict`, the
@@ -191,7 +191,8 @@ fn chosen_example(is_real: bool) -> Example {
     }
 }
 
-/// Writes an embedded example into a directory, and reports the paths and what is in them.
+/// Writes an embedded example into a directory, and prints the paths and a description of the
+/// files.
 fn write_example(example: Example, directory: &Path, existing: Existing) -> Result<(), Failure> {
     let paths = example.write(directory, existing)?;
     let mut text = String::new();

@@ -148,7 +148,7 @@ pub struct RecordPart {
     pub record: Option<String>,
     /// First and last time \[s\].
     pub part_s: [f64; 2],
-    /// Whether the times count from the record's first sample; otherwise on its time axis.
+    /// Whether the times count from the record's first sample; otherwise they are on its time axis.
     pub is_from_start: bool,
 }
 

@@ -22,7 +22,7 @@ const DIAGNOSIS: &str = "physics-diagnosis";
 /// Returns the section on the physics parameters:
 ///
 /// - if the study applies none, a hint that the dataset has runs; empty without runs;
-/// - if the diagnosis failed, the reason, and the data that were left out;
+/// - if the parameters are unavailable, the reason, and the data that were left out;
 /// - else diagnosis or "set by hand", applied values, benefit, reruns, and the values to paste into
 ///   the input of the physics model.
 pub(super) fn physics_section(analysis: &Analysis) -> String {
@@ -96,7 +96,8 @@ pub(super) fn physics_caution_codes(analysis: &Analysis) -> Vec<&'static str> {
     codes
 }
 
-/// Returns verdict, table, cautions, and a note on data that take no part in the fit.
+/// Returns verdict, parameter table, cautions, the data that take no part in the fit, and the
+/// conditions that change a value most.
 fn findings_section(analysis: &Analysis, findings: &PhysicsFindings) -> String {
     let level = analysis.study.settings.uncertainty.level;
     let mut text = line("Physics", &sanitized(&verdict_text(findings)));

@@ -178,7 +178,8 @@ impl<'a> WantedFlights<'a> {
         })
     }
 
-    /// Plans a condition's flights.
+    /// Predicts the intervals in a condition after the wanted sweeps, and the ways to reach the
+    /// targets.
     fn plan(
         &self,
         task: &IdentificationTask,

@@ -46,7 +46,7 @@ pub struct PlanArguments {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetValue {
     pub pair: PairName,
-    /// \[rad/s\].
+    /// Frequency \[rad/s\].
     pub omega: f64,
     /// Half-width of the 95 % interval \[dB\].
     pub half_db: f64,

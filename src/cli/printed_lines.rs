@@ -71,7 +71,7 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Returns a line with a section's label.
+/// Returns text with a section's label, wrapped at [`PAGE_WIDTH`] columns.
 pub(super) fn line(label: &str, words: &str) -> String {
     Label::of_section(label).before(words)
 }
@@ -81,7 +81,7 @@ pub(super) fn caution_line(words: &str) -> String {
     line("Caution", &sanitized(words))
 }
 
-/// Returns an indented, labelled line within a section.
+/// Returns indented, labelled text within a section, wrapped at [`PAGE_WIDTH`] columns.
 pub(super) fn detail(label: &str, words: &str) -> String {
     Label::of_detail(label).before(words)
 }

@@ -16,7 +16,7 @@ use super::requested_channels::{has_channel, unknown_channel};
 ///
 /// # Errors
 /// The channel or the record is unknown, a value is given twice, or the record cannot be used with
-/// it.
+/// the value.
 pub(super) fn apply_record_remedies(
     arguments: &RecordArguments,
     records: &mut [LaidOutRecord],

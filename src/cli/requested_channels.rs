@@ -13,10 +13,10 @@ use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
 use super::identify_arguments::RecordArguments;
 
-/// Returns the identification band: first the one on the command line, else the dataset's.
+/// Returns the identification band: that on the command line, or else the dataset's.
 ///
 /// # Errors
-/// The band is not valid, or there is neither.
+/// The band on the command line is not valid, or there is no band.
 pub(super) fn requested_band(
     arguments: &RecordArguments,
     dataset: Option<&Dataset>,

@@ -146,7 +146,7 @@ fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
 /// Reports missing results, first those that concern all conditions. Missing time histories are
 /// reported only if some record was compared: otherwise the printed section gives the reason.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
-    /// What is missing if a condition has no result.
+    /// Value of [`MissingFinding::what`] for a condition without a result.
     const EVERYTHING: &str = "all";
     // Skip conditions without a result, which have already been reported.
     let mut missing: Vec<&MissingFinding> = requirements
@@ -199,7 +199,7 @@ fn grid_section(results: RequirementResults<'_>) -> String {
     text
 }
 
-/// Returns, by role, the on-axis mean of J and the share of the band inside the envelopes.
+/// Returns, by role, the on-axis means of J and of the band's share inside the MUAD envelopes.
 fn summary_section(requirements: &Requirements) -> String {
     let roles = [
         RequirementRole::Physics,
@@ -231,8 +231,8 @@ fn summary_section(requirements: &Requirements) -> String {
     line("Summary", words) + &indented(&table, 2)
 }
 
-/// Counts the modes within their tolerances: in the physics models and, if couplings change the
-/// modes, in the corrected models.
+/// Counts the modes by verdict: for the physics models and, if couplings change the modes, for the
+/// corrected models.
 fn mode_section(requirements: &Requirements) -> String {
     let modes = &requirements.modes;
     let physics: Vec<ModeVerdict> = modes.iter().map(|mode| mode.verdict).collect();

@@ -77,7 +77,8 @@ pub(super) fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Res
 /// Applies the options to the study; they override its decisions. Later options build on earlier
 /// ones:
 ///
-/// 1. settings (with `--physics`), then values of physics parameters, which may switch it on;
+/// 1. settings (with `--physics`), then values of physics parameters, which may switch the
+///    parameters on;
 /// 2. signs; held-out conditions; requirements;
 /// 3. a check of the second scheduling variable in the conditions that are left in the schedule;
 /// 4. constrained responses; rejected models.

@@ -1,5 +1,5 @@
 //! A command's output: results on standard output; notes, cautions and errors on standard error.
-//! Alternatively, a single JSON object with all of these.
+//! With `--json`, a single JSON object on standard output contains all of these.
 
 use std::cell::RefCell;
 use std::io::{ErrorKind, Write};
@@ -145,7 +145,7 @@ pub(super) fn collected<T>(work: impl FnOnce() -> T) -> (T, serde_json::Value) {
     (result, object)
 }
 
-/// Sets the command's output format.
+/// Sets the output format for the commands that this thread carries out.
 pub(super) fn set_output(output: OutputFormat) {
     MESSAGES.with_borrow_mut(|messages| messages.output = output);
 }
@@ -212,7 +212,8 @@ pub(super) fn note(code: &'static str, words: &str) {
     });
 }
 
-/// Prints a caution about a problem that may need action although the command continues.
+/// Prints a caution about a problem that may need action although the command continues, or adds it
+/// to the JSON output.
 pub(super) fn caution(code: &'static str, words: &str) {
     caution_for(code, &[], words);
 }

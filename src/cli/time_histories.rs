@@ -1,6 +1,6 @@
 //! Flight records with which models are compared in the time domain (M17.2), for
 //! `gdcm requirements` and `gdcm report`. Unlike `flight_records`, which serves the identification,
-//! it reports a record that cannot be used as a caution and goes on with the others.
+//! this module reports a record that cannot be used as a caution and goes on with the others.
 
 use gdcm_io::import::record_files::FoundRecords;
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
@@ -80,7 +80,7 @@ pub(super) fn read_histories(
     for table in with_topics_joined(tables, &channels, &TimeSettings::default()) {
         let laid_out = laid_out_record(table, dataset, &channels);
         report_record(&laid_out);
-        // Counts as not read: the option `--unit` can supply what it lacks.
+        // Counts as not read, because the option `--unit` can supply the missing unit.
         if laid_out.lacks_unit() {
             unread.push(sanitized(&laid_out.record.table.name));
         }
@@ -146,8 +146,9 @@ impl ConditionRecord {
 
 /// Assigns a record's columns, and determines its condition.
 ///
-/// First, if the dataset lists the record, both as stated there; else the columns are recognised,
-/// and the condition is the dataset's only one, else the one in the record's name.
+/// If the dataset lists the record, both follow from its entry; otherwise the columns are
+/// recognised, and the condition is the dataset's only condition, or else the one in the record's
+/// name.
 fn laid_out_record(
     table: RecordTable,
     dataset: &Dataset,

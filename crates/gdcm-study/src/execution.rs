@@ -1,4 +1,4 @@
-//! Executes an analysis: executor, progress and cancellation.
+//! Execution of an analysis: executor, progress and cancellation.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

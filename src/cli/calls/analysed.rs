@@ -28,7 +28,7 @@ use crate::cli::study_analysis::{ErrorBars, StudyAnalysis, analyze_with_progress
 use crate::cli::study_arguments::StudyArguments;
 use crate::cli::study_options::apply_options;
 
-/// An analysed study.
+/// An analysed study, with the opened data on which it is based.
 pub struct AnalysedStudy {
     analysed: StudyAnalysis,
     data: OpenedData,
@@ -229,7 +229,6 @@ impl ModelChoice {
 }
 
 impl DrawnFigure {
-    /// Returns the figure's title.
     pub fn title(&self) -> &str {
         &self.figure.title
     }

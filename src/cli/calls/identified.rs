@@ -118,7 +118,7 @@ impl IdentifiedRecords {
         Err(Failure::coded_option("--model", "unknown-model", reason))
     }
 
-    /// Writes `identified.json` to a file.
+    /// Writes the text of `identified.json` to a file.
     ///
     /// # Errors
     /// The file exists and is not to be replaced, or cannot be written.

@@ -44,7 +44,7 @@ pub struct Called<T> {
 }
 
 impl<T> Called<T> {
-    /// Applies a function to the result.
+    /// Applies a function to the result, and keeps the messages.
     pub fn map<U>(self, function: impl FnOnce(T) -> U) -> Called<U> {
         Called {
             value: function(self.value),

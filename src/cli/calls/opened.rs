@@ -99,7 +99,6 @@ impl OpenedData {
         Ok(Self::from_loaded(loaded, false))
     }
 
-    /// Returns the dataset.
     pub fn dataset(&self) -> &Arc<Dataset> {
         &self.loaded.dataset
     }

@@ -41,7 +41,7 @@ pub struct ConditionChoice {
     pub identified: BundleChoice,
     pub scheduled: bool,
     /// Whether the condition is held out: it is analysed and assessed, but not used to fit the
-    /// schedule, which it can therefore validate.
+    /// schedule, couplings or physics parameters, which it can therefore validate.
     pub held_out: bool,
 }
 

@@ -26,7 +26,6 @@ pub enum Difference {
     },
     ConditionAdded(ConditionId),
     ConditionRemoved(ConditionId),
-    /// A condition's airspeed has changed.
     AirspeedChanged {
         condition: ConditionId,
         /// Former airspeed \[kt\].
@@ -34,12 +33,10 @@ pub enum Difference {
         /// Present airspeed \[kt\].
         now_kt: f64,
     },
-    /// A bundle has a new model.
     ModelAdded(ModelId),
     ModelRemoved(ModelId),
     /// A model's dynamics, bands, role or trim have changed.
     ModelChanged(ModelId),
-    /// A decision no longer applies.
     NotApplied {
         decision: CarriedDecision,
         /// Variant that contains the decision; `None` for the present decisions.
@@ -120,7 +117,6 @@ impl Inventory {
         )
     }
 
-    /// Returns the conditions by their id.
     fn by_id(&self) -> BTreeMap<ConditionId, &ConditionInventory> {
         self.0
             .iter()

@@ -43,8 +43,8 @@ pub enum Edit {
         condition: ConditionId,
         scheduled: bool,
     },
-    /// Excludes a condition from the schedule fit, so that it can validate the schedule; or
-    /// includes it again.
+    /// Excludes a condition from the fits of schedule, couplings and physics parameters, so that it
+    /// can validate them; or includes it again.
     SetHeldOut {
         condition: ConditionId,
         held_out: bool,

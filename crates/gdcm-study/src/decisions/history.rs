@@ -50,7 +50,7 @@ pub struct Step<B = (), C = ()> {
 pub struct History<B = (), C = ()> {
     past: Vec<Step<B, C>>,
     future: Vec<Step<B, C>>,
-    /// Redo steps removed by the last decision.
+    /// Redo steps removed by the last decision, which [`History::forget`] restores.
     lost: Vec<Step<B, C>>,
     /// The last decision, as long as the next decision may continue it (a slider being dragged).
     open: Option<Edit>,

@@ -194,8 +194,8 @@ impl CarriedDecisions {
         }
     }
 
-    /// Adds a variant with the decisions that apply to the dataset; a name that exists already is
-    /// not replaced.
+    /// Adds a variant with the decisions that apply to the dataset; an existing variant of this
+    /// name is kept instead.
     fn take_variant(&mut self, name: &str, decisions: &Decisions) {
         let (variant, mut not_applied) = decisions.applied_to(Arc::clone(&self.study.dataset));
         for difference in &mut not_applied {

@@ -26,14 +26,14 @@ pub enum PhysicsCorrection {
     Off,
     /// The parameters that the diagnosis names, fitted again with the others off.
     Named,
-    /// All parameters that are on.
+    /// All parameters that are switched on.
     All,
     /// The values set by hand; nothing is fitted.
     ByHand,
 }
 
 impl PhysicsCorrection {
-    /// Returns the name in sentences: "the named parameters".
+    /// Returns the name in sentences, such as "the named parameters".
     pub fn name(self) -> &'static str {
         match self {
             Self::Off => "no parameters",
@@ -114,7 +114,7 @@ impl PhysicsSettings {
         parameters
     }
 
-    /// Lists the parameters that are on.
+    /// Lists the parameters that are switched on.
     pub fn parameters_on(&self, dataset: &Dataset) -> Vec<OfferedParameter> {
         let mut parameters = self.parameters(dataset);
         parameters.retain(|parameter| !self.off.contains(&parameter.name));

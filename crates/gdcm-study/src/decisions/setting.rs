@@ -252,7 +252,7 @@ impl PartialEq for Setting {
 }
 
 impl Setting {
-    /// Returns the present value.
+    /// Returns the setting's value in `settings`.
     pub fn value(&self, settings: &Settings) -> Value {
         match self.kind {
             Kind::Number { get, .. } => Value::Number(get(settings)),
@@ -362,7 +362,7 @@ impl Setting {
         }
     }
 
-    /// Returns the present value in words.
+    /// Formats the setting's value in `settings`.
     pub fn words(&self, settings: &Settings) -> String {
         self.text(self.value(settings))
     }

@@ -282,7 +282,7 @@ impl Settings {
         }
     }
 
-    /// Returns the settings as stored in files.
+    /// Returns the settings with responses by channel names, as stored in files.
     pub fn named(&self, dataset: &Dataset) -> Settings<ResponseNames> {
         self.with_responses(|_, table| {
             ResponseNames(

@@ -26,7 +26,6 @@ pub enum SignRole {
 }
 
 impl SignRole {
-    /// Every role.
     pub const EACH: [Self; 3] = [Self::Identified, Self::Physics, Self::All];
 
     /// Returns the word used in files and command-line options.

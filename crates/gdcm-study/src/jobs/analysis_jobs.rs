@@ -119,7 +119,7 @@ pub struct VariantJob {
 }
 
 impl PartialEq for VariantJob {
-    /// Compares the dataset and the decisions, but not the reasons for rejections.
+    /// Compares the dataset, the settings and the choices, but not the reasons for rejections.
     fn eq(&self, other: &Self) -> bool {
         let a = &self.study;
         let b = &other.study;
@@ -218,7 +218,7 @@ impl Job for CouplingsJob {
 pub struct PhysicsJob {
     /// The study; its own choice of applied parameters is ignored.
     pub study: Study,
-    /// The parameters whose effect is assessed; not off.
+    /// The parameters whose effect is assessed.
     pub physics: PhysicsCorrection,
 }
 

@@ -1,4 +1,4 @@
-//! Benefit and cost of the couplings of the example and of small studies.
+//! Benefit and cost of couplings, in the example and in small studies.
 
 use std::sync::{Arc, LazyLock};
 
@@ -28,7 +28,7 @@ use crate::results::correction_costs::AxisCost;
 use crate::results::couplings_assessment::CouplingsAssessment;
 use crate::stages::engine::Engine;
 
-/// The assessment of mixing and feedback of the reference dataset.
+/// Assessment of mixing and feedback, for the reference dataset.
 static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
     let job = CouplingsJob {
         study: EXAMPLE.analysis.study.clone(),

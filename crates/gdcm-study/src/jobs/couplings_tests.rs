@@ -442,8 +442,8 @@ pub(crate) fn engine() -> Engine {
     COUPLED.0.fork(Box::new(gdcm_model::executor::Sequential))
 }
 
-/// Returns `[on-axis, others]` of the mean J of each condition's own correction, and of the
-/// scheduled correction.
+/// Returns the mean J as `[on-axis, others]`, under each condition's own correction and under the
+/// schedule.
 pub(crate) fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
     let results = analysis
         .conditions

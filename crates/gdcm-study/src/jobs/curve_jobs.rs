@@ -209,7 +209,7 @@ impl AcrossRole {
     /// Roles drawn initially: their difference shows how good the schedule is.
     pub const SHOWN_AT_FIRST: [Self; 2] = [Self::Identified, Self::Scheduled];
 
-    /// Returns the role's name in lists and captions: "corrected".
+    /// Returns the role's name in lists and captions, such as "corrected".
     pub fn name(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -266,14 +266,14 @@ pub type ModelModes = Result<Vec<Mode>, ModesError>;
 /// A condition's modes, model by model in file order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionModes {
-    /// The condition; it names the models.
+    /// Condition, whose models have the order of `physics` and `identified`.
     pub condition: Arc<Condition>,
     pub physics: Vec<ModelModes>,
     pub identified: Vec<ModelModes>,
 }
 
 impl ConditionModes {
-    /// Computes the modes model by model; each model is a step.
+    /// Computes the modes model by model; each model is a progress step.
     ///
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` requests it.

@@ -109,7 +109,7 @@ pub struct IdentificationNews {
     pub first_model: Option<Arc<StateSpace>>,
     /// Duration of the run, once it has ended \[s\].
     pub duration_s: Option<f64>,
-    /// What further sweeps would bring, once complete.
+    /// Predicted intervals after further sweeps, once computed.
     pub next_flight: Option<Arc<FlightPlan>>,
 }
 
@@ -174,7 +174,6 @@ impl Progress for NewsProgress<'_> {
 }
 
 impl Job for IdentifyJob {
-    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
@@ -203,7 +202,8 @@ impl Job for IdentifyJob {
     }
 }
 
-/// Predicts what further sweeps of each input would bring; `None` if it cannot be computed.
+/// Predicts the intervals after further sweeps of each input ([`FlightPlanner::standard_plan`]);
+/// `None` if they cannot be computed.
 fn next_flight(found: &Identification, executor: &dyn Executor) -> Option<FlightPlan> {
     let information = found.information.as_ref()?;
     FlightPlanner::new(information, executor)?.standard_plan()
@@ -213,7 +213,6 @@ fn next_flight(found: &Identification, executor: &dyn Executor) -> Option<Flight
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     pub record: Shared<FlightRecord>,
-    /// How the record's channels are prepared.
     pub preparation: Preparation,
     pub model: StateSpace,
 }
@@ -236,7 +235,6 @@ impl SimulationFailure {
 }
 
 impl Job for SimulationJob {
-    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Validation>, SimulationFailure>;
 

@@ -9,10 +9,10 @@ use gdcm_model::progress::{Cancelled, Progress};
 pub trait Job: Clone + PartialEq + Send + 'static {
     /// Resources kept from one job to the next.
     type Tools;
-    /// Result of the job.
+    /// Result, sent back from the job's thread.
     type Output: Send;
 
-    /// Runs the job.
+    /// Computes the result, and reports progress.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.

@@ -33,7 +33,6 @@ pub struct RequirementsJob {
 }
 
 impl Job for RequirementsJob {
-    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Arc<Requirements>;
 
@@ -61,7 +60,6 @@ pub struct TimeHistoriesJob {
 }
 
 impl Job for TimeHistoriesJob {
-    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Arc<TimeHistories>;
 
@@ -85,13 +83,11 @@ pub struct RecordHistoryJob {
     pub analysis: Shared<Analysis>,
     pub condition: ConditionId,
     pub record: HistoryRecord,
-    /// How the record's channels are prepared.
     pub preparation: Preparation,
     pub tolerances: ToleranceTable,
 }
 
 impl Job for RecordHistoryJob {
-    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<RecordHistory>, NoRecordHistory>;
 
@@ -125,7 +121,6 @@ pub struct TestAnswersJob {
 }
 
 impl Job for TestAnswersJob {
-    /// Executor for the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<TestAnswers>, NoResult>;
 

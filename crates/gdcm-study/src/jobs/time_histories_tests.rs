@@ -244,7 +244,7 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let correction = result.correction.on(pair).unwrap();
     for (k, omega) in grid.omega().iter().enumerate() {
         let expected = coupled.curve(pair)[k] * correction.at(*omega);
-        // 1e-4 allows for the phase error in the band of a Pade approximant of delays of tens of
+        // 1e-4 allows for the phase error of Padé approximants in the band, for delays of tens of
         // ms.
         assert!(
             (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),

@@ -76,9 +76,9 @@ pub struct Analysis {
     /// ([`Engine::assess_couplings`](crate::stages::engine::Engine::assess_couplings)).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
     /// Channels with an apparent sign or unit difference between the physics and the identified
-    /// models; reported first.
+    /// models; reported before all other cautions.
     pub doubts: Vec<ConventionDoubt>,
-    /// Schedule fitted to the chosen conditions.
+    /// Schedule fitted to the conditions in [`Self::scheduled`], or why there is none.
     pub schedule: Result<Schedule, ScheduleError>,
     pub assessment: BTreeMap<ConditionId, Assessed>,
     /// Uncertainty of the values, once computed
@@ -126,8 +126,8 @@ impl Analysis {
         }
     }
 
-    /// Returns the dataset with its physics models as compared and corrected: moved by the physics
-    /// parameters, where there are any.
+    /// Returns the dataset whose physics models are compared and corrected: with the models moved
+    /// by the physics parameters, or the study's dataset without parameters.
     pub fn moved_dataset(&self) -> &Arc<Dataset> {
         match self.applied_physics() {
             Some(applied) => &applied.dataset,
@@ -181,7 +181,7 @@ pub struct ConditionAnalysis {
     /// Difference that remains after the leads, where leads are requested (M15.5).
     pub compensated: Option<Arc<LeadCompensated>>,
     /// Benefit of leads, where all constrained responses need lead and leads are not requested;
-    /// `None` where J would not fall by at least a tenth.
+    /// `None` where J would not fall by more than a tenth.
     pub offer: Option<LeadOffer>,
     /// Gains and delays as one correction.
     pub correction: ChannelCorrection,
@@ -238,7 +238,7 @@ impl ConditionAnalysis {
         self.delay_problem.delta[pair]
     }
 
-    /// Returns whether the delays are fitted to D by M15.2 (always so for leads) instead of eq.
+    /// Returns whether the delays are fitted to D by M15.2, as leads always are, instead of eq.
     /// (9); `false` if both definitions give the same D in every response.
     pub fn asks_band_delays(&self) -> bool {
         let asked = &self.delay_problem.delta;
@@ -279,7 +279,8 @@ impl ConditionAnalysis {
         self.delay_problem.bounds.upper
     }
 
-    /// Names the physics models suggested as outliers, including rejected models.
+    /// Names the physics models suggested as outliers, including rejected models; empty without
+    /// discontinuity ratios.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
             .bundle_metrics
@@ -294,7 +295,7 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// Returns a bundle's representative, and all model scores in the order of
+    /// Returns a bundle's representative, with all models' scores in the order of the bundle in
     /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
@@ -305,12 +306,13 @@ impl ConditionAnalysis {
         &self.condition.bundle(kind)[self.representative(kind).model]
     }
 
-    /// Returns the representative's name in a bundle.
+    /// Returns the name of a bundle's representative.
     pub fn representative_name(&self, kind: BundleKind) -> &str {
         &self.representative_model(kind).name
     }
 
-    /// Returns a model's mean distance to the other kept models, if defined.
+    /// Returns a model's mean distance to the other kept models; `None` for a model that is
+    /// rejected or set aside.
     pub fn score(&self, kind: BundleKind, name: &str) -> Option<f64> {
         self.representative(kind).scores[self.condition.position(kind, name)?]
     }

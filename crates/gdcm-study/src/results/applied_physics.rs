@@ -74,7 +74,7 @@ impl AppliedValue {
         Some(self.half_width_sd? * self.parameter.plausible_sd)
     }
 
-    /// Returns the change as a rerun states it.
+    /// Returns the change in the form of a rerun's changes, in the parameter's unit.
     pub fn parameter_change(&self) -> ParameterChange {
         ParameterChange {
             name: self.parameter.name.clone(),

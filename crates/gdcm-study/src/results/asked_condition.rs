@@ -37,7 +37,7 @@ impl RequestedCondition<'_> {
         }
     }
 
-    /// Returns the roles that have a model.
+    /// Returns the roles that have a model: the scheduled role only with a schedule.
     pub(crate) fn roles(&self) -> impl Iterator<Item = RequirementRole> + use<> {
         let has_schedule = self.scheduled.is_some();
         RequirementRole::ALL

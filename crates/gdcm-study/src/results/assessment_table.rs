@@ -29,7 +29,7 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
-    /// The schedule without the lead filters from its signed delays (M15).
+    /// The schedule without its lead filters (M15): gains and positive delays only.
     ScheduledWithoutLeads,
     /// The schedule fitted without this condition, at its airspeed: a prediction for a flight not
     /// used in the fit.
@@ -131,7 +131,7 @@ pub struct LeftOut {
     pub why: NotAssessed,
 }
 
-/// J before and after, for every condition and response (M12).
+/// J before and after the correction, for every condition and response (M12).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentTable {
     pub choice: AssessmentChoice,
@@ -139,7 +139,7 @@ pub struct AssessmentTable {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Assessment summary: the number of responses with a lower J, and the largest change in J.
+/// Assessment summary over all conditions and the marked responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
     /// Number of responses with a lower J.
@@ -160,7 +160,7 @@ impl AssessmentTable {
         }
     }
 
-    /// Assesses all conditions. The stored mismatches are used: each response costs only two
+    /// Assesses all conditions. The stored mismatches are used: each response costs at most two
     /// averages over frequency.
     pub fn assess(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self::new(choice);
@@ -170,7 +170,7 @@ impl AssessmentTable {
         table
     }
 
-    /// Assesses one more condition.
+    /// Assesses a condition, and appends the result or the reason for leaving it out.
     pub(crate) fn add(&mut self, analysis: &Analysis, condition: ConditionId) {
         match assessed(analysis, condition, self.choice) {
             Ok(assessed) => self.conditions.push(assessed),

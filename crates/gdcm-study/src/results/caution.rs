@@ -20,7 +20,8 @@ pub const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 /// A caution attached to a result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Caution {
-    /// A held response is not constrained in this condition, because it has no G and D.
+    /// A response chosen as constrained is not constrained in this condition, because it has no G
+    /// and D.
     HeldButUndefined { pair: Pair, why: Undefined },
     /// No outliers can be suggested.
     NoSuggestions(DiscontinuityError),
@@ -277,7 +278,7 @@ pub enum NotFinite {
         /// Nyquist frequency `pi / T`, up to which the model has a response \[rad/s\].
         nyquist_rad_s: f64,
     },
-    /// Nothing else explains it: a pole on the imaginary axis, or an overflow.
+    /// None of the above: a pole on the imaginary axis, or an overflow.
     Pole,
 }
 

@@ -43,7 +43,7 @@ const STANDS_OUT: f64 = 2.5;
 const SD_OVER_MEDIAN: f64 = 1.4826;
 /// Maximum share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
-/// Minimum squared phase that a suspect explains, relative to the best suspect.
+/// Minimum squared phase that a suspect explains, relative to the largest explained by any suspect.
 const LEAST_OF_BEST: f64 = 0.5;
 
 /// A channel that appears to be logged late, or early, in all records.
@@ -221,7 +221,7 @@ struct Suspect {
     channel: ChannelTimeSkew,
     /// Median delay in the other responses \[s\].
     common_s: f64,
-    /// Decrease in the squared phase due to the channel's delay.
+    /// Decrease in the weighted squared phase due to the channel's delay.
     explained: f64,
 }
 

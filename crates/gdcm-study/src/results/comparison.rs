@@ -39,7 +39,8 @@ pub struct ModelMismatch {
     pub cost: PairTable<Option<Cost>>,
 }
 
-/// The two representatives and their differences.
+/// The two representatives, with the differences between them, and of the nominal physics model
+/// from flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     pub physics: Representative,

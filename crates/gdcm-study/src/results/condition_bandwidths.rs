@@ -6,7 +6,7 @@
 //! ```text
 //! physics     each other kept physics model instead of the representative, uncorrected   (M13.1)
 //! corrected   each swap of a physics or identified model, with the resulting correction  (M13.1)
-//! identified  standard deviations of the response in the model, to first order           (M14)
+//! identified  standard deviations that the model contains, to first order                (M14)
 //! ```
 
 use std::borrow::Cow;
@@ -119,7 +119,8 @@ impl PairCorrection {
     }
 }
 
-/// A response's bandwidth, and its phase \[deg\] where that indicates a reversed channel.
+/// A response's bandwidth, and its phase \[deg\] at the band's lowest frequency where that
+/// indicates a reversed channel.
 struct MeasuredBandwidth {
     bandwidth: Bandwidth,
     reversed_phase_deg: Option<f64>,
@@ -130,7 +131,7 @@ struct ConditionBandwidths<'a> {
     asked: &'a RequestedCondition<'a>,
     /// The physics representative's index.
     physics: usize,
-    /// The physics representative and the models that replace it in swaps.
+    /// The physics representative and the models that replace it in swaps, by index.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
     /// The models in `plain` with the couplings, where these can be applied; empty without
     /// couplings.

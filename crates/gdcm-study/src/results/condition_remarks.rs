@@ -13,9 +13,10 @@ use crate::decisions::study::Study;
 /// increase is reported (M15.6).
 const NEGLIGIBLE_INCREASE: f64 = 0.5;
 
-/// Collects the remarks on a result in this order: suspected and reversed signs; gains and delays
-/// matched, or not and why; leads; agreeing loops; coherence; responses farther from flight;
-/// absence from the schedule; the cautions about the condition and the schedule.
+/// Collects the remarks on a result in this order: suspected sign and unit differences, and
+/// reversed channels; gains and delays matched, or not and why; leads; agreeing loops; coherence;
+/// responses farther from flight; absence from the schedule; the cautions about the condition and
+/// the schedule.
 pub fn condition_remarks(
     study: &Study,
     result: &ConditionAnalysis,
@@ -67,7 +68,7 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Returns that all constrained gains are matched; otherwise the missed responses, the conflicts
+/// Reports that all constrained gains are matched; otherwise the missed responses, the conflicts
 /// that cause this, and changes that would remove them.
 fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     if result.gains.matched {
@@ -93,7 +94,8 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// Returns the constraint loops, in gain and in delay, that agree within the tolerance.
+/// Returns a remark for each constraint loop, in gain or in delay, that agrees within the
+/// tolerance.
 fn agreement_remarks(result: &ConditionAnalysis) -> Vec<Remark> {
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
     loops.cloned().map(Remark::LoopAgrees).collect()
@@ -171,7 +173,7 @@ fn free_farther_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
     Some(Remark::FreeFarther { farther, compared })
 }
 
-/// Returns that all constrained delays are matched (nothing without constrained responses);
+/// Reports that all constrained delays are matched (nothing without constrained responses);
 /// otherwise the responses that need lead, and then each other missed response.
 fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let held = result.held().marked().count();

@@ -35,8 +35,8 @@ pub struct CorrectionCosts {
 }
 
 impl CorrectionCost {
-    /// Maximum ratio of off-axis J with the correction to off-axis J without, at which it is
-    /// worthwhile.
+    /// Maximum ratio of off-axis J with the correction to off-axis J without, at which the
+    /// correction is worthwhile.
     const WORTH: f64 = 0.9;
 
     /// Returns whether the correction reduces the off-axis J by at least a tenth.

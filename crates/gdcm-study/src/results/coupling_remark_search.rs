@@ -19,7 +19,8 @@ use crate::decisions::settings::CouplingCorrection;
 
 /// Maximum number of entries reported per matrix; the largest come first.
 const MOST_REPORTED: usize = 3;
-/// Minimum share \[-\] that is reported.
+/// Minimum magnitude of a share \[-\] that is reported (`MixingShare::share`,
+/// `FeedbackShare::share`).
 const LEAST_SHARE: f64 = 0.005;
 
 /// Returns the remarks on an analysis's couplings: the reason why requested couplings are

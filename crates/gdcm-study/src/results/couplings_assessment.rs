@@ -42,12 +42,12 @@ pub struct ConditionCouplings {
     pub poles: Result<Vec<PoleShift>, NoPoles>,
     /// Minimum singular value of `I - K H` at each frequency in [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
-    /// Minimum singular value from the band's lower end to ten times its upper end.
+    /// Minimum of `singular_values` from the band's lower end to ten times its upper end.
     pub margin: Option<LoopMargin>,
     /// `20 log10 |H~ - H| / |H|` at ten times the band's upper end, response by response.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J on-axis and off-axis when the condition is left out; `None` if it is not used in the fit
-    /// or could not be left out.
+    /// J without and with the couplings when the condition is left out of the fit; `None` if it is
+    /// not used in the fit or could not be left out.
     pub left_out: Option<CorrectionCost>,
     /// The other kept physics models with matrices whose poles with couplings are unavailable, for
     /// example because the feedback loop cannot be closed.
@@ -130,7 +130,7 @@ impl CouplingsAssessment {
         CouplingBars::from_fits(&self.left_out_fits, airspeed_kt, self.level).ok()
     }
 
-    /// Returns `M~`, m x m, at an airspeed, with its error bars.
+    /// Returns `M~`, inputs x inputs, at an airspeed, with its error bars.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<CouplingEntry> {
         let values = self.fitted.matrices().normalised_mixing(airspeed_kt);
         let bars = self.bars(airspeed_kt);
@@ -142,7 +142,7 @@ impl CouplingsAssessment {
         entries(&values, bars, |to, from| to == from)
     }
 
-    /// Returns `K`, m x p, with its error bars.
+    /// Returns `K`, inputs x outputs, with its error bars.
     pub fn feedback(&self) -> DMatrix<CouplingEntry> {
         let bars = self.bars(self.mean_airspeed_kt());
         let bars = bars.as_ref().map(|bars| MatrixBars {

@@ -22,7 +22,7 @@ pub enum FileSummary {
     },
     /// The schedule at some airspeeds.
     Table { airspeeds: usize },
-    /// Corrected models; each has at most this many states more than its physics model.
+    /// Corrected models; each has at most `added_states` states more than its physics model.
     Models { models: usize, added_states: usize },
     /// SHA-256 of the other files.
     Checksums { files: usize },
@@ -157,7 +157,8 @@ impl ExportNote {
     /// Returns whether notes in several files state the same fact, so that a single note is enough.
     pub fn has_same_subject(&self, other: &Self) -> bool {
         match (self, other) {
-            // Functions concern the scheduled conditions, models the exported ones.
+            // The channels may differ: functions concern the scheduled conditions, models the
+            // exported ones.
             (Self::DelaysNotScheduled { .. }, Self::DelaysNotScheduled { .. }) => true,
             _ => self == other,
         }

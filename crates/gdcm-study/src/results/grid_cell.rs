@@ -96,7 +96,7 @@ impl RoleCell {
     }
 }
 
-/// A requirement in a condition.
+/// A requirement's result in a condition, for two models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridCell {
     /// The corrected model, in the grid's role.
@@ -112,7 +112,7 @@ impl RequirementLimit {
             Self::AtMost(limit) => value <= *limit,
             Self::AtLeast(limit) => value >= *limit,
             Self::Tolerance(_) => value <= 1.0,
-            // Levels and modes have their own verdicts.
+            // `GridSource` judges levels and modes itself.
             Self::IdentifiedLevel | Self::Mode(_) | Self::None => return CellVerdict::NoTolerance,
         };
         if is_met {

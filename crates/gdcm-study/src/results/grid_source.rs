@@ -334,9 +334,9 @@ impl GridSource<'_> {
         }
     }
 
-    /// Judges a mode by its tolerance; the value is its natural frequency's relative change.
-    /// Without a value, the first reason that applies: the condition has no modes, not this mode,
-    /// the model has no paired mode, the verdict is uncertain.
+    /// Judges a mode by its tolerance; the value is its natural frequency's relative difference
+    /// from flight. Without a value, the first reason that applies: the condition has no modes;
+    /// flight does not show this mode; the model has no paired mode; the verdict is uncertain.
     fn mode_cell(&self, condition: ConditionId, name: ModeName, role: RequirementRole) -> RoleCell {
         if self.requirements.no_modes(condition).is_some() {
             return RoleCell::absent(NotDetermined::NoModes);

@@ -22,11 +22,11 @@ pub struct LeadOffer {
 }
 
 impl LeadOffer {
-    /// Leads are recommended up to this ratio of J with leads to J without.
+    /// Leads are recommended below this ratio of J with leads to J without.
     const WORTH: f64 = 0.9;
 
     /// Returns J without and with these leads if they would reduce J over the constrained responses
-    /// by at least a tenth. `mismatch` contains the constrained responses only; `now` is J under
+    /// by more than a tenth. `mismatch` contains the constrained responses only; `now` is J under
     /// the present correction.
     pub(crate) fn new(
         leads: ChannelLeads,

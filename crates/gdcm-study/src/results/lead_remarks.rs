@@ -12,15 +12,15 @@ use crate::decisions::study::Study;
 /// Maximum difference \[s\] between D by eq. (9) and D over the band at which the missing phase can
 /// be due to a delay.
 const APART_S: f64 = 0.02;
-/// Minimum absolute signed delay \[s\] that needs a correction.
+/// Minimum absolute signed delay \[s\] that is not negligible.
 const LEAST_DELAY_S: f64 = 2e-3;
 /// Minimum magnitude of a gain change due to leads \[dB\] that is reported.
 const LEAST_RISE_DB: f64 = 0.05;
 /// Maximum range of leads with a common cause, relative to their median.
 const COMMON_RANGE: f64 = 0.5;
 
-/// Returns the remarks on leads, including the checks to make before they are used. For a study
-/// without leads, they only report whether leads would help.
+/// Returns the remarks on lead. Whether the needed leads are achieved, and the gain that they
+/// raise, are reported only for a study with leads.
 pub fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {

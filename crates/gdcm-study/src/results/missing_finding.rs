@@ -98,7 +98,7 @@ impl MissingReason {
     }
 }
 
-/// Writes the code.
+/// Writes the code, which the export replaces by a sentence.
 impl Serialize for MissingReason {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.code())

@@ -6,7 +6,7 @@ use gdcm_method::physics::increments::IncrementError;
 /// Outcome for a condition's physics models.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MovedModels {
-    /// Models are moved, except those listed.
+    /// Models are moved, except those in `kept`.
     Moved {
         /// The models that keep their response, with the reasons.
         kept: Vec<UnmovedModel>,
@@ -29,6 +29,6 @@ pub struct UnmovedModel {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BendingParameter {
     pub name: String,
-    /// `|z| ||Q|| / ||L||` for A.
+    /// `|z| ||Q|| / ||L||` for the matrix A (symbols: [`applied_physics`](super::applied_physics)).
     pub curvature: f64,
 }

@@ -1,5 +1,5 @@
-//! Benefit of the physics parameters: J without and with them and for conditions left out, channel
-//! delays and couplings that they take over, reruns (M18.5, M18.6).
+//! Benefit of the physics parameters: J, channel delays and couplings without and with them, J for
+//! conditions left out, and reruns (M18.5, M18.6).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -6,14 +6,13 @@ use gdcm_method::physics::{
 };
 use gdcm_model::dataset::ConditionId;
 
-/// Diagnosis of the parameters that are on.
+/// Diagnosis of the parameters that are switched on.
 #[derive(Clone, Debug)]
 pub struct PhysicsFindings {
-    /// The parameters that are on, in dataset order.
+    /// The parameters that are switched on, in dataset order.
     pub parameters: Vec<OfferedParameter>,
-    /// The parameters that are off.
+    /// The parameters that are switched off.
     pub off: Vec<OfferedParameter>,
-    /// Fit data.
     pub problem: PhysicsProblem,
     pub diagnosis: PhysicsDiagnosis,
     pub left_out: LeftOutData,
@@ -26,7 +25,7 @@ pub struct LeftOutData {
     pub conditions: Vec<OmittedCondition>,
 }
 
-/// A run that is not used.
+/// A run that is not used in the fit, with its condition and the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefusedConditionRun {
     pub condition: ConditionId,
@@ -95,7 +94,8 @@ impl PhysicsFailure {
         }
     }
 
-    /// Returns the runs and conditions that could not be used.
+    /// Returns the unused runs and conditions if no condition takes part in the fit; `None` for
+    /// other reasons.
     pub fn left_out(&self) -> Option<&LeftOutData> {
         match self {
             Self::NoConditions(left_out) => Some(left_out),
@@ -105,7 +105,7 @@ impl PhysicsFailure {
 }
 
 impl PartialEq for PhysicsFindings {
-    /// Compares the results; the fit data are not read.
+    /// Compares the results, not the fit data (`problem`).
     fn eq(&self, other: &Self) -> bool {
         self.parameters == other.parameters
             && self.off == other.off
@@ -143,14 +143,14 @@ impl DiagnosedParameter<'_> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConditionPull {
     pub condition: ConditionId,
-    /// Index among the parameters that are on.
+    /// Index among the parameters that are switched on.
     pub parameter: usize,
     /// Value without the condition minus the value with it, in plausible standard deviations.
     pub change: f64,
 }
 
 impl PhysicsFindings {
-    /// Returns the parameters that are on, with their diagnosis.
+    /// Returns the parameters that are switched on, with their diagnosis.
     pub fn diagnosed(&self) -> impl Iterator<Item = DiagnosedParameter<'_>> {
         self.parameters
             .iter()
@@ -161,8 +161,8 @@ impl PhysicsFindings {
             })
     }
 
-    /// Lists the parameters that are on, by index: the fitted ones in stepwise order, then the
-    /// others.
+    /// Lists the parameters that are switched on, by index: the fitted ones in stepwise order, then
+    /// the others.
     pub fn ranked(&self) -> Vec<usize> {
         let mut ranked: Vec<usize> = (0..self.parameters.len()).collect();
         ranked.sort_by_key(|parameter| {
@@ -172,8 +172,9 @@ impl PhysicsFindings {
         ranked
     }
 
-    /// Returns the named parameter's index among those that are on; without a name, or if no such
-    /// parameter is on, the index of the first in the ranking. `None` if no parameter is on.
+    /// Returns the index of the parameter with this name among those that are switched on; without
+    /// a name, or if no such parameter is on, the index of the first in the ranking. `None` if no
+    /// parameter is on.
     pub fn selected(&self, name: Option<&str>) -> Option<usize> {
         let found = self
             .parameters
@@ -182,7 +183,7 @@ impl PhysicsFindings {
         found.or_else(|| self.ranked().first().copied())
     }
 
-    /// Returns the named parameters.
+    /// Returns the parameters that the diagnosis names (M18.4).
     pub fn named(&self) -> Vec<DiagnosedParameter<'_>> {
         self.diagnosed()
             .filter(|diagnosed| diagnosed.diagnosis.is_named())

@@ -148,7 +148,7 @@ impl RecordHistory {
     }
 }
 
-/// Checks every tolerance row against each role's simulation.
+/// Checks each role's simulation against every tolerance row.
 fn quantities(
     comparison: &RecordComparison<'_>,
     segments: &[Segment],

@@ -169,7 +169,8 @@ fn prepare_records<'a>(
 /// Each condition's models with their roles.
 type RoleModels = BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>>;
 
-/// Builds the models for every condition with a record; adds to `missing` why a role has no model.
+/// Builds the models for every condition with a record; adds to `missing` why a role has no model,
+/// unless the schedule is missing.
 fn role_models(
     analysis: &Analysis,
     prepared: &[PreparedRecord<'_>],
@@ -185,7 +186,7 @@ fn role_models(
         for role in RequirementRole::ALL {
             match analysis.role_model(record.result, role) {
                 Ok(model) => of_condition.push((role, model)),
-                // The missing schedule is reported once, not for every condition.
+                // `requirements_of` reports a missing schedule, once for all conditions.
                 Err(RoleModelError::NoSchedule(_)) => {}
                 Err(why) => missing.push(missing_history(
                     Some(id),
@@ -198,7 +199,7 @@ fn role_models(
     models
 }
 
-/// Simulates each record with its condition's models, in common windows.
+/// Lists the simulations to run: each record with its condition's models, in common windows.
 fn simulations<'a>(
     prepared: &'a [PreparedRecord<'a>],
     models: &'a RoleModels,

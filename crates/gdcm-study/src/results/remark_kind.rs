@@ -1,4 +1,4 @@
-//! Remark kinds.
+//! Kind of a remark: success, caution or failure.
 
 /// Whether a request was fulfilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

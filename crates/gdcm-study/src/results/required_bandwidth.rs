@@ -34,7 +34,6 @@ pub struct BandwidthFinding {
     pub omega_gain_rad_s: Option<f64>,
     /// Frequency where the phase is -180 deg \[rad/s\].
     pub omega_180_rad_s: Option<f64>,
-    /// Phase delay \[s\].
     pub phase_delay_s: Option<f64>,
     /// The margin that determines the bandwidth.
     pub rule: Option<BandwidthRule>,
@@ -112,7 +111,7 @@ impl Serialize for NoBandwidth {
     }
 }
 
-/// Names under which [`metrics`] returns its values.
+/// Export names of the values that [`metrics`] returns, in its order.
 pub(super) const METRICS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -121,7 +120,7 @@ pub(super) const METRICS: [&str; 5] = [
     "phase_delay_s",
 ];
 
-/// Name of the maximum phase deviation from a straight line.
+/// Export name of the maximum phase deviation from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
 /// A response's metric values, in the order of [`METRICS`].
@@ -144,7 +143,7 @@ pub(super) fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
 }
 
 impl BandwidthFinding {
-    /// Returns the metrics with their names.
+    /// Returns the metrics and the maximum phase deviation, with their export names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
         let [bandwidth, phase, gain, neutral, delay] = METRICS;
         [
@@ -168,7 +167,7 @@ impl BandwidthFinding {
         self.rests_above_band.contains(&name)
     }
 
-    /// Stores a response's metrics.
+    /// Stores a response's metrics, and the reasons for those that are missing.
     pub(super) fn store(&mut self, bandwidth: &Bandwidth) {
         let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = metric_values(bandwidth);
         self.omega_bw_rad_s = omega_bw;
@@ -178,8 +177,8 @@ impl BandwidthFinding {
         self.phase_delay_s = phase_delay;
         self.rule = bandwidth.rule;
         self.gain_limited = bandwidth.is_gain_limited();
-        // If leads invalidate the phase delay, the line from which it would be computed is not
-        // stored.
+        // Without a phase delay (for example because leads invalidate it), the line from which it
+        // would be computed is not stored.
         if let (Some(line), Some(_)) = (bandwidth.phase_line, phase_delay) {
             self.phase_departure_deg = Some(line.departure_deg);
             self.phase_delay_of_line = !line.is_straight();

@@ -19,8 +19,9 @@ use super::asked_condition::RequestedCondition;
 use super::missing_finding::NoModes;
 use super::requirement_role::RequirementRole;
 
-/// Indices of the physics model without and with couplings among the compared models.
+/// Index of the physics model without couplings among the compared models.
 const WITHOUT_COUPLINGS: usize = 0;
+/// Index of the physics model with couplings, if there are any, among the compared models.
 const WITH_COUPLINGS: usize = 1;
 
 /// Identified models' poles with their uncertainty, by condition; a dataset does not store them.
@@ -105,7 +106,7 @@ impl ModeNumbers {
         self.pole_real_rad_s.hypot(self.pole_imaginary_rad_s)
     }
 
-    /// Returns the values with their names.
+    /// Returns the values with their export names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 5] {
         [
             ("pole_real_rad_s", Some(self.pole_real_rad_s)),
@@ -149,7 +150,8 @@ pub struct ModeFinding {
     pub tolerance: Option<ModeTolerance>,
 }
 
-/// Compares a condition's modes.
+/// Compares the physics representative's modes, without and with couplings, with the identified
+/// representative's.
 ///
 /// # Errors
 /// [`NoModes`] if a model is a measured response, if its modes cannot be computed, or if the

@@ -33,7 +33,7 @@ pub struct SummaryFinding {
 }
 
 impl SummaryFinding {
-    /// Returns the values with their names.
+    /// Returns the values with their export names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("mean_j_on_axis", self.mean_j_on_axis),

@@ -42,7 +42,7 @@ pub struct GridCondition {
 pub struct GridCount {
     /// Cells that the corrected model meets.
     pub met: usize,
-    /// Cells with a limit and a value for the corrected model.
+    /// Cells in which the corrected model meets or misses a limit.
     pub judged: usize,
     /// Cells that the physics model meets.
     pub physics_met: usize,
@@ -108,25 +108,25 @@ impl RequirementGrid {
         found
     }
 
-    /// Returns a group's rows.
+    /// Returns a group's rows, in the order of the grid.
     pub fn group_rows(&self, group: RequirementGroup) -> impl Iterator<Item = &GridRow> {
         self.rows
             .iter()
             .filter(move |row| row.requirement.group() == group)
     }
 
-    /// Returns a requirement's row.
+    /// Returns a requirement's row; `None` if the grid has none.
     pub fn row(&self, requirement: Requirement) -> Option<&GridRow> {
         self.rows.iter().find(|row| row.requirement == requirement)
     }
 
-    /// Returns a requirement's cell in a condition.
+    /// Returns a requirement's cell in a condition; `None` if the grid has no such row or column.
     pub fn cell(&self, requirement: Requirement, condition: ConditionId) -> Option<&GridCell> {
         let column = self.column(condition)?;
         self.row(requirement)?.cells.get(column)
     }
 
-    /// Returns a condition's column.
+    /// Returns a condition's column index.
     pub fn column(&self, condition: ConditionId) -> Option<usize> {
         self.conditions
             .iter()

@@ -104,7 +104,7 @@ fn known() -> Requirements {
     }
 }
 
-/// A record with the peak error of the roll rate of the corrected and the physics model.
+/// Findings for a record: the peak errors in roll rate for the corrected and the physics model.
 fn record(held_out: bool, corrected: f64, physics: f64) -> Vec<HistoryFinding> {
     let roles = [
         (RequirementRole::Corrected, corrected),

@@ -44,7 +44,7 @@ impl RequirementRole {
         }
     }
 
-    /// Returns the role's name in files, tables and captions: "physics".
+    /// Returns the role's name in files, tables and captions, such as "physics".
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -115,7 +115,7 @@ impl Analysis {
     }
 }
 
-/// Returns a continuous-time model's matrices.
+/// Returns a continuous-time model's matrices; an error for any other model.
 fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
     let name = || model.name.clone();
     let matrices = model

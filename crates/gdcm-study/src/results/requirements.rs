@@ -87,8 +87,8 @@ impl Requirements {
     }
 }
 
-/// Computes the requirements without flight records on every condition with a result (M17.1, M17.3,
-/// M17.4). Each condition is a step.
+/// Computes the requirements that need no flight records, for every condition with a result (M17.1,
+/// M17.3, M17.4). Each condition is a progress step.
 ///
 /// Intervals are based on the analysis's error bars ([`Analysis::uncertainty`]). The uncertainty in
 /// the `known` poles determines whether the flight data suffice for a verdict on a mode.
@@ -128,7 +128,7 @@ pub fn requirements_of(
     Ok(requirements)
 }
 
-/// Computes a condition's findings.
+/// Computes a condition's findings; without a result, only the reason.
 fn condition_requirements(
     analysis: &Analysis,
     known: &KnownPoles,

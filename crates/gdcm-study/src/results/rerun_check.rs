@@ -11,11 +11,13 @@ use super::correction_costs::AxisCost;
 pub const GOOD_PREDICTION: f64 = 1.0;
 /// J between prediction and rerun above which the parameters' effect is not linear enough.
 pub const POOR_PREDICTION: f64 = 5.0;
-/// Ratio of the prediction's J to the base's J, both against the rerun, above which the parameters'
-/// effect is not linear enough (unless the prediction is good).
+/// Ratio of the prediction's J to the J of its base (the model with all parameters nominal), both
+/// against the rerun, above which the parameters' effect is not linear enough (unless the
+/// prediction is good).
 pub const POOR_SHARE: f64 = 0.1;
 
-/// A physics model with several parameters moved, compared with the prediction for its values.
+/// A rerun, that is, a physics model with parameters moved together, compared with the prediction
+/// for its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RerunCheck {
     pub condition: ConditionId,
@@ -38,7 +40,7 @@ pub struct RerunCost {
 pub enum RerunVerdict {
     /// The prediction agrees with the rerun.
     Good,
-    /// The prediction differs, but less than the limits.
+    /// The prediction differs, but within the limits.
     Fair,
     /// The parameters' effect is not linear enough: a second run at the value found is needed, or
     /// the rerun must become the nominal model, with its own runs.

@@ -1,5 +1,5 @@
 //! The physics representative's responses before and after the physics parameters, without their
-//! differences in gain and delay.
+//! differences in gain and delay from the identified representative's.
 //!
 //! ```text
 //! H G exp(-j omega D),   G = median |H_ref| / |H|,   D = median Delta phi / omega      (eq. (5), (9))

@@ -131,7 +131,7 @@ fn cost_of(
     Some(corrected_cost_on(mismatch, correction, pair, &analysis.omega, average)?.total())
 }
 
-/// Sums J over responses.
+/// Sums of J over responses.
 #[derive(Default)]
 struct CostSum {
     scheduled: f64,

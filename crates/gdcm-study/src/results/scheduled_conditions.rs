@@ -98,8 +98,8 @@ fn has_notable_delay(result: &ConditionAnalysis) -> bool {
         .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
-/// Returns the scheduled conditions' results, in dataset order. Every list in this file is derived
-/// from it.
+/// Returns the scheduled conditions' results, in dataset order. Every list of scheduled conditions
+/// in this file is derived from this one.
 pub(crate) fn in_schedule<'a>(
     study: &Study,
     outcomes: &'a Outcomes,

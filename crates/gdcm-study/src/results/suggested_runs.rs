@@ -10,8 +10,8 @@
 //! | pitch gain that changes with airspeed | tail lift, wake on the tail |
 //!
 //! A pattern only says what is worth trying: parameters with similar effects produce the same
-//! pattern. The cyclic inputs are those commanded by the longitudinal and lateral stick; a coupling
-//! `is_within_bar` if its error bar includes zero (M16).
+//! pattern. The cyclic inputs (longitudinal and lateral stick) are the two inputs whose only
+//! on-axis response is a rate; a coupling `is_within_bar` if its error bar includes zero (M16).
 
 use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares};
 use gdcm_method::physics::OfferedParameter;
@@ -48,7 +48,7 @@ pub enum RunPattern {
     CrossedRate {
         input: usize,
         output: usize,
-        /// Peak share of the stick.
+        /// Peak share of the stick used by the feedback.
         share: f64,
     },
     /// All inputs, or all outputs, need nearly the same lead.
@@ -65,7 +65,7 @@ pub enum RunPattern {
         pair: Pair,
         /// Geometric mean of G over the conditions.
         gain: f64,
-        /// Peak share of the stick; `None` without assessed couplings.
+        /// Peak share of the stick used by the feedback; `None` without assessed couplings.
         damping_share: Option<f64>,
     },
     /// The pitch rate's G differs between fast and slow conditions.
@@ -244,7 +244,7 @@ impl PatternSearch<'_> {
         is_rate(&self.analysis.study.dataset.outputs()[output])
     }
 
-    /// Returns the two cyclic inputs; `None` unless the on-axis responses indicate them.
+    /// Returns the two cyclic inputs; `None` unless exactly two inputs qualify.
     fn cyclic(&self) -> Option<[usize; 2]> {
         cyclic_inputs(self.analysis.study.dataset.on_axis(), |output| {
             self.is_rate(output)
@@ -271,7 +271,8 @@ impl PatternSearch<'_> {
         }
     }
 
-    /// Finds the largest feedback from a rate on one cyclic axis to the other cyclic input.
+    /// Finds the largest notable feedback, outside its error bar, from a rate on one cyclic axis to
+    /// the other cyclic input.
     fn crossed_rate(&self) -> Option<RunPattern> {
         let couplings = self.couplings?;
         let cyclic = self.cyclic()?;
@@ -335,8 +336,8 @@ impl PatternSearch<'_> {
     }
 
     /// Finds the rate commanded by the pedals (the first on-axis rate of an input that is not
-    /// cyclic) if its G is notable and, where couplings are assessed, its feedback is outside the
-    /// error bar.
+    /// cyclic) if its G is notable ([`NOTABLE_LN_GAIN`]) and, where couplings are assessed, its
+    /// feedback is outside the error bar.
     fn pedal_gain(&self) -> Option<RunPattern> {
         let cyclic = self.cyclic()?;
         let dataset = &self.analysis.study.dataset;
@@ -436,8 +437,8 @@ fn mean(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Returns the pattern if all signed delays (two or more) are leads and nearly equal, and their
-/// mean is notable.
+/// Returns the pattern if no signed delay (of two or more) is positive, all are nearly equal, and
+/// their mean lead is notable.
 fn equal_lead(side: LeadSide, delays_s: &[f64]) -> Option<RunPattern> {
     let mean_s = mean(delays_s)?;
     let squares: Vec<f64> = delays_s

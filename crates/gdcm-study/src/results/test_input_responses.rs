@@ -17,7 +17,7 @@ const SHOWN: f64 = 5.0;
 /// Minimum displayed time \[s\].
 const LEAST_SHOWN_S: f64 = 10.0;
 
-/// Number of samples in the displayed time.
+/// Number of sample intervals in the displayed time.
 const STEPS: usize = 1000;
 
 /// Why a model has no response to a test input.

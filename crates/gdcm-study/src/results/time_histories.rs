@@ -76,7 +76,6 @@ pub struct ToleranceFinding {
     pub output: String,
     /// Whether the output is integrated from the start of each window.
     pub integrated: bool,
-    /// The quantity's unit.
     pub unit: String,
     /// Share of time inside the tolerance, 0 to 1.
     pub share_inside: f64,
@@ -101,7 +100,7 @@ pub struct ToleranceFinding {
 }
 
 impl ToleranceFinding {
-    /// Returns the values with their names.
+    /// Returns the values with their export names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
         [
             ("share_inside", Some(self.share_inside)),

@@ -116,8 +116,8 @@ impl GainVerdict {
     }
 }
 
-/// Returns the input or output that several responses have in common; `None` for fewer than two
-/// responses.
+/// Returns the input, or else the output, that all responses have in common; `None` also for fewer
+/// than two responses.
 pub fn shared_channel(pairs: &[Pair]) -> Option<Channel> {
     let [first, rest @ ..] = pairs else {
         return None;

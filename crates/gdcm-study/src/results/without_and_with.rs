@@ -1,4 +1,4 @@
-//! A result without and with a correction to the physics models.
+//! Pairs of results without and with the physics parameters.
 
 /// A result without and with the physics parameters.
 #[derive(Clone, Debug, PartialEq)]

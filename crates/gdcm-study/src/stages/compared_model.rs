@@ -19,7 +19,7 @@ pub struct ComparisonGrid<'a> {
     pub coherence: Option<f64>,
 }
 
-/// Why a response has no magnitude in dB at every frequency.
+/// Why a response has no magnitude in dB at some frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Absence {
     Zero,
@@ -84,7 +84,8 @@ impl ComparedModel {
         }
     }
 
-    /// Computes the mismatches against a reference, response by response.
+    /// Computes the mismatches against a reference, response by response, with the reference's
+    /// coherence weights.
     pub(crate) fn mismatches(&self, reference: &Self) -> Mismatches {
         mismatch_table(
             &self.polar,
@@ -101,12 +102,12 @@ impl ComparedModel {
     }
 }
 
-/// Returns why a response has no G and no D, by the first reason that applies to a bundle, physics
-/// first:
+/// Returns why a response has no G and no D: the first reason that applies, each checked for the
+/// physics model first:
 ///
 /// 1. numerically zero;
 /// 2. zero, zero somewhere, or not finite;
-/// 3. a gain out of range, at frequencies with weight;
+/// 3. a gain out of range, if any frequency has weight;
 /// 4. no frequency with weight.
 pub(crate) fn why_undefined(
     physics: &ComparedModel,

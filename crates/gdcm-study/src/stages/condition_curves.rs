@@ -61,8 +61,8 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns a physics model's `H~` with the physics parameters and couplings from `result`; `H`
-    /// without them.
+    /// Returns a physics model's response with the physics parameters and couplings from `result`,
+    /// if any.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,

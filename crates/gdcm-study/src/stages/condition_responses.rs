@@ -1,7 +1,7 @@
 //! Frequency responses of a condition's models.
 //!
 //! ```text
-//! KnownModels           responses of every model in use, by its content
+//! KnownModels           responses of the models in use, by model content
 //!   ConditionModels     the models of a condition, each with its cached responses
 //!     ConditionResponses  their responses on one grid, in file order
 //!       CoupledResponses  the responses of the physics models with couplings, computed on first use
@@ -161,8 +161,8 @@ impl ConditionModels {
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Returns a bundle's cached responses if all are cached, otherwise computes them model by
-    /// model; reports one progress step per model.
+    /// Returns both bundles' responses: a bundle's from the cache if it holds them all, otherwise
+    /// computed model by model; reports one progress step per model.
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.

@@ -152,7 +152,7 @@ impl ConditionStages {
     }
 
     /// Sets the values that move the physics models for the stages after the distances; results are
-    /// kept while the models stay the same (M18.5).
+    /// kept while the moved models stay the same (M18.5).
     pub(crate) fn apply_physics(
         &mut self,
         applied: Option<&Arc<AppliedPhysics>>,
@@ -215,7 +215,7 @@ impl ConditionStages {
             self.models
                 .responses(Purpose::Comparison, run.grid_key(), run.grid, execution)?;
         if self.metrics.holds(&key) {
-            // Cached distances report no steps.
+            // Cached distances report no steps; their steps are reported here.
             execution.step(2 * model_count(&condition));
         }
         let metrics = self.metrics.get_or_fail(key, |key| {
@@ -256,7 +256,7 @@ impl ConditionStages {
         })
     }
 
-    /// Returns the stages for the models without couplings.
+    /// Returns the stages without couplings: for the moved models, if the condition has any.
     fn stages_without_couplings(&mut self) -> &mut ComparedStages {
         match &mut self.moved {
             Some(moved) => &mut moved.compared,
@@ -449,8 +449,8 @@ impl ConditionStages {
         })
     }
 
-    /// Computes the responses with couplings, if any. Nothing else applies couplings to a physics
-    /// model for comparison.
+    /// Adds the couplings, if any, to the responses; coupled responses are computed on first use.
+    /// Nothing else applies couplings to a physics model for comparison.
     fn coupled_responses(
         &mut self,
         run: Run<'_>,

@@ -1,9 +1,9 @@
 //! The physics representatives' J without and with a correction to the physics models (couplings or
 //! physics parameters), averaged over the conditions (M16.4, M18.5).
 //!
-//! Both are compared under the same channel corrections: none; each condition's own; the schedule;
-//! and, for conditions left out, the correction and the schedule fitted to the others. On-axis and
-//! off-axis responses are averaged separately.
+//! Both are compared under the same kinds of channel correction: none; each condition's own; the
+//! schedule; and, for conditions left out, the correction and the schedule fitted to the others.
+//! On-axis and off-axis responses are averaged separately.
 
 use gdcm_method::couplings::LeftOutFit;
 use gdcm_method::schedule::CostChange;
@@ -21,13 +21,13 @@ pub(super) struct LeftOutCondition {
     pub(super) cost: LeftOutCost,
 }
 
-/// A condition's J, with the correction assessed and the schedule fitted to the others.
+/// A condition's J, with the assessed correction and the schedule fitted to the other conditions.
 pub(super) struct LeftOutCost {
     pub(super) condition: ConditionId,
     pub(super) cost: CorrectionCost,
-    /// J without the correction assessed, response by response.
+    /// J without the assessed correction, response by response.
     without: PairTable<Option<CostChange>>,
-    /// J with the correction assessed, response by response.
+    /// J with the assessed correction, response by response.
     with: PairTable<Option<CostChange>>,
 }
 
@@ -51,8 +51,8 @@ impl LeftOutCondition {
 }
 
 impl LeftOutCost {
-    /// Computes the condition's J under the schedule fitted to the others, without the correction
-    /// assessed and with it; `held_out` is the analysis with the correction and the condition held
+    /// Computes the condition's J under the schedule fitted to the others, without and with the
+    /// assessed correction; `held_out` is the analysis with the correction and the condition held
     /// out. `None` where the schedule cannot be fitted to the other conditions, or the condition
     /// cannot be assessed.
     pub(super) fn new(
@@ -88,7 +88,7 @@ fn changes(
     Some(assessed(analysis, condition, choice).ok()?.changes)
 }
 
-/// Averages J over the conditions, without and with the correction assessed.
+/// Averages J over the conditions, without and with the assessed correction.
 pub(super) fn correction_costs(
     without: &Analysis,
     with: &Analysis,

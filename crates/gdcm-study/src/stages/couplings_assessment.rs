@@ -30,13 +30,13 @@ use crate::results::fitted_couplings::FittedCouplings;
 /// Step name in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
 
-/// Share of each of the two analyses in progress reports; the parts sum to 1.
+/// Share of each of the two analyses in the reported progress; all shares sum to 1.
 const ANALYSIS_SHARE: f64 = 0.1;
 
-/// Share of the fits without each condition in turn.
+/// Progress share of the fits without each condition in turn.
 const LEFT_OUT_SHARE: f64 = 0.6;
 
-/// Share of the effects on the conditions.
+/// Progress share of the effects on the conditions.
 const EFFECTS_SHARE: f64 = 0.2;
 
 impl Engine {

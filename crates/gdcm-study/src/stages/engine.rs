@@ -39,7 +39,7 @@ use crate::results::time_histories::{HistoryRecords, TimeHistories};
 use crate::results::uncertainty::Uncertainty;
 
 /// Computes analyses and caches each stage's last result, keyed by the numerical content of its
-/// inputs: if a single model changes, only its response is recomputed.
+/// inputs: if a single model changes, no other model's response is recomputed.
 ///
 /// ```text
 /// responses                      (dynamics of the model, band, points)
@@ -226,7 +226,7 @@ impl Engine {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        // One step for each model's response, and one for its swap.
+        // One step for each model's response, and at most one for its swap.
         let total = study
             .dataset
             .conditions()

@@ -79,7 +79,8 @@ impl KnownModels {
             .retain(|_, responses| responses.strong_count() > 0);
     }
 
-    /// Returns the shared responses of the models with this content, empty if no condition uses them.
+    /// Returns the responses shared by all models with this content: a new, empty cache if no
+    /// condition uses such a model.
     pub(super) fn responses_of(&self, content: ContentHash) -> Arc<ModelResponses> {
         let mut by_content = self.by_content();
         let known = by_content.entry(content).or_default();

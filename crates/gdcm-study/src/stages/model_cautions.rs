@@ -112,7 +112,8 @@ impl BundleCautions<'_> {
     }
 }
 
-/// Returns the cautions about the models alone, condition by condition, in the study's band.
+/// Returns the cautions about the models and about gains outside the computable range, condition by
+/// condition, in the study's band.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.

@@ -260,7 +260,7 @@ impl SwapMemo {
         Ok(())
     }
 
-    /// Returns a pair's cached results.
+    /// Returns a pair's cached figures; `None` if the pair could not be analysed.
     fn figures(&self, pair: ModelPair) -> Option<Arc<Figures>> {
         self.kept.get(&pair).cloned().flatten()
     }

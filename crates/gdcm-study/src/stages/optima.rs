@@ -147,7 +147,7 @@ impl SolvedProblems {
 
     /// Estimates the benefit of leads, where they are not requested and all constrained responses
     /// need them; `None` otherwise, if the signed delays have no solution, or if J would not fall
-    /// by a tenth. `now` is J under the present correction.
+    /// by more than a tenth. `now` is J under the present correction.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -285,8 +285,9 @@ impl<'a> SolveInput<'a> {
         }
     }
 
-    /// Builds the delay problem for the chosen D, or the signed delay problem for the band delay.
-    /// Without phase correction nothing is constrained, and the upper bound is zero.
+    /// Builds the delay problem for the D chosen in the settings; with a lead design, the signed
+    /// delay problem for D over the band. Without phase correction nothing is constrained, and the
+    /// upper bound is zero.
     pub(crate) fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
         let settings = self.settings();
         let is_corrected = settings.phase != PhaseCorrection::None;

@@ -35,18 +35,18 @@ use crate::results::without_and_with::WithoutAndWith;
 /// Step name in progress reports.
 const LEAVING_OUT: &str = "physics parameters without each condition";
 
-/// Share of the analysis without the parameters in progress reports; the parts sum to 1.
+/// Share of the analysis without the parameters in the reported progress; all shares sum to 1.
 const WITHOUT_SHARE: f64 = 0.1;
 
-/// Share of the fit, and of the analysis with the parameters.
+/// Progress share of the fit and of the analysis with the parameters.
 const WITH_SHARE: f64 = 0.3;
 
-/// Share of the analyses without each condition in turn.
+/// Progress share of the analyses without each condition in turn.
 const LEFT_OUT_SHARE: f64 = 0.6;
 
 impl Engine {
-    /// Diagnoses a study's physics parameters and assesses those that `physics` selects; `None` if
-    /// it selects none.
+    /// Diagnoses a study's physics parameters and assesses those that `physics` selects; `None` for
+    /// [`PhysicsCorrection::Off`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.

@@ -1,16 +1,17 @@
 //! Fits a study's physics parameters (M18.2).
 //!
 //! ```text
-//! 1  conditions that are not held out, with comparable representatives (M5)
-//! 2  runs of each, matched with their bases; a base that is rejected or set aside is not used (M18.1)
-//! 3  family of the physics representative; response of the identified representative and of the
-//!    other kept identified models, on the grid of the fit
-//! 4  diagnosis                                                             (`gdcm_method::physics`)
+//! 1  select the conditions that are not held out and have comparable representatives (M5)
+//! 2  match their runs with bases; refuse runs whose base is rejected or set aside (M18.1)
+//! 3  build the family of the physics representative, and compute the responses of the identified
+//!    representative and of the other kept identified models, on the grid of the fit
+//! 4  diagnose                                                             (`gdcm_method::physics`)
 //! ```
 //!
 //! A run is a model with moved parameters, its base the same model without; the family is the
-//! physics representative as a function of the parameters. Without parameters, parameters that are
-//! on, or conditions, there is no diagnosis ([`PhysicsFailure`]).
+//! physics representative as a function of the parameters. There is no diagnosis without runs,
+//! without a parameter that is switched on, without a usable condition, or if the fit fails
+//! ([`PhysicsFailure`]).
 
 use std::sync::Arc;
 
@@ -144,7 +145,7 @@ impl FindingsKey {
     }
 }
 
-/// Diagnoses the parameters that are on (steps 1 to 4), or returns why that is impossible.
+/// Diagnoses the parameters that are switched on (steps 1 to 4), or returns why that is impossible.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -201,7 +202,7 @@ pub(crate) fn find_parameters(
 /// Collects the fit data from each condition.
 struct Fitting<'a> {
     study: &'a Study,
-    /// The parameters that are on.
+    /// The parameters that are switched on.
     parameters: &'a [OfferedParameter],
     omega: Arc<[f64]>,
     left_out: LeftOutData,

@@ -88,7 +88,7 @@ impl RerunComparison<'_> {
         }
     }
 
-    /// Returns the parameter that a change moves.
+    /// Returns the parameter that a change moves; an error if it is unknown or its unit differs.
     fn parameter(&self, change: &ParameterChange) -> Result<&OfferedParameter, RerunRefusal> {
         let Some(parameter) = self
             .parameters

@@ -12,7 +12,7 @@ use crate::results::scheduled_conditions::in_schedule;
 /// Maximum distance \[s\] between a signed delay and its mean over the conditions that a schedule
 /// can reproduce.
 const APART_S: f64 = 0.02;
-/// Signed delays smaller than this \[s\] have no significant sign.
+/// Signed delays of smaller magnitude than this \[s\] have no significant sign.
 const LEAST_DELAY_S: f64 = 2e-3;
 
 /// Returns cautions about the channels for which no schedule can reproduce the signed delays in all

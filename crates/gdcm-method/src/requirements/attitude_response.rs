@@ -132,8 +132,8 @@ pub struct AttitudeResponse<'a> {
 impl<'a> AttitudeResponse<'a> {
     /// Creates an output's attitude response from `response`, evaluated at the ascending
     /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, the measured frequencies
-    /// for a measured response. The attitude response covers the longest run of values without a gap. The
-    /// phase branch is chosen at the first frequency in `band`.
+    /// for a measured response. The attitude response covers the longest run of values without a
+    /// gap. The phase branch is chosen at the first frequency in `band`.
     ///
     /// # Errors
     /// [`AttitudeResponseError::NoResponse`] if these are fewer than two values.

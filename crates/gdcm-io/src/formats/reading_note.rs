@@ -146,7 +146,7 @@ pub enum ReadingNote {
     MessagesOmitted { count: usize },
     #[error("the file is truncated: it was read up to the last complete message")]
     Truncated,
-    #[error("{} between messages skipped", counted(*count, "byte"))]
+    #[error("{} outside complete messages skipped", counted(*count, "byte"))]
     BytesSkipped { count: usize },
     #[error("{omitted} of {count} flights in the file omitted: fewer than {fewest} frames")]
     FlightsOmitted {

@@ -269,7 +269,12 @@ impl<'v> GroupParts<'v> {
         let starts = self.integers("cidx");
         let rows = self.integers("ridx");
         let re = self.numbers("data").to_vec();
-        let count = starts.len() + 2 * rows.len() + re.len();
+        let im = match self.member("data") {
+            Some(Value::Array(array)) => array.im.clone(),
+            _ => None,
+        };
+        let parts = if im.is_some() { 2 } else { 1 };
+        let count = starts.len() + 2 * rows.len() + parts * re.len();
         self.budget.take(count as u64, 8, self.variable)?;
         let columns = CompressedColumns {
             shape,
@@ -277,7 +282,7 @@ impl<'v> GroupParts<'v> {
             rows,
             starts,
             re,
-            im: None,
+            im,
         };
         columns
             .into_entries()

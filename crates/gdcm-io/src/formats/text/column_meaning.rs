@@ -154,8 +154,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         "rps" => return KnownUnit::Rps,
         "rev/s" | "rev/sec" => return KnownUnit::Hertz,
         // These units have this meaning only in frequency columns.
-        "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
-        "1/sec" => return KnownUnit::Hertz,
+        "1/s" | "1/sec" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
         _ => {}
     }
     match PhysicalUnit::parse(unit).map(|unit| unit.name) {

@@ -25,7 +25,7 @@ pub enum IdentificationError {
     /// The response cannot be measured.
     #[error(transparent)]
     Measurement(#[from] LocalPolynomialError),
-    /// The records are too short for the lower end of the band.
+    /// The longest segment without a long gap is too short for the lower end of the band.
     #[error(
         "the longest record lasts {longest_s:.0} s: a lower band end of {lowest:.2} rad/s needs \
         at least {needed_s:.1} s, preferably {better_s:.0} s. Raise the lower band end to \
@@ -35,22 +35,22 @@ pub enum IdentificationError {
         longest_s: f64,
         /// Lower band end \[rad/s\].
         lowest: f64,
-        /// Required length for the longest record: 1.5 periods at the lower end of the band \[s\].
+        /// Required length: 1.5 periods at the lower end of the band \[s\].
         needed_s: f64,
-        /// Recommended length: 5 periods, or 3 for each input if several are moved in the same
-        /// record \[s\].
+        /// Recommended length: 5 periods, or, in a single segment, 3 for each input if that is
+        /// longer \[s\].
         better_s: f64,
-        /// Lower band end for which the records are long enough \[rad/s\].
+        /// Lowest lower band end for which the longest segment is long enough \[rad/s\].
         enough: f64,
     },
-    /// The lines hold fewer real values than a first-order model needs.
+    /// The spectral lines to fit hold fewer real values than a first-order model needs.
     #[error(
         "the spectral lines in the band contain {figures} real values, but {needed} are needed: 5 \
         for each of the {unknowns} unknowns in a first-order model. Log longer or more records, \
         widen the band, or leave out channels"
     )]
     TooFewFigures {
-        /// Number of real values in the lines.
+        /// Number of real values in the lines, less two for each output and segment.
         figures: usize,
         needed: usize,
         /// Number of unknowns in a first-order model.
@@ -70,7 +70,7 @@ pub enum IdentificationError {
     SampledTooSlowly {
         /// Upper band end \[rad/s\].
         highest: f64,
-        /// Longest sample time \[s\].
+        /// Longest sample time among the segments \[s\].
         sample_time_s: f64,
         /// Maximum possible upper end of the band \[rad/s\].
         limit: f64,
@@ -109,9 +109,9 @@ pub enum IdentificationError {
          widen the band, or leave out channels"
     )]
     NoModel {
-        /// Number of spectral lines in all records.
+        /// Number of spectral lines to fit, over all fitted records.
         lines: usize,
-        /// Total record length \[s\].
+        /// Total length of the fitted records without gaps \[s\].
         seconds: f64,
     },
     #[error("the identification was stopped")]

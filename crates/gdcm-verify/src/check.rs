@@ -9,7 +9,7 @@ pub struct Check {
     pub code: &'static str,
     /// Sections in `docs/method.md` and the pages beside it: "M8", "M3, M6, M7".
     pub sections: &'static str,
-    /// What is compared.
+    /// Compared quantities, as a noun phrase.
     pub what: &'static str,
     /// Independent code, closed form or publication that gives the expected values.
     pub source: &'static str,
@@ -40,7 +40,7 @@ impl Found {
         self.instances += 1;
     }
 
-    /// Adds a deviation.
+    /// Adds a deviation; its sign does not matter, and NaN counts as infinite.
     pub fn deviation(&mut self, deviation: f64) {
         self.values += 1;
         let size = deviation.abs();

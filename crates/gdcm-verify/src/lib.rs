@@ -1,4 +1,5 @@
-//! Compares the program's results with figures that independent code computed.
+//! Compares the program's results with figures from independent code, closed forms and
+//! publications.
 //!
 //! **Question answered:** does this program, on this machine, compute what other programs and closed
 //! forms give?

@@ -73,7 +73,6 @@ pub(crate) fn model_file(name: &str) -> Result<ReferenceFile, CheckFault> {
 }
 
 impl ReferenceFile {
-    /// Parses the file.
     pub(crate) fn read(self) -> Result<Reference, CheckFault> {
         match serde_json::from_str(self.text) {
             Ok(value) => Ok(Reference {
@@ -89,7 +88,9 @@ impl ReferenceFile {
     }
 }
 
-/// A JSON value in a reference file, with its place there for messages.
+/// A JSON value in a reference file, with its place in the file for messages. Methods named `as_…`
+/// and `elements` read the value itself, the others a member with the given name; a fault names the
+/// member that is missing or of the wrong kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     file: &'static str,
@@ -105,7 +106,6 @@ impl Reference {
         }
     }
 
-    /// Returns a member.
     pub(crate) fn member(&self, name: &str) -> Result<Self, CheckFault> {
         match self.value.get(name) {
             Some(value) => Ok(Self {
@@ -122,7 +122,6 @@ impl Reference {
         self.value.get(name).is_some_and(|value| !value.is_null())
     }
 
-    /// Returns this list's elements.
     pub(crate) fn elements(&self) -> Result<Vec<Self>, CheckFault> {
         let Some(values) = self.value.as_array() else {
             return Err(self.fault("list"));
@@ -138,22 +137,18 @@ impl Reference {
         Ok(elements)
     }
 
-    /// Returns a member's elements.
     pub(crate) fn list(&self, name: &str) -> Result<Vec<Self>, CheckFault> {
         self.member(name)?.elements()
     }
 
-    /// Returns this value as a number.
     pub(crate) fn as_number(&self) -> Result<f64, CheckFault> {
         self.value.as_f64().ok_or_else(|| self.fault("number"))
     }
 
-    /// Returns a member as a number.
     pub(crate) fn number(&self, name: &str) -> Result<f64, CheckFault> {
         self.member(name)?.as_number()
     }
 
-    /// Returns this list as numbers.
     pub(crate) fn as_numbers(&self) -> Result<Vec<f64>, CheckFault> {
         let mut numbers = Vec::new();
         for element in self.elements()? {
@@ -162,18 +157,15 @@ impl Reference {
         Ok(numbers)
     }
 
-    /// Returns a member, a list, as numbers.
     pub(crate) fn numbers(&self, name: &str) -> Result<Vec<f64>, CheckFault> {
         self.member(name)?.as_numbers()
     }
 
-    /// Returns a member as a whole number.
     pub(crate) fn integer(&self, name: &str) -> Result<i64, CheckFault> {
         let member = self.member(name)?;
         member.value.as_i64().ok_or_else(|| self.fault(name))
     }
 
-    /// Returns a member as a string.
     pub(crate) fn text(&self, name: &str) -> Result<String, CheckFault> {
         let member = self.member(name)?;
         match member.value.as_str() {
@@ -182,7 +174,6 @@ impl Reference {
         }
     }
 
-    /// Returns a member, a list, as strings.
     pub(crate) fn texts(&self, name: &str) -> Result<Vec<String>, CheckFault> {
         let mut texts = Vec::new();
         for element in self.list(name)? {
@@ -194,12 +185,10 @@ impl Reference {
         Ok(texts)
     }
 
-    /// Returns this value as yes or no.
     pub(crate) fn as_flag(&self) -> Result<bool, CheckFault> {
         self.value.as_bool().ok_or_else(|| self.fault("flag"))
     }
 
-    /// Returns a member as yes or no.
     pub(crate) fn flag(&self, name: &str) -> Result<bool, CheckFault> {
         let member = self.member(name)?;
         member.value.as_bool().ok_or_else(|| self.fault(name))
@@ -220,7 +209,6 @@ impl Reference {
         }))
     }
 
-    /// Returns a member as a matrix.
     pub(crate) fn matrix(&self, name: &str) -> Result<DMatrix<f64>, CheckFault> {
         self.member(name)?.as_matrix()
     }

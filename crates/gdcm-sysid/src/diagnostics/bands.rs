@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! var Re(dH/H), Im(dH/H) = h' Cov h, h the real or imaginary part of the gradient of ln H_oi,
-//!     dH = [C R, I] d[A B; C D] [R B; I]
+//!     dH = [C R, I] d[A B; C D] [R B; I],  R = (j omega I - A)^-1
 //! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2
 //!     sd_GN^2 = that variance, from the fit alone
 //!     sd_order = rms of Re and Im ln(H_n'/H_n) over neighbouring orders n'
@@ -25,7 +25,7 @@ use crate::likelihood::schur_model::SchurModel;
 
 /// Half-width, in standard deviations, that gives a two-sided 95 % confidence interval.
 pub const TWO_SIDED_95: f64 = 1.96;
-/// Factor on the variance, found by measurement (M14.5).
+/// Factor on the variances from the fit and between orders, found by measurement (M14.5).
 pub(crate) const MEASURED_FACTOR: f64 = 2.0;
 /// Largest standard deviation that is reported, in neper and radians.
 pub(crate) const UNKNOWN: f64 = 1e3;

@@ -20,7 +20,7 @@ pub enum IdentificationCaution {
     /// A doubt about the records themselves.
     #[error(transparent)]
     Records(#[from] RecordCaution),
-    /// The longest record is shorter than recommended for the lower end of the band.
+    /// The longest usable segment has fewer than five periods at the lower end of the band.
     #[error(
         "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: \
         the models are less certain at the lower end of the band; at least {better_s:.0} s are \
@@ -30,7 +30,7 @@ pub enum IdentificationCaution {
         longest_s: f64,
         /// Lower band end \[rad/s\].
         lowest: f64,
-        /// Periods at the lower end in the longest record.
+        /// Periods at the lower band end in the longest segment.
         periods: f64,
         better_s: f64,
     },
@@ -41,8 +41,8 @@ pub enum IdentificationCaution {
     )]
     NotSwept {
         signal: Signal,
-        /// Median over frequency: largest partial coherence with any output, less the share
-        /// explained by chance.
+        /// Largest partial coherence with any output, less the share that chance explains; median
+        /// over frequency.
         partial_coherence: f64,
     },
     /// Several inputs were moved only together.
@@ -53,7 +53,7 @@ pub enum IdentificationCaution {
         /// Median condition number of the inputs' spectral matrix.
         condition: f64,
     },
-    /// No input moves any output at an end of the band.
+    /// No output responds measurably to any input at one or both ends of the band.
     #[error(
         "{} no output responds measurably to any input (partial coherence below \
         {TRUSTED_COHERENCE}): the models are unreliable there. Narrow the band",
@@ -65,7 +65,8 @@ pub enum IdentificationCaution {
         /// The narrower band in which the records show a response \[rad/s\].
         shown: [f64; 2],
     },
-    /// An output vibrates above the band; a lower cut-off was used before the projections.
+    /// An output vibrates above the band; the low-pass before the projections has a lower cut-off
+    /// than usual.
     #[error(
         "{percent:.0} % of the variance of {signal} is vibration above the band: the subspace \
         identification (CT-PBSID) used only frequencies below {cut_off:.0} rad/s"
@@ -77,7 +78,7 @@ pub enum IdentificationCaution {
         /// Cut-off frequency \[rad/s\].
         cut_off: f64,
     },
-    /// The overall residual is larger than the noise.
+    /// The cost per degree of freedom over the fitted records exceeds 1.5.
     #[error(
         "the residual is {cost:.1} times the noise, largest in {record} and in {signal}. Possible \
         causes: a non-linear response, wrong time alignment, a missing input"
@@ -90,7 +91,8 @@ pub enum IdentificationCaution {
         /// The output with the largest residual.
         signal: Signal,
     },
-    /// A record's residual is larger than the noise and than the residual over all records.
+    /// A record's cost per degree of freedom exceeds 1.5, and 1.5 times that over all fitted
+    /// records.
     #[error(
         "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: \
         another trim, a large amplitude, a gust. Consider leaving the record out"
@@ -107,10 +109,10 @@ pub enum IdentificationCaution {
     Contradiction {
         /// The contradicting record, or both records.
         records: Vec<ContradictingRecord>,
-        /// `F`, the larger one if two records are named; 1 is agreement.
+        /// `F` (M14.16), the larger one if two records are named; 1 is agreement.
         contrast: f64,
     },
-    /// The feedback carried gusts and noise into the inputs.
+    /// The feedback carried gusts and noise into the inputs (M14.14).
     #[error("{}", feedback_text(*level, *share, *coherence))]
     Feedback {
         level: FeedbackLevel,
@@ -133,10 +135,11 @@ pub enum IdentificationCaution {
         input: Signal,
         /// Lower and upper frequency \[rad/s\].
         band: [f64; 2],
-        /// Mean squared distance over the points' variance; 12 is the limit.
+        /// Mean of squared distance over variance in five neighbouring points, where it is largest;
+        /// 12 is the limit (M14.17).
         strength: f64,
     },
-    /// The criterion still falls at the highest order tried.
+    /// The criterion (BIC) still falls at the highest order tried.
     #[error(
         "an order above {order} would fit better: the dynamics in the band have more states. \
         Narrow the band, for example to {:.1} rad/s",
@@ -163,7 +166,7 @@ pub enum IdentificationCaution {
         normalised: f64,
     },
     /// The records were weighted by their own noise; the value is the ratio between the largest and
-    /// the smallest cost per degree of freedom before.
+    /// the smallest cost per degree of freedom before this weighting.
     #[error(
         "the noise of the records differs by a factor of {0:.1}: the records were weighted \
         accordingly"
@@ -201,11 +204,13 @@ impl IdentificationCaution {
 
     /// Returns whether `other` is a mere consequence of this caution.
     ///
-    /// - A contradiction explains the residual and the noise level of its records; points that no
-    ///   model follows, because they are means over contradicting records; and, if a channel's sign
-    ///   is reversed, inputs that cancel in this mean and so do not seem to be swept.
-    /// - Spikes explain the residual and the noise level of their record, a contradiction without a
-    ///   delay or a sign, which would be a separate fault, and vibration of their channel.
+    /// - A contradiction explains the residuals of its records, unequal noise levels, and points
+    ///   that no model follows, because they are means over contradicting records. If a channel's
+    ///   sign is reversed, it also explains inputs that cancel in this mean and so do not seem to
+    ///   be swept.
+    /// - Spikes explain the residual of their record, unequal noise levels, vibration of their
+    ///   channel, and a contradiction that involves their record, unless its cause is a delay or a
+    ///   sign.
     fn explains(&self, other: &Self) -> bool {
         match self {
             Self::Contradiction { records, .. } => match other {
@@ -233,7 +238,7 @@ impl IdentificationCaution {
         }
     }
 
-    /// Removes the cautions that others explain, even if these are explained themselves.
+    /// Removes the cautions that others explain, even if the others are explained themselves.
     pub(crate) fn without_consequences(cautions: Vec<Self>) -> Vec<Self> {
         let mut kept = Vec::with_capacity(cautions.len());
         for caution in &cautions {
@@ -244,7 +249,8 @@ impl IdentificationCaution {
         kept
     }
 
-    /// Returns the caution with its code and its subject.
+    /// Returns the caution's text, with its code and the records, channels and band that it
+    /// concerns.
     #[must_use]
     pub fn note(&self) -> CautionNote {
         CautionNote {
@@ -310,7 +316,7 @@ fn has_turned_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }
 
-/// Returns the caution code for a record's fault.
+/// Returns the caution code for a record's fault; `record` for a wrong scale or an unknown fault.
 fn fault_code(record: &ContradictingRecord) -> &'static str {
     match &record.fault {
         Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
@@ -319,7 +325,7 @@ fn fault_code(record: &ContradictingRecord) -> &'static str {
     }
 }
 
-/// Returns the caution code for the fault, if it is the same whichever record is wrong.
+/// Returns the caution code that the faults of all `records` share, else `record`.
 fn common_code(records: &[ContradictingRecord]) -> &'static str {
     let Some(code) = records.first().map(fault_code) else {
         return "record";
@@ -331,7 +337,7 @@ fn common_code(records: &[ContradictingRecord]) -> &'static str {
     }
 }
 
-/// Returns the faulty channel if it is the same whichever record is wrong.
+/// Returns the faulty channel that all `records` share, if there is one.
 fn common_channel(records: &[ContradictingRecord]) -> Option<&Signal> {
     let channels: Vec<Option<&Signal>> = records
         .iter()

@@ -9,6 +9,7 @@
 //!    S(i+1, j+1) = S(i, j) + x_{p-1-i} x_{p-1-j}' - x_{N-1-i} x_{N-1-j}'
 //! 2  A, B from S with a ridge on unit columns; e from the records
 //! 3  V = (I - sum A_i e^(-j omega dt dec i))^-1 E on the lines: the effect of noise and gusts on y
+//!    (E, U: spectral lines of e and u)
 //! 4  G_b = local polynomial of V on U at 16 points in the band, and G of the model there
 //! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
 //!    over the points with |G| > 3 % of the maximum of the output and sd G_b < 0.4 |G|,
@@ -19,8 +20,8 @@
 //! level 2  b >= 0.18 and z >= 3; or z >= 1.6 and no input with a median partial coherence >= 0.6
 //! ```
 //!
-//! With feedback, gusts act on the inputs through the outputs, and the cost stays at 1 however
-//! wrong the model is.
+//! With feedback, gusts act on the inputs through the outputs, and a model's cost per degree of
+//! freedom stays near 1 however wrong the model is.
 //!
 //! Step 6: where a sensor closes the loop and its noise dominates the residual, the best predictor
 //! is a simulation from the inputs, with a memory as long as the slowest mode. A shorter predictor
@@ -43,7 +44,7 @@ use crate::spectra::spectrum::{LineRange, Spectrum};
 const STEP: f64 = 0.25;
 /// Minimum number of past samples in the predictor.
 const LEAST_PAST: usize = 6;
-/// Maximum number of past samples in the predictor.
+/// Maximum number of past samples in the first predictor.
 const MOST_PAST: usize = 40;
 /// Maximum number of past samples in the predictor that confirms a level.
 const LONG_PAST: usize = 200;
@@ -124,7 +125,7 @@ pub(crate) struct FeedbackRecords<'a> {
 }
 
 impl Feedback {
-    /// Returns how much the feedback harms a model.
+    /// Compares `b`, `z` and the coherence with the limits in M14.14.
     #[must_use]
     pub fn level(&self) -> FeedbackLevel {
         let is_without_sweep =
@@ -142,8 +143,8 @@ impl Feedback {
         self.share >= threshold.share && self.significance >= threshold.significance
     }
 
-    /// Returns a response's `|G_b / G|` at `omega` \[rad/s\], as the root mean square over three
-    /// points; 0 if `b` is below 0.04, for which the bands are not widened.
+    /// Interpolates a response's `|G_b / G|` at `omega` \[rad/s\] between root mean squares over
+    /// neighbouring points; 0 if `b` is below 0.04, for which the bands are not widened.
     pub(crate) fn ratio(&self, omega: f64, pair: (usize, usize)) -> f64 {
         if self.share < WIDENED {
             return 0.0;
@@ -221,9 +222,9 @@ pub(crate) fn is_swept(coherence: f64) -> bool {
 /// Records with a common sample time, thinned for a predictor.
 struct ThinnedRecords<'a> {
     records: &'a FeedbackRecords<'a>,
-    /// The segments used.
+    /// Segments with the sample time `sample_time_s`.
     segments: Vec<&'a Segment>,
-    /// Every `step`-th sample in each segment.
+    /// Every `step`-th sample in each segment, as [`thin`] returns them.
     samples: Vec<DMatrix<f64>>,
     step: usize,
     /// The segments' sample time \[s\].

@@ -1,6 +1,6 @@
 //! An identified model's uncertainty, and doubts about it (M14.5, M14.10 to M14.18).
 //!
-//! | question | files |
+//! | subject | files |
 //! |---|---|
 //! | standard deviations of the responses (M14.5) | [`bands`] |
 //! | fit to each record, and to the measured points (M14.17) | [`record_fits`], [`model_doubts`] |

@@ -17,8 +17,8 @@ use crate::spectra::spectrum::Spectrum;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
-/// A record is unlike the others if its cost per degree of freedom exceeds this many times that
-/// over all records.
+/// A record is unlike the others if its cost per degree of freedom is more than this many times the
+/// cost per degree of freedom over all records.
 const UNLIKE: f64 = 1.5;
 /// Limits on the held-out cost per degree of freedom, with the model free to move within its
 /// uncertainty: up to the first, records are predicted well; above the second, they are not
@@ -27,7 +27,7 @@ pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
 /// Largest half-width of a window, over its centre frequency, at which its point represents a
 /// single frequency.
 pub const NARROW_WINDOW: f64 = 0.6;
-/// Number of neighbouring points in a mean.
+/// Number of neighbouring points over which `T` and `D` are means.
 const POINTS: usize = 5;
 /// `T` in [`Departure`] above which the model departs from the points (M14.17).
 const SIGNIFICANT: f64 = 12.0;
@@ -47,7 +47,6 @@ pub(crate) struct Diagnostics<'a> {
 pub(crate) struct MeasuredData<'a> {
     /// Spectral lines from the fitted records' segments without gaps.
     pub(crate) spectra: &'a [Spectrum],
-    /// The measured response.
     pub(crate) measured: &'a ResponseEstimate,
     pub(crate) executor: &'a dyn Executor,
 }
@@ -236,8 +235,8 @@ struct PointDistance {
 }
 
 impl Departure {
-    /// Measures a response's distance from its points; `predicted` holds the model's response at
-    /// each.
+    /// Measures a response's distance from its points; `predicted` holds the model's responses at
+    /// these points.
     pub(crate) fn measure(
         predicted: &[DMatrix<Complex<f64>>],
         measured: &ResponseEstimate,

@@ -13,7 +13,8 @@
 //!    less than 1.5 times the second
 //! 4  for each suspect, residual columns d with transient and theta projected out:
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
-//!      an input late -W G_j jw U_j,  a gain W e_o Y_o
+//!      an input late -W H_j jw U_j,  a gain W e_o Y_o
+//!      (W whitening factor, e_o unit vector of output o, H_j the model's responses to input j)
 //!      h = d'e - d'J G^+ g,  S = d'd - d'J G^+ J'd
 //!    the fault with the largest h^2/S, but all outputs late if that has at least 98 % of it; its
 //!    size is -h/S
@@ -134,7 +135,8 @@ impl<'a> RecordContrasts<'a> {
     }
 
     /// Returns the caution about the record that contradicts the others, or about two records that
-    /// contradict each other, each with its most likely fault (steps 3 and 4).
+    /// contradict each other, each with its most likely fault (steps 3 and 4). `None` without a
+    /// contradiction.
     pub(crate) fn caution(
         &self,
         is_in_gusts: bool,
@@ -172,8 +174,8 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Finds the fault that explains most of a record's residual (step 4); `None` if its size is
-    /// not finite.
+    /// Finds the fault that explains most of a record's residual (step 4); `None` if none can be
+    /// computed, or if its size is not finite.
     pub(crate) fn fault(&self, record: usize, options: &Options) -> Option<RecordFault> {
         let faults = self.possible_faults(options);
         let sums = each(self.likelihood.executor, &faults, |fault| {

@@ -30,7 +30,8 @@ impl RecordFault {
         }
     }
 
-    /// Returns the correction for each channel; a factor near -1 becomes a mere sign change.
+    /// Returns the correction for each faulty channel (all `outputs` if they are late together); a
+    /// factor near -1 becomes a mere sign change.
     #[must_use]
     pub fn remedies(&self, outputs: &[Signal]) -> Vec<(Signal, ChannelRemedy)> {
         match self {

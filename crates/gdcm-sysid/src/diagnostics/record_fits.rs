@@ -11,7 +11,8 @@ use crate::likelihood::schur_model::SchurModel;
 pub struct RecordFit {
     /// Record index, from 0.
     pub record: usize,
-    /// `J` per degree of freedom; 1 is adequate.
+    /// `J` per degree of freedom, corrected for the model's parameters if the record was fitted; 1
+    /// is adequate.
     pub cost: f64,
     /// Number of real values in the lines, less the unknowns in the transients.
     pub freedom: usize,
@@ -32,9 +33,10 @@ pub(crate) struct RecordFits {
     /// is corrected for the k parameters of the model: `(J_r / dof_r) N / (N - k)`, N degrees of
     /// freedom over all fitted records.
     pub(crate) records: Vec<RecordFit>,
-    /// `J` per degree of freedom for each output, over the fitted records.
+    /// `J` per degree of freedom for each output, over the fitted records, corrected as in
+    /// `records`.
     pub(crate) outputs: Vec<f64>,
-    /// `J` per degree of freedom over the fitted records.
+    /// `J` per degree of freedom over the fitted records, corrected as in `records`.
     pub(crate) cost: f64,
     /// Costs over the held-out records; `None` if no record is held out.
     pub(crate) held_out: Option<HeldOutCost>,
@@ -81,7 +83,7 @@ impl RecordFits {
 }
 
 /// Divides held-out costs by their degrees of freedom; `moved` is the total cost with the model
-/// moved within its uncertainty, or `None`, if it is unknown: then the model is not moved.
+/// moved within its uncertainty; without it, `normalised` is `raw`.
 fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCost> {
     let raw = mean_cost(held_out)?;
     let freedom: usize = held_out.iter().map(|fit| fit.freedom).sum();

@@ -28,7 +28,7 @@ const BAND_POINTS: usize = 60;
 /// Suggested upper end of the band, relative to the present one; a narrower band is suggested if
 /// even the highest order is too low.
 const NARROWER: f64 = 0.7;
-/// Standard deviation above which a response is not identified \[dB\].
+/// Standard deviation in mid-band above which a response is not identified \[dB\].
 pub(super) const NOT_IDENTIFIED_DB: f64 = 3.0;
 
 /// Covariance, bands and feedback for the recommended model.
@@ -280,7 +280,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
     })
 }
 
-/// Returns the (output, input) pairs whose standard deviation in mid-band is too large.
+/// Returns the (output, input) pairs whose standard deviation in mid-band exceeds 3 dB.
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     let sd_db = bands.sd_db();
     let middle = bands.omega().len() / 2;

@@ -37,7 +37,7 @@ pub(crate) struct SubspaceSettings {
     pub(crate) highest: f64,
     /// Laguerre poles \[rad/s\].
     pub(crate) poles: Vec<f64>,
-    /// Past windows.
+    /// Past windows \[Laguerre projections\].
     pub(crate) pasts: Vec<usize>,
     /// Orders, ascending.
     pub(crate) orders: Vec<usize>,
@@ -45,12 +45,12 @@ pub(crate) struct SubspaceSettings {
     pub(crate) longest_future: usize,
 }
 
-/// States proposed with a Laguerre pole and a past window, and what their model costs.
+/// States proposed with a Laguerre pole and a past window, and their model's cost.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
     /// Laguerre pole \[rad/s\].
     pub(crate) pole: f64,
-    /// Past window.
+    /// Past window \[Laguerre projections\].
     pub(crate) past: usize,
     /// Cost of the model at the order at which candidates are compared.
     cost: f64,
@@ -85,7 +85,8 @@ impl SubspaceSettings {
         Ok(candidates)
     }
 
-    /// Returns the model with the lowest cost at each order, with its cost.
+    /// Returns the cheapest model from the candidates at each order; orders without a model are
+    /// left out.
     pub(crate) fn starts(
         &self,
         candidates: &[Candidate],
@@ -107,7 +108,8 @@ impl SubspaceSettings {
         starts
     }
 
-    /// Returns the poles that a candidate proposes at each order.
+    /// Returns the poles that a candidate proposes at each order, without fast modes; orders
+    /// without a model are left out.
     pub(crate) fn poles_by_order(
         &self,
         candidate: &Candidate,

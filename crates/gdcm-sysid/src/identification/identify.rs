@@ -48,11 +48,12 @@ pub struct Identification {
     pub bundle: Vec<Model>,
     /// The response estimated from the records without a model.
     pub measured: ResponseEstimate,
-    /// The recommended model's poles.
+    /// The recommended model's poles, with their standard deviations.
     pub poles: Vec<PoleEstimate>,
-    /// Poles of the unrefined models at all orders, for the best Laguerre pole and past window.
+    /// Poles of the unrefined models at all orders, for the Laguerre pole and the past window with
+    /// the lowest cost.
     pub stabilisation: Vec<StabilisationPoint>,
-    /// Best Laguerre pole \[rad/s\].
+    /// Laguerre pole of the model with the lowest cost \[rad/s\].
     pub laguerre_pole: f64,
     /// Past window of the model with the lowest cost \[Laguerre projections\].
     pub past: usize,
@@ -60,7 +61,8 @@ pub struct Identification {
     pub criteria: Vec<(usize, f64)>,
     /// Fit at each order that was refined to its minimum, ascending by order.
     pub order_fits: Vec<OrderFit>,
-    /// `J / (N - k)` over the fitted records; 1 is adequate.
+    /// `J / (N - k)` over the fitted records, with N degrees of freedom and k parameters; 1 is
+    /// adequate.
     pub cost: f64,
     /// `J` per degree of freedom over the held-out records; `None` if no record is held out.
     pub held_out_cost: Option<f64>,
@@ -72,9 +74,10 @@ pub struct Identification {
     /// Contradiction between each fitted record and the others (M14.16); empty for a single record,
     /// and with a reference.
     pub contrasts: Vec<RecordContrast>,
-    /// Fit for every used record, in record order.
+    /// Fit for each fitted or held-out record with degrees of freedom, in record order.
     pub record_fits: Vec<RecordFit>,
-    /// `J` per degree of freedom for each output, over the fitted records.
+    /// `J` per degree of freedom for each output, over the fitted records, corrected for the
+    /// model's parameters.
     pub output_costs: Vec<f64>,
     /// Comparison of the recommended model with the held-out records in time. `None` without
     /// held-out records, if the model has an unstable pole above the lines used, or if its
@@ -89,16 +92,17 @@ pub struct Identification {
     /// Fisher information from the records about the recommended model, to plan further flights;
     /// `None` if it cannot be computed.
     pub information: Option<Arc<FlightInformation>>,
-    /// Further sweeps that would identify the responses in `not_identified`.
+    /// Advised further sweeps, to identify the responses in `not_identified`.
     pub advice: Vec<SweepAdvice>,
 }
 
 /// Identifies a flight condition from its records (M14.7).
 ///
 /// ```text
+///                                                                         progress after the step
 /// 1  record segments, scales, spectra, measured response, noise covariance                    10 %
 /// 2  CT-PBSID for each Laguerre pole and past window; models of all orders from the best two  40 %
-/// 3  order by BIC of refined models; the chosen order refined, records weighted by noise 80 %
+/// 3  order by BIC of refined models; the chosen order refined, records weighted by noise      80 %
 /// 4  covariance, bands, bundle, validation                                                   100 %
 /// ```
 ///
@@ -212,7 +216,8 @@ impl Models<'_> {
         })
     }
 
-    /// Returns further sweeps that would identify these responses (output, input).
+    /// Advises further sweeps to identify these responses (output, input); none if a prediction
+    /// fails.
     fn advice(
         &self,
         information: Option<&FlightInformation>,

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! noise of the outputs: S(omega) = N N^H + dt diag s_v^2,  N: response to the disturbances, of unit power density
-//! bound: standard deviations from G at a model with weights from S
+//!     (s_v standard deviations of the measurement noise, dt sample time)
+//! bound: standard deviations from the normal equations at a model, with weights from S
 //! ratio = median over responses and frequencies of |error| / (0.6745 sd of the bound)
 //! ```
 
@@ -29,7 +30,7 @@ use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
 use crate::likelihood::schur_model::SchurModel;
 use crate::options::Options;
 
-/// Decibels of a neper.
+/// A neper in decibels.
 pub(super) const NEPER_DB: f64 = 8.685_889_638;
 /// Number of frequencies at which errors are counted.
 const POINTS: usize = 12;
@@ -48,7 +49,7 @@ pub(super) struct KnownFlight {
     pub(super) step_s: f64,
     pub(super) records: Vec<FlightRecord>,
     pub(super) options: Options,
-    /// Responses whose errors are also counted apart.
+    /// Responses whose errors also count in [`Figures::main_ratios`].
     pub(super) main_pairs: Vec<Pair>,
 }
 
@@ -89,7 +90,7 @@ impl KnownFlight {
         let data = PreparedData::new(&self.records, &self.options, &Sequential, &progress).unwrap();
         let likelihood = self.likelihood(&data);
         let model = scaled(at, &data);
-        // Physical states have unlike units.
+        // Balances the model, because physical states have unlike units.
         let Coordinates {
             transformation,
             inverse,
@@ -102,7 +103,7 @@ impl KnownFlight {
             feedback: None,
         };
         let bands = models.bands(&covariance, omegas, &Sequential).unwrap();
-        // Without the factor of the bands on the variances.
+        // The bands' variances contain a factor of 2.
         let sd_db = |k: usize| {
             DMatrix::from_fn(at.outputs(), at.inputs(), |output, input| {
                 bands.sd_db()[Pair { output, input }][k] / 2f64.sqrt()
@@ -112,7 +113,8 @@ impl KnownFlight {
     }
 }
 
-/// Returns a random K that leaves every pole to the left of -0.1 rad/s.
+/// Returns a random K, with the standard deviation `deviation` in each entry, then reduced until
+/// every pole lies to the left of -0.1 rad/s; 0 if `deviation` is 0.
 pub(crate) fn stable_feedback(
     deviation: f64,
     truth: &StateSpace,
@@ -173,12 +175,12 @@ pub(super) fn log_errors(
     response_at(found, omega).zip_map(&response_at(truth, omega), |own, known| (own / known).ln())
 }
 
-/// Figures of a set of flights.
+/// Errors over a set of flights, compared with the bound, and with the 95 % intervals.
 #[derive(Default)]
 pub(super) struct Figures {
     /// `|error| / (0.6745 sd of the bound)` of each response and frequency.
     pub(super) ratios: Vec<f64>,
-    /// The same for the responses counted apart.
+    /// The same for [`KnownFlight::main_pairs`] only.
     pub(super) main_ratios: Vec<f64>,
     pub(super) held_db: usize,
     pub(super) held_deg: usize,

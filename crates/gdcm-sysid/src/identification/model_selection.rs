@@ -16,13 +16,13 @@ use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 
 /// The models that CT-PBSID proposes.
 pub(crate) struct Proposal {
-    /// Best Laguerre pole \[rad/s\].
+    /// Laguerre pole of the model with the lowest cost \[rad/s\].
     pub(crate) laguerre_pole: f64,
     /// Past window of the model with the lowest cost \[Laguerre projections\].
     pub(crate) past: usize,
     /// Model with the lowest cost at each order.
     pub(crate) starts: BTreeMap<usize, Fit>,
-    /// Poles at each order, for the best Laguerre pole and past window.
+    /// Poles at each order, for `laguerre_pole` and `past`.
     pub(crate) stabilisation: Vec<StabilisationPoint>,
 }
 
@@ -38,7 +38,6 @@ impl Proposal {
 
 /// The refined model at the chosen order, and the search for that order.
 pub(crate) struct Refinement<'a> {
-    /// The orders that were compared.
     pub(crate) search: OrderSearch<'a>,
     /// Models of the nearest orders whose BIC is within 10 % of the chosen order's.
     pub(crate) neighbours: Vec<SchurModel>,

@@ -16,13 +16,13 @@ const ALIKE: f64 = 1.5;
 /// The cost with weights from a noise covariance.
 #[derive(Clone)]
 pub(crate) struct NoiseWeights<'a> {
-    /// The cost over the fitted records.
+    /// The cost over the fitted records, or over those from which the order is searched.
     pub(crate) likelihood: Likelihood<'a>,
     /// The same cost with equal factors for all records.
     pub(crate) without_factors: Likelihood<'a>,
     /// Ratio between the largest and the smallest factor; `None` if all records have the same.
     pub(crate) ratio: Option<f64>,
-    /// Indices of the segments in `likelihood`.
+    /// Segments in `likelihood`, as indices into [`PreparedData::spectra`].
     segments: Vec<usize>,
     /// The noise in the model's residuals; `None` if the noise was measured without a model.
     noise: Option<NoiseCovariance>,

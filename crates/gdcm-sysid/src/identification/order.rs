@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters (no coordinates),
-//!                                      N degrees of freedom
+//!                                      m inputs, l outputs, J cost, N degrees of freedom
 //! 1  top = order of the minimum BIC before any refinement
 //! 2  top model: noise from its residuals, descent, noise again, descent to the minimum (M14.20)
 //! 3  with the same weights: one state less (two for m + l > 6 and n > 8), with or without its
@@ -32,20 +32,20 @@ use crate::likelihood::cost::Likelihood;
 use crate::likelihood::descent::{COMPARABLE, Fit, Limits, NEARLY_CONVERGED};
 use crate::likelihood::schur_model::SchurModel;
 
-/// The held-out record decides between orders whose criterion exceeds the minimum by at most this
-/// share.
+/// The held-out records decide between orders whose criterion exceeds the best order's by at most
+/// this share.
 const NEAR: f64 = 0.01;
-/// An order without a fast unstable pole is preferred if its criterion is worse by at most this
-/// share.
+/// An order without a fast unstable pole is preferred to the best order if its criterion is worse
+/// by at most this share.
 const NEAR_UNSTABLE: f64 = 0.03;
 /// Neighbouring orders count as equally plausible while their criterion exceeds the chosen order's
 /// by at most this share (M14.5).
 const NEIGHBOUR: f64 = 0.1;
 /// Number of consecutive orders worse than the best after which the search ends.
 const RISES: usize = 2;
-/// Number of channels above which states are removed in pairs.
+/// Number of channels above which states are removed in pairs, from orders above [`SINGLE_ORDER`].
 const SINGLE_CHANNELS: usize = 6;
-/// Order up to which states are always removed singly.
+/// Order up to which states are removed singly, however many channels there are.
 const SINGLE_ORDER: usize = 8;
 
 /// The orders that were compared.
@@ -154,7 +154,8 @@ pub(super) fn counted_parameters(model: &SchurModel, likelihood: &Likelihood) ->
 /// freedom in `whole`; `None` if the parameters leave no degrees of freedom.
 ///
 /// ```text
-/// J over all records, estimated: r (J + k phi) - k phi,  r = N / N of the likelihood,  phi = J / (N - k)
+/// J over all records, estimated: r (J + k phi) - k phi
+///     phi = J / (N - k),  r: N over all records / N, with J and N those of the likelihood
 /// ```
 ///
 /// k phi is the part of the noise that the parameters explain, with few records as with many; k is
@@ -356,7 +357,7 @@ struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    /// Adds a model and its criterion.
+    /// Adds a model and, if there is one, its criterion.
     fn insert(&mut self, fit: Fit) {
         let order = fit.order();
         let likelihood = &self.weights.likelihood;

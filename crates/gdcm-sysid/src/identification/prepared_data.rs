@@ -43,11 +43,11 @@ const COPY: f64 = 1e9;
 const INVOLVED: f64 = 0.1;
 /// Upper end of the band, relative to the highest spectral line used.
 const BAND_END: f64 = 0.75;
-/// Minimum length of the longest record, in periods at the lower end of the band (M14.12).
+/// Minimum length of the longest segment, in periods at the lower end of the band (M14.12).
 const LEAST_PERIODS: f64 = 1.5;
-/// Recommended length of the longest record, in periods at the lower end of the band (M14.12).
+/// Recommended length of the longest segment, in periods at the lower end of the band (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
-/// Recommended periods for each input if several are moved in a single record.
+/// Recommended periods for each input if there is only one segment.
 const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// The prepared records, their spectral lines and the weighted cost.
@@ -70,7 +70,6 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) spectra: Vec<Spectrum>,
     /// Lines from the segments without gaps, in the fitted range.
     gap_free_spectra: Vec<Spectrum>,
-    /// The measured response.
     pub(crate) measured: ResponseEstimate,
     /// The cost over the fitted records.
     pub(crate) likelihood: Likelihood<'a>,
@@ -243,7 +242,6 @@ impl<'a> PreparedData<'a> {
         StateSpace::new(model.a().clone(), b, c, d).ok()
     }
 
-    /// Returns the data for examining a model.
     pub(crate) fn measured_data(&self) -> MeasuredData<'_> {
         MeasuredData {
             spectra: &self.gap_free_spectra,
@@ -252,7 +250,6 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Returns the error for the case that no model was found.
     pub(crate) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
             lines: self.line_count(),
@@ -268,7 +265,7 @@ impl<'a> PreparedData<'a> {
             .sum()
     }
 
-    /// Returns the total length without gaps \[s\].
+    /// Returns the total length of the fitted segments without gaps \[s\].
     fn duration_s(&self) -> f64 {
         self.gap_free_spectra
             .iter()
@@ -331,7 +328,7 @@ impl SplitFilled {
             held_out: Vec::new(),
         };
         for mut part in filled {
-            // There is no gap in a reference: with references, segments have no gaps.
+            // With references, segments have no gaps, so that no gap lies in a removed reference.
             take_references(&mut part.segment, options.references);
             if options.held_out.contains(&part.segment.record) {
                 split.held_out.push(part);
@@ -410,7 +407,6 @@ struct Lines {
     reach: LineRange,
     /// Lines from the segments without gaps, for the measured response.
     wide: Vec<Spectrum>,
-    /// The lines to fit.
     to_fit: Vec<Spectrum>,
 }
 
@@ -484,7 +480,7 @@ impl Lines {
     }
 }
 
-/// Weights lines by the measured noise.
+/// Weights lines by the measured noise; an error if it is singular at a line.
 fn weigh<'a>(
     spectra: &[Spectrum],
     measured: &ResponseEstimate,
@@ -518,10 +514,10 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
     })
 }
 
-/// Returns a caution for records that are shorter than recommended (M14.12).
+/// Returns a caution if the longest segment is shorter than recommended (M14.12).
 ///
-/// Returns an error for records that are too short for the lower end of the band or for a
-/// first-order model.
+/// Returns an error if this segment is too short for the lower end of the band, or if the lines
+/// hold too few values for a first-order model.
 fn check_length(
     filled: &[FilledSegment],
     lines: &[Spectrum],

@@ -9,7 +9,7 @@ use crate::spectra::spectrum::Spectrum;
 const ALL_UP_TO: usize = 16;
 /// With more records, one out of this many is used.
 const ONE_OF: usize = 3;
-/// Minimum share of each input's power in the used records.
+/// Minimum share of each input's power over all records that the used records must hold.
 const LEAST_SHARE: f64 = 0.25;
 
 /// Returns the indices of the segments to search the order with, ascending.
@@ -21,7 +21,7 @@ const LEAST_SHARE: f64 = 0.25;
 ///    with most of its power are added until it is not
 /// ```
 ///
-/// The result is refined over all records afterwards.
+/// The model at the chosen order is refined over all records afterwards.
 pub(crate) fn search_segments(spectra: &[Spectrum]) -> Vec<usize> {
     let mut records: Vec<usize> = spectra.iter().map(|spectrum| spectrum.record).collect();
     records.dedup();
@@ -78,7 +78,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns records of three inputs that move the input at the same place in `moved`.
+    /// Returns a record of three inputs for each entry in `moved`, which is the input that it
+    /// moves.
     fn records(moved: &[usize]) -> Vec<Spectrum> {
         let spectrum = |(record, input): (usize, &usize)| {
             let mut inputs = DMatrix::zeros(3, 4);
@@ -102,7 +103,7 @@ mod tests {
 
     #[test]
     fn every_input_is_moved_in_the_records_used() {
-        // Every third record moves input 0; input 2 is moved in two records alone.
+        // Every third record moves input 0; only two records move input 2.
         let mut moved = [0, 1, 1].repeat(10);
         moved[1] = 2;
         moved[2] = 2;

@@ -1,15 +1,16 @@
 //! A second start for records with missing inputs (M14.21).
 //!
 //! ```text
-//! 1  the models of all orders refined on the records cut at the gaps: no hats, but a transient for
-//!    each piece
+//! 1  the models of all orders refined on the records cut at the gaps: no missing samples to
+//!    estimate, but a transient for each piece
 //! 2  these as starts on the whole records, refined as usual
 //! 3  of both results, the one with the lower V = J + 2 sum ln det C + k' ln N,
 //!    k' with half of the transients' states (`counted_parameters`)
 //! ```
 //!
-//! C is the noise of each result's own residuals, so V is -2 ln L up to a constant and the penalty
-//! of BIC. J alone says nothing: each result minimises it with its own weights.
+//! C is the noise covariance from each result's own residuals, and the sum runs over all lines, so
+//! V is -2 ln L up to a constant and the penalty of BIC. J alone says nothing: each result
+//! minimises it with its own weights.
 
 use std::collections::BTreeMap;
 
@@ -65,7 +66,7 @@ pub(super) fn starts_from_pieces(
     Ok(Some(starts))
 }
 
-/// Evaluates models with other lines, by order.
+/// Computes the models' costs over other lines; models without a finite cost are left out.
 fn evaluated<'f>(
     fits: impl IntoIterator<Item = &'f Fit>,
     likelihood: &Likelihood,

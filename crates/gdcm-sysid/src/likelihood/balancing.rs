@@ -130,7 +130,7 @@ pub(crate) fn balancing_coordinates(gramians: &Gramians) -> Option<Coordinates> 
     })
 }
 
-/// Adds a small share of the mean to the diagonal.
+/// Adds [`FLOOR`] times the diagonal's mean to the diagonal.
 fn with_floor(mut gramian: DMatrix<f64>) -> DMatrix<f64> {
     let order = gramian.nrows();
     let added = FLOOR * gramian.trace() / order as f64 + f64::MIN_POSITIVE;

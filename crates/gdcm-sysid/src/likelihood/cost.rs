@@ -51,7 +51,7 @@ pub(crate) struct SpectralLines {
     /// Factor on the weights relative to other records: 1 over the root of the factor on their
     /// noise power.
     pub(crate) scale: f64,
-    /// Missing samples.
+    /// The hats that describe the segment's missing samples.
     pub(crate) hats: Vec<GapHat>,
 }
 
@@ -194,7 +194,6 @@ struct NuisanceColumns<'s> {
     lines: &'s SpectralLines,
     /// `C (j omega - A)^-1` at each line.
     resolvents: Vec<&'s [Complex<f64>]>,
-    /// Number of states.
     order: usize,
     /// Number of nuisance columns; `matrix` has one column more.
     count: usize,
@@ -272,9 +271,10 @@ impl<'s> NuisanceColumns<'s> {
         }
     }
 
-    /// Fits the columns to a vector by least squares (steps 2 and 3).
+    /// Fits the columns to a vector by least squares (steps 2 and 3); `None` under the conditions
+    /// of [`SpectralLines::cost`].
     ///
-    /// `fill(k, cr, e0)` receives a line's index and `C (j omega - A)^-1` there, and writes the
+    /// `fill(k, cr, e0)` receives a line's index and its `C (j omega - A)^-1`, and writes the
     /// line's `e0`.
     fn eliminate(
         mut self,
@@ -327,19 +327,18 @@ impl<'s> NuisanceColumns<'s> {
     }
 }
 
-/// The cost over the segments to which a model is fitted.
+/// The cost over given segments, such as those of the fitted or of the held-out records.
 #[derive(Clone)]
 pub(crate) struct Likelihood<'a> {
     /// Segments, by record and time.
     pub(crate) segments: Vec<SpectralLines>,
-    /// The frequencies in all segments.
+    /// The frequencies in all segments; after `without`, also those in the removed segments.
     pub(crate) table: FrequencyTable,
-    /// Runs the segments' work.
     pub(crate) executor: &'a dyn Executor,
 }
 
 impl<'a> Likelihood<'a> {
-    /// Creates the likelihood over segments, sorted by record and time.
+    /// Creates the likelihood over segments, which are sorted by record and time.
     pub(crate) fn new(segments: Vec<SpectralLines>, executor: &'a dyn Executor) -> Self {
         let table = FrequencyTable::new(segments.iter().map(|segment| segment.omega.as_slice()));
         Self {

@@ -112,7 +112,7 @@ impl ParameterCovariance {
     /// \[rad/s\].
     ///
     /// A pole is determined if its modulus is within the band, and its interval is at most half the
-    /// modulus to each side. Above the band, a pole of the model stands for several true poles, of
+    /// modulus to each side. Above the band, a pole of the model represents several true poles, of
     /// servos and sensors, to which it need not be near.
     pub(crate) fn poles(&self, model: &SchurModel, band: [f64; 2]) -> Vec<PoleEstimate> {
         let [lowest, highest] = band;
@@ -217,7 +217,7 @@ mod tests {
         let [response, other] = covariances
             .each_ref()
             .map(|covariance| covariance.variances(&rows, &columns)[0].re);
-        // Condition numbers of 1e8 in the normal equations.
+        // The normal equations have condition numbers of 1e8.
         assert!((response / other - 1.0).abs() < 1e-6, "{response} {other}");
         let [poles, others] = covariances
             .each_ref()

@@ -31,11 +31,11 @@ use super::gram_matrix::solve_positive_definite;
 use super::normal_equations::{BIN_WIDTH, EXACT, NormalEquations};
 use super::schur_model::SchurModel;
 
-/// Limit on `delta^2 / (k phi)` at a minimum.
+/// Limit on `delta^2 / (k phi)` below which a descent has reached its minimum.
 pub(crate) const CONVERGED: f64 = 0.02;
 /// Limit on `delta^2 / (k phi)` for comparing orders: the cost may still fall by about 10 % of the
-/// noise that k parameters explain, which is little compared with what BIC charges for a state, `(m
-/// + l) phi ln N`.
+/// noise that k parameters explain, which is little compared with the BIC penalty on a state,
+/// `(inputs + outputs) phi ln N`.
 pub(crate) const COMPARABLE: f64 = 0.1;
 /// Limit on `delta^2 / (k phi)` before the noise is measured again.
 pub(crate) const NEARLY_CONVERGED: f64 = 0.2;
@@ -47,9 +47,9 @@ const MOST_STEPS: usize = 40;
 const OBSERVED_STEPS: usize = 6;
 /// Damping in the first step.
 const FIRST_DAMPING: f64 = 1e-3;
-/// Factor on the damping after a failure.
+/// Factor on the damping after a step that does not lower the cost.
 const DAMPING_FACTOR: f64 = 6.0;
-/// Minimum damping after a failure.
+/// Minimum damping after a step that does not lower the cost.
 const LEAST_FAILED_DAMPING: f64 = 1e-7;
 /// Minimum damping: it replaces the pseudo-inverse in the directions that only change the
 /// coordinates.
@@ -57,12 +57,12 @@ const LEAST_DAMPING: f64 = 1e-8;
 /// A column's scale is computed from at least this share of its square, even where the nuisance
 /// columns explain more.
 const LEAST_SHARE_LEFT: f64 = 1e-6;
-/// Number of failures after which a step is given up.
+/// Number of increases of the damping after which a step is given up.
 const FAILURES: usize = 10;
 /// Share of the total progress per step.
 const STEP_PROGRESS: f64 = 0.01;
 
-/// When a descent ends.
+/// Limits at which a descent ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     /// `delta^2 / (k phi)` below which the model has converged.

@@ -22,7 +22,7 @@ impl FrequencyTable {
         Self { omega }
     }
 
-    /// Returns the index of a frequency \[rad/s\] in the table.
+    /// Returns the index of a frequency \[rad/s\] that is in the table.
     fn index(&self, omega: f64) -> usize {
         self.omega.partition_point(|other| *other < omega)
     }

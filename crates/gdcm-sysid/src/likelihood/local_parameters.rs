@@ -2,6 +2,7 @@
 //! degrees of freedom.
 //!
 //! ```text
+//! n states, m inputs, l outputs; G information matrix in all entries
 //! Of the (n + l)(n + m) entries, k = n (m + l) + m l are determined; the other n^2 directions are
 //! changes of coordinates, for which G is singular.
 //! 1  G with columns of unit length
@@ -60,7 +61,6 @@ impl LocalParameters {
         }
     }
 
-    /// Returns the parameter count.
     pub(crate) fn count(&self) -> usize {
         self.entries.len()
     }

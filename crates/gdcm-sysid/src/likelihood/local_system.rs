@@ -85,7 +85,7 @@ impl LocalSystem {
 /// The systems of all segments at a model, in common parameters.
 pub(crate) struct LocalSystems {
     pub(crate) parameters: LocalParameters,
-    /// A system for each segment, in their order.
+    /// A system for each segment, in the likelihood's order.
     pub(crate) systems: Vec<LocalSystem>,
     /// Record index for each segment.
     records: Vec<usize>,

@@ -9,7 +9,7 @@ use super::schur_model::SchurModel;
 
 /// Damping at the first attempt.
 const FIRST_DAMPING: f64 = 1e-4;
-/// Damping factor after a failure.
+/// Factor on the damping after a step that does not lower the cost.
 const DAMPING_FACTOR: f64 = 8.0;
 /// Number of times that the damping is increased before giving up.
 const FAILURES: usize = 8;
@@ -27,7 +27,7 @@ pub(crate) struct ModelWithoutRecord {
 /// ```text
 /// (G' + lambda diag G') d = g - g_r,   G' = G - G_r: without the record r
 /// lambda = 1e-4, times 8 until the cost over the other records falls, at most 8 times;
-/// if it does not fall, the full model is also the best without the record
+/// if it does not fall, the model is that fitted to all records
 /// ```
 ///
 /// An undamped step diverges in weakly determined directions. Returns no models for a single

@@ -7,7 +7,8 @@ use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
 
 /// Weights on a point and its neighbours in the smoothed covariance (M14.2).
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
-/// Share added to the diagonal, which keeps the covariance regular if outputs depend on each other.
+/// Share by which the diagonal is raised, to keep the covariance regular if outputs depend on each
+/// other.
 const ADDED: f64 = 1e-4;
 /// Minimum noise variance relative to the output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;
@@ -78,8 +79,8 @@ impl NoiseCovariance {
     /// outputs x outputs, lower triangular.
     ///
     /// `W e` has real and imaginary parts with unit variance if `e` is noise (M14.4). `None` if the
-    /// covariance is not positive definite: some combination of outputs has 1e8 times more noise
-    /// than another.
+    /// covariance is not positive definite in double precision, because the noise's standard
+    /// deviation is 1e8 times larger in one combination of outputs than in another.
     #[must_use]
     pub fn weight(&self, omega: f64) -> Option<DMatrix<Complex<f64>>> {
         let lower = self.at(omega).scale(0.5).cholesky()?.unpack();

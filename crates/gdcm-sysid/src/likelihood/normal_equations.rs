@@ -11,9 +11,10 @@
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
-//! With 0.04 wide bins, the diagonal entries of `G` are in error by less than 1 %. Bins narrower
-//! than the line spacing hold only equal frequencies, from records with equal length: then `G` is
-//! exact. Coordinate changes, n^2 of the (n + l)(n + m) directions, are orthogonal to `g`.
+//! With bins 0.04 wide in ln omega, the diagonal entries of `G` are in error by less than 1 %. Bins
+//! narrower than the line spacing hold only equal frequencies, from records with equal length: then
+//! `G` is exact. Coordinate changes, n^2 of the (n + l)(n + m) directions (n states, m inputs, l
+//! outputs), are orthogonal to `g`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -43,8 +44,8 @@ pub(crate) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the segment
-    /// costs there.
+    /// Computes `G` and `g` at a model, with bins of this width in ln omega; `parts` are the
+    /// segment costs at this model.
     ///
     /// `None` if the nuisance columns of a segment are not finite, or their eigenvalue iteration
     /// does not converge.
@@ -140,8 +141,8 @@ struct Binning {
 }
 
 impl Binning {
-    /// Fills bins from the lowest frequency on; a bin begins at the first line that the one before
-    /// does not reach.
+    /// Fills bins from the lowest frequency on; each bin begins at the first line above the
+    /// previous bin.
     fn new(likelihood: &Likelihood, width: f64) -> Self {
         let mut lines: Vec<(f64, usize, usize)> = Vec::new();
         for (segment, own) in likelihood.segments.iter().enumerate() {
@@ -552,7 +553,7 @@ mod tests {
         }
     }
 
-    /// A step in one entry of `[[A, B], [C, D]]`.
+    /// Returns the model after a step in one entry of `[[A, B], [C, D]]`.
     fn stepped(model: &SchurModel, place: usize, size: f64) -> SchurModel {
         let mut step = DMatrix::zeros(6, 6);
         step[place] = size;
@@ -571,8 +572,8 @@ mod tests {
             let [above, below] =
                 [step, -step].map(|size| likelihood.cost(&stepped(&model, place, size)).unwrap());
             let slope = (above - below) / (2.0 * step);
-            // Central differences: the error is the third derivative times 1e-10, plus the rounding
-            // error of the cost over 1e-5.
+            // Central differences: the error is about the third derivative times 1e-11, plus the
+            // rounding error of the cost over 1e-5.
             assert!(
                 (slope + 2.0 * system.gradient[place]).abs() < 1e-6 * scale,
                 "{place}: {slope} {}",
@@ -653,7 +654,7 @@ mod tests {
         for (i, &p) in places.iter().enumerate() {
             for (j, &q) in places.iter().enumerate() {
                 let expected = left[i].dot(&left[j]);
-                // Rounding errors of a condition number of 1e4 behind the elimination.
+                // The elimination has a condition number of 1e4.
                 assert!(
                     (system.matrix[(p, q)] - expected).abs() < 1e-10 * largest,
                     "{p} {q}: {} {expected}",

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! l outputs
-//! 1  e(omega): residual of each record, transient removed, in output units
-//!    h(omega): share of the line taken by the transient, at most 0.9
+//! 1  e(omega): residual of each record, nuisance columns (`cost`) removed, in output units
+//!    h(omega): share of the line that the nuisance columns take, at most 0.9
 //! 2  at 24 log-spaced frequencies, over the lines of all records:
 //!       C = sum a e e^H / sum a (1 - h - k/N)
 //!       a = (1 + cos(pi x / w)) / 2,  x = ln(omega/omega_0),  |x| < w
@@ -31,7 +31,7 @@ use crate::subspace::tried_orders::parameters_of_order;
 
 /// Number of frequencies at which the covariance is computed.
 const POINTS: usize = 24;
-/// Upper limit on `h`, the share of a line that the transient takes, so that `1 - h` does not
+/// Upper limit on `h`, the share of a line that the nuisance columns take, so that `1 - h` does not
 /// vanish.
 const LARGEST_SHARE: f64 = 0.9;
 /// First half-width of the Hann weight, in ln omega.
@@ -43,12 +43,12 @@ const FREEDOM_AN_OUTPUT: f64 = 8.0;
 /// Share by which the diagonal is raised.
 const ADDED: f64 = 1e-4;
 
-/// A line's residual in output units, and its weight in the covariance.
+/// A line's residual in output units, and the share of the noise power that it holds.
 struct ResidualLine {
     log_omega: f64,
     /// `e`.
     residual: Vec<Complex<f64>>,
-    /// `1 - h - k/N`: the share of the noise power left in the residual.
+    /// `1 - h - k/N`: the share of the noise power that nuisance columns and parameters leave.
     left: f64,
 }
 

@@ -79,7 +79,6 @@ impl SchurModel {
         StateSpace::new(a, b, c, d).ok()
     }
 
-    /// Returns the state count n.
     pub(crate) fn order(&self) -> usize {
         self.a.nrows()
     }
@@ -96,7 +95,7 @@ impl SchurModel {
     }
 
     /// Returns the model with the same response in the coordinates `x = T z`; `inverse` is the
-    /// inverse of `transformation`, T. `None` if the result is not finite.
+    /// inverse of `transformation`, T. `None` under the conditions of [`SchurModel::new`].
     pub(crate) fn in_coordinates(
         &self,
         transformation: &DMatrix<f64>,
@@ -191,7 +190,7 @@ impl SchurModel {
         }
     }
 
-    /// Returns the eigenvalues of `A`.
+    /// Returns the eigenvalues of `A`, in the order in which [`Self::eigenvectors`] counts them.
     pub(crate) fn poles(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
     }

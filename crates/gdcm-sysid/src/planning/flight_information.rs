@@ -25,7 +25,7 @@ use crate::likelihood::schur_model::SchurModel;
 use crate::spectra::scales::Scales;
 use crate::subspace::tried_orders::parameters_of_order;
 
-/// Minimum distance in ln omega between frequencies at which the noise is kept.
+/// Minimum distance in ln omega between frequencies at which the noise is stored.
 const NOISE_SPACING: f64 = 0.02;
 /// Lowest frequency used, in units of a record's first line, as in `spectra::spectrum`.
 const FIRST_LINE: f64 = 1.5;
@@ -49,15 +49,15 @@ pub struct FlightInformation {
     pub(super) bands: Arc<ModelBands>,
     /// Noise and gusts fed back into the responses.
     pub(super) feedback: Option<Feedback>,
-    /// For each input, a sweep as strong and as long as those flown.
+    /// For each input, a sweep as strong and as long as the strongest flown.
     pub(super) standard_sweeps: Vec<StandardSweep>,
 }
 
-/// A sweep like those flown.
+/// A sweep as strong and as long as the strongest flown for its input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardSweep {
     pub sweep: PlannedSweep,
-    /// Whether amplitude and length are the other inputs' medians, because this input was not
+    /// Whether amplitude and length are medians over the swept inputs, because this input was not
     /// swept.
     pub is_assumed: bool,
 }
@@ -106,7 +106,7 @@ impl FlightInformation {
         })
     }
 
-    /// Returns the input count.
+    /// Returns the number of model inputs, without references.
     #[must_use]
     pub fn inputs(&self) -> usize {
         self.standard_sweeps.len()
@@ -184,7 +184,7 @@ fn noise_of_lines(likelihood: &Likelihood) -> Option<NoiseCovariance> {
 /// A sweep of an input, measured in a record.
 #[derive(Clone, Copy)]
 struct FlownSweep {
-    /// In the input's unit.
+    /// In scaled units as returned by [`flown_sweep`], otherwise in the input's unit.
     amplitude: f64,
     length_s: f64,
 }
@@ -247,7 +247,8 @@ fn median_of(sweeps: &[FlownSweep], property: fn(&FlownSweep) -> f64) -> f64 {
 }
 
 /// Measures a sweep's amplitude in a segment: a planned sweep with this amplitude and the same
-/// length has the same power as the lines, in the median. `None` for fewer than two lines.
+/// length has the same power as the lines, in the median. `None` for fewer than two lines, or if
+/// that sweep has no power at any line.
 fn flown_sweep(segment: &SpectralLines, input: usize, lines: [f64; 2]) -> Option<FlownSweep> {
     let [first, second, ..] = segment.omega[..] else {
         return None;

@@ -5,7 +5,7 @@ use gdcm_model::dataset::Pair;
 use super::flight_information::StandardSweep;
 use super::flight_planner::{FlightPlanner, Repeated, ResponseInterval};
 
-/// Numbers of sweeps in a table.
+/// Sweep counts for which [`FlightPlanner::standard_plan`] predicts intervals.
 pub const TABLE_REPEATS: [usize; 3] = [1, 2, 4];
 
 /// Confidence intervals predicted after further sweeps, for each input.
@@ -17,7 +17,7 @@ pub struct FlightPlan {
 /// Intervals of the responses to an input, after further sweeps of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepPlan {
-    /// The sweep, with `repeats` 1.
+    /// The sweep, planned once (`PlannedSweep::repeats` is 1).
     pub sweep: StandardSweep,
     /// Sweep counts, for which [`PlannedResponse::after`] has an entry each.
     pub repeats: Vec<usize>,
@@ -77,7 +77,8 @@ impl FlightPlanner<'_> {
         })
     }
 
-    /// Predicts the mid-band intervals after one, two and four sweeps of each input.
+    /// Predicts the mid-band intervals after one, two and four sweeps of each input; `None` under
+    /// the conditions of [`Self::sweep_plan`].
     #[must_use]
     pub fn standard_plan(&self) -> Option<FlightPlan> {
         let mut sweeps = Vec::with_capacity(self.information().inputs());
@@ -87,7 +88,8 @@ impl FlightPlanner<'_> {
         Some(FlightPlan { sweeps })
     }
 
-    /// Returns the bands' middle frequency \[rad/s\].
+    /// Returns the middle point of the frequencies at which standard deviations are known
+    /// \[rad/s\].
     #[must_use]
     pub fn middle(&self) -> f64 {
         let omega = self.information().bands.omega();

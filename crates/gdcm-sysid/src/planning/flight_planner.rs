@@ -1,13 +1,14 @@
 //! Predicts standard deviations after further sweeps.
 //!
 //! ```text
-//! 1  G_j: information of one planned sweep. U from its samples, Y = G U, tau = 0 (the sweep begins
-//!    and ends in trim), the other inputs 0, the noise that of the flown records
+//! G, G_j information from the flown records and from planned sweep j, which is flown r_j times
+//! 1  G_j: U from the sweep's samples, Y = H U, tau = 0 (the sweep begins and ends in trim), the
+//!    other inputs 0, the noise that of the flown records
 //! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   N the changes of coordinates,
 //!    c such that c N N' and G/phi have the same trace
 //! 3  h = gradient of ln H_oi:  dH = [C R, I]_o dTheta [R B; I]_i     (M14.25)
 //!    var = h' T^-1 h, the same as h' (...)^+ h: h is orthogonal to N, and N' G = 0
-//! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = |G_b/G|^2 / 2 (M14.17)
+//! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = b^2 / 2,  b the fed-back share (M14.17)
 //! ```
 //!
 //! Step 4 keeps the fed-back share of the response if it is visible: further flights of the same
@@ -46,14 +47,14 @@ pub struct ResponseInterval {
     pub half_deg: f64,
 }
 
-/// Predicts intervals after further sweeps.
+/// Predicts the 95 % intervals of the responses after further sweeps (steps 1 to 4).
 pub struct FlightPlanner<'a> {
     information: &'a FlightInformation,
     model: SchurModel,
     /// `G/phi + c N N'`.
     flown: DMatrix<f64>,
     executor: &'a dyn Executor,
-    /// The flown records' factored information.
+    /// The flown records' factored information, computed at its first use.
     now: OnceCell<Option<FactoredInformation>>,
 }
 
@@ -94,7 +95,7 @@ impl<'a> FlightPlanner<'a> {
         })
     }
 
-    /// Returns the information for which the flights are planned.
+    /// Returns the flown records' information, to which that from planned sweeps is added.
     #[must_use]
     pub fn information(&self) -> &FlightInformation {
         self.information
@@ -133,7 +134,7 @@ impl<'a> FlightPlanner<'a> {
         FactoredInformation::new(total)
     }
 
-    /// Returns the flown records' factored information.
+    /// Returns the flown records' factored information; `None` if it is not positive definite.
     fn now(&self) -> Option<&FactoredInformation> {
         self.now.get_or_init(|| self.after(&[])).as_ref()
     }

@@ -10,7 +10,7 @@ use super::planned_sweep::PlannedSweep;
 
 /// Step in the sweep length \[s\].
 const LENGTH_STEP_S: f64 = 5.0;
-/// Longest sweep \[s\].
+/// Longest sweep that is considered \[s\].
 const LONGEST_S: f64 = 300.0;
 /// Step in the amplitude, relative to the given sweep's.
 const AMPLITUDE_STEP: f64 = 0.05;
@@ -29,7 +29,7 @@ pub struct IntervalTarget {
     pub half_db: f64,
 }
 
-/// How much is needed for a target.
+/// The amount, such as a sweep length, that a target needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need<T> {
     /// The minimum amount that reaches the target, and the half-width with it \[dB\].
@@ -39,11 +39,12 @@ pub enum Need<T> {
     NotWithin { most: T, half_db: f64 },
 }
 
-/// Ways to reach a target; each changes one thing and leaves the rest as in `sweep`.
+/// Ways to reach a target with sweeps like `sweep`: more, longer, stronger, or over a narrower
+/// band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetPlan {
     pub target: IntervalTarget,
-    /// The sweep of the response's input, with `repeats` 1.
+    /// The sweep of the response's input, planned once (`PlannedSweep::repeats` is 1).
     pub sweep: StandardSweep,
     pub now: ResponseInterval,
     /// Interval after infinitely many flights.
@@ -52,7 +53,7 @@ pub struct TargetPlan {
     pub ways: Option<TargetWays>,
 }
 
-/// The ways to a target.
+/// How many, how long or how strong sweeps reach a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetWays {
     pub repeats: Need<usize>,

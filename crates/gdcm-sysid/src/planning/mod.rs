@@ -4,9 +4,9 @@
 //! The Fisher information from the flown records, kept at the end of the identification, plus that
 //! from planned sweeps, gives the standard deviations after a flight that has not been flown.
 //!
-//! | question | files |
+//! | subject | files |
 //! |---|---|
-//! | what the flown records say | [`flight_information`] |
+//! | information from the flown records | [`flight_information`] |
 //! | the spectrum of a planned sweep | [`planned_sweep`] |
 //! | intervals after further sweeps | [`flight_planner`], `coordinate_changes` |
 //! | tables, advice, targets | [`flight_plan`], [`sweep_advice`], [`interval_target`] |

@@ -64,7 +64,8 @@ impl PlannedSweep {
         first * t + (last - first) * final_share() * (grown - t)
     }
 
-    /// Returns a single sweep's samples; the input is divided by `scale`, and the outputs are zero.
+    /// Returns a single sweep's samples; the input is divided by `scale`; the other inputs and the
+    /// outputs are zero.
     pub(super) fn segment(&self, inputs: usize, outputs: usize, scale: f64) -> Segment {
         let samples = (self.length_s * self.band[1] * SAMPLES / PI)
             .ceil()

@@ -10,8 +10,8 @@ use super::planned_sweep::PlannedSweep;
 /// Maximum number of sweeps that are advised for an input.
 const MOST_ADVISED: usize = 8;
 
-/// How many times an input must be swept to identify the responses to it; the maximum if that is
-/// not enough.
+/// How many times an input must be swept to identify those responses to it that are not identified
+/// yet; 8 if that is not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepAdvice {
     /// The sweep, with the advised count in `repeats`.
@@ -28,7 +28,8 @@ pub struct SweepAdvice {
 
 impl FlightPlanner<'_> {
     /// Returns advice for each input with responses among `pairs`; they are identified once their
-    /// mid-band 95 % interval is at most `limit_db` on each side.
+    /// mid-band 95 % interval is at most `limit_db` on each side. `None` if a prediction fails
+    /// ([`Self::sweep_plan`]).
     #[must_use]
     pub fn advice(&self, pairs: &[Pair], limit_db: f64) -> Option<Vec<SweepAdvice>> {
         let mut advice = Vec::new();

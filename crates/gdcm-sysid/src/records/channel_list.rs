@@ -8,7 +8,6 @@ use gdcm_model::names::channel_rule::ChannelRule;
 /// Channels by name, each with an optional unit and column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelList {
-    /// Channels, in order.
     pub channels: Vec<RequestedChannel>,
 }
 
@@ -31,7 +30,7 @@ pub enum ChannelListError {
         \"{0}\""
     )]
     NoChannel(String),
-    /// Duplicate channel.
+    /// A channel name that occurs twice.
     #[error("duplicate channel {0}; remove one")]
     Twice(String),
 }

@@ -5,12 +5,12 @@
 //!    aliases replace the name: exactly as given; else the first column that an alias finds without
 //!    regard to case, by its number or by its index (RecordTable::find); else, unless an alias is a
 //!    number, in folded spelling, then beside a sign mark, then a synonym
-//!    RecordTable::find apart, only columns that the file does not assign to the other side
-//! 2  none: columns that the logging system's documentation assigns to the channel
-//! 3  none: fields of topics with the exact name (`xyz` in TOPIC.xyz), but without aliases not in
-//!    logs with documented columns
-//! 4  without aliases: no latitude and no longitude
-//! 5  several: the only column whose unit can be converted, if there is just one
+//!    only columns that the file does not assign to the other side, except in RecordTable::find
+//! 2  if none: columns that the logging system's documentation assigns to the channel
+//! 3  if none: fields of topics with the exact name (`xyz` in TOPIC.xyz); without aliases, this
+//!    step is left out in logs with documented columns
+//! 4  without aliases: latitudes and longitudes are removed
+//! 5  if several: the only column whose unit can be converted, if there is just one
 //! ```
 
 use gdcm_model::dataset::channel::ChannelSide;
@@ -22,7 +22,7 @@ use gdcm_model::units::physical_unit::conversion_factor;
 use super::position_columns::is_position;
 use super::record_table::{RecordColumn, RecordTable};
 
-/// Returns the columns that may hold this channel.
+/// Returns the columns that may hold this channel (steps 1 to 5).
 pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let search = ColumnSearch { table, rule, side };
     let names = search.wanted_names();
@@ -105,7 +105,8 @@ impl ColumnSearch<'_> {
     }
 
     /// Returns the columns that the user's aliases denote, in the order of step 1. In folded
-    /// spelling "elev_yoke1" is "elev,yoke1". If an alias is a column number, no names are tried.
+    /// spelling "elev_yoke1" is "elev,yoke1". If an alias is a column number that does not exist,
+    /// no names are tried.
     fn by_aliases(&self, aliases: &[String]) -> Vec<usize> {
         let exact = self.named(|column| self.rule.aliases.iter().any(|alias| alias == column));
         if !exact.is_empty() {

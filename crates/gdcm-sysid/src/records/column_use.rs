@@ -129,14 +129,8 @@ impl ColumnUse {
             Some(column) => factor_from_file(column, rule),
             None => 1.0,
         };
-        // Exactly 1 for equal factors.
-        let not_from_file = if self.factor == from_file {
-            1.0
-        } else {
-            self.factor / from_file
-        };
         ChannelRemedy {
-            factor: self.remedy.factor * not_from_file,
+            factor: self.remedy.factor * (self.factor / from_file),
             ..self.remedy
         }
     }

@@ -113,7 +113,7 @@ impl CommonClock {
     }
 }
 
-/// Returns an error if a channel is too slow for the band; it names the slowest.
+/// Returns an error if the slowest channel is too slow for the band.
 fn check_rates(channels: &[StampedChannel], band_end: f64) -> Result<(), ResamplingError> {
     let slowest = channels
         .iter()

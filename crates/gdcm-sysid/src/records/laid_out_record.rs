@@ -127,7 +127,8 @@ impl LaidOutRecord {
         Some([*first_s, *last_s])
     }
 
-    /// Returns the record with other columns for its channels.
+    /// Returns the record with other columns for its channels, and with problems, cautions and
+    /// samples for these.
     #[must_use]
     pub fn laid_out(&self, layout: RecordLayout, channels: &RecordChannels) -> Self {
         let table = Arc::clone(&self.table);

@@ -157,7 +157,7 @@ fn stamp_problems(time: TimeBase, table: &RecordTable, column: usize) -> Vec<Lay
     problems
 }
 
-/// Returns a problem if stamps repeat or decrease; it states how many do, and the first.
+/// Returns a problem if stamps repeat or decrease, with their number and the first of them.
 fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     let mut previous: Option<f64> = None;
     let mut problem: Option<LayoutProblem> = None;

@@ -45,7 +45,7 @@ pub enum LayoutNote {
     SignReversed {
         channel: String,
         column: String,
-        /// Whether the channel's alias asks for it.
+        /// Whether the channel's alias asks for the reversal.
         is_requested: bool,
     },
     #[error(
@@ -132,7 +132,6 @@ pub enum ColumnConversion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoggedRate {
     pub channel: String,
-    /// Rate \[Hz\].
     pub rate_hz: f64,
 }
 

@@ -127,7 +127,7 @@ pub enum LayoutProblem {
         /// The channel's unit.
         to: String,
     },
-    /// Two channels use the same column.
+    /// Two channels, or a channel and the time, use the same column.
     #[error(
         "{first} and {second} are both taken from column {column}; choose another column for one of them"
     )]
@@ -237,7 +237,7 @@ pub enum LayoutCaution {
     /// Two channels have the same samples.
     #[error("{first} and {second} have the same samples")]
     Same { first: String, second: String },
-    /// The record repeats another record under a different name.
+    /// The record has the same samples as an earlier record.
     #[error("same samples as {first}: left out, so that no measurement counts twice")]
     Copy {
         /// The earlier record, by name.

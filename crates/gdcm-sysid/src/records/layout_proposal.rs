@@ -28,7 +28,7 @@ pub struct TimeSettings {
 /// A layout proposed for a record, with a note for each choice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayoutProposal {
-    /// The layout; `None` for a time or column that could not be determined.
+    /// The layout; its time and columns are `None` where they could not be determined.
     pub layout: RecordLayout,
     /// Choices with their reasons.
     pub notes: Vec<LayoutNote>,
@@ -138,7 +138,7 @@ impl Proposer<'_> {
         layout
     }
 
-    /// Proposes the time (step 1).
+    /// Proposes the time base (step 1); `None`, with a problem, if there is none.
     fn time(&mut self, settings: &TimeSettings) -> Option<TimeBase> {
         let table = self.table;
         if table.has_topics() {

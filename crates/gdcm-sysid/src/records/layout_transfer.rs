@@ -11,8 +11,8 @@ use super::record_table::RecordTable;
 use super::time_base::TimeBase;
 
 impl RecordLayout {
-    /// Returns the layout with the same columns, by name, in another record; `None` if a column is
-    /// missing there.
+    /// Returns the layout with the same columns, by name, in another record; `None` if the other
+    /// record lacks a column.
     pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
         let mut layout = self.clone();
         if let Some(time) = self.time {
@@ -29,7 +29,7 @@ impl RecordLayout {
     /// channel: transfers the user's edits to another record with the same column names.
     ///
     /// A channel whose column was removed by the user, or is missing in this record, keeps its own
-    /// column. Remedies are kept as well, because they belong to one record.
+    /// column. This record's remedies do not change either, because remedies belong to one record.
     #[must_use]
     pub fn following(
         &self,

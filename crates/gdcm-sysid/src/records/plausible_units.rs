@@ -19,7 +19,6 @@ const fn limit(dimension: Dimension, value: f64, unit: &'static str) -> Plausibl
     }
 }
 
-/// Largest values that are plausible for a helicopter.
 const LIMITS: [PlausibleLimit; 7] = [
     limit(Dimension::AngularRate, 400.0, "deg/s"),
     limit(Dimension::Angle, 3600.0, "deg"),

@@ -32,9 +32,8 @@ pub struct ResamplingSettings {
 pub struct RecordChannels {
     pub inputs: Vec<ChannelRule>,
     pub outputs: Vec<ChannelRule>,
-    /// User-defined conversions by channel.
+    /// User-defined conversions by channel name.
     pub declared: BTreeMap<String, DeclaredConversion>,
-    /// Settings for topics with separate clocks.
     pub resampling: ResamplingSettings,
 }
 

@@ -8,7 +8,7 @@ use gdcm_model::units::number;
 /// A column: its name, unit and samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordColumn {
-    /// Name in the file; "column 3" if the file has none.
+    /// Name in the file; "column 3" if the file does not name its third column.
     pub name: String,
     /// Unit in the file.
     pub unit: Option<String>,
@@ -86,7 +86,7 @@ impl RecordColumn {
     }
 }
 
-/// A record's origin.
+/// A record's file, and its place in that file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordSource {
     pub file: String,
@@ -126,7 +126,7 @@ pub struct ModeSpan {
 }
 
 impl RecordTable {
-    /// Creates a table without further information.
+    /// Creates a table of named columns, with all other fields empty.
     pub fn new(name: impl Into<String>, columns: Vec<RecordColumn>) -> Self {
         Self {
             name: name.into(),
@@ -179,8 +179,8 @@ impl RecordTable {
         }
     }
 
-    /// Returns a matrix column's index; readers name such a column `xyz_1`; the name counts from 0
-    /// as in Python (`xyz[0]`) or from 1 as in MATLAB (`xyz(1)`).
+    /// Returns the index of a matrix column, which readers name `xyz_1`. `name` counts from 0 as in
+    /// Python (`xyz[0]`) or from 1 as in MATLAB (`xyz(1)`).
     fn position_in_matrix(&self, name: &str) -> Option<usize> {
         let (matrix, index, first) = if let Some(rest) = name.strip_suffix(']') {
             let (matrix, index) = rest.rsplit_once('[')?;
@@ -209,7 +209,7 @@ impl RecordTable {
         part
     }
 
-    /// Returns a column's name in quotation marks.
+    /// Returns a column's name in quotation marks; its number if the column does not exist.
     pub(super) fn quoted(&self, column: usize) -> String {
         match self.columns.get(column) {
             Some(column) => format!("\"{}\"", column.name),
@@ -217,7 +217,6 @@ impl RecordTable {
         }
     }
 
-    /// Returns all column names.
     pub(super) fn column_names(&self) -> Vec<String> {
         self.columns
             .iter()

@@ -135,8 +135,8 @@ fn join_to_topic(columns: &mut [RecordColumn], clock: &[f64]) {
     }
 }
 
-/// Returns whether the stamps increase, are numerous enough for a signal, and are all missing after
-/// the first missing stamp.
+/// Returns whether the stamps increase, are at least [`Separation::FEWEST`], and are all missing
+/// after the first missing stamp.
 fn rises(stamps: &[f64]) -> bool {
     let count = stamps
         .iter()

@@ -11,7 +11,7 @@ use super::resampling_error::ResamplingError;
 
 /// Longest step without a gap, in median steps: 3 missing samples are bridged (M14.1).
 const LONGEST_STEP: f64 = 4.5;
-/// A channel counts as held if more than this share of its samples repeat.
+/// A channel counts as held if more than this share of its samples repeat the preceding sample.
 const HELD: f64 = 0.5;
 /// Minimum number of samples in a channel.
 const LEAST_SAMPLES: usize = 3;
@@ -175,8 +175,9 @@ pub fn is_held(values: &[f64]) -> bool {
 /// Δ_k  = half the distance between the neighbours of t_k; at an end, the distance to its neighbour
 /// ```
 ///
-/// Constants do not change, nor does a sample without a neighbour in the kernel. NaN if the weights
-/// have no positive sum. Stamps increase; `cutoff` is wc \[rad/s\].
+/// `v_k` are the values at the stamps `t_k`. Constants do not change, nor does a sample without a
+/// neighbour in the kernel. NaN if the weights have no positive sum. Stamps increase; `cutoff` is
+/// wc \[rad/s\].
 fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     let half = HALF_TAPS * PI / cutoff;
     let from = time_s.partition_point(|time| *time <= t - half);

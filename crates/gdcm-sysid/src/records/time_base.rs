@@ -12,7 +12,6 @@ use super::stamp_unit::StampUnit;
 pub enum TimeBase {
     /// A stamp column.
     Column {
-        /// Column index.
         column: usize,
         /// Seconds per column unit.
         seconds: f64,

@@ -40,7 +40,7 @@ impl RecordTable {
     }
 }
 
-/// Combines a log's topics side by side.
+/// Combines a log's topics side by side, in a record named after the log.
 pub(super) fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
     let mut joined = join_topics(tables);
     joined.name = log.to_owned();
@@ -122,7 +122,8 @@ fn common_file(tables: &[RecordTable]) -> &str {
     }
 }
 
-/// Returns the file's name without its extension, or the folder's name.
+/// Returns the topics' file name without its extension, or their folder's name; "topics" if there
+/// is none.
 fn common_name(tables: &[RecordTable]) -> &str {
     let file = common_file(tables);
     let mut name = file.rsplit('/').next().unwrap_or_default();
@@ -214,7 +215,7 @@ fn column_name(topic: &str, column: &str, is_single: bool) -> String {
     }
 }
 
-/// Returns whether a name is uninformative.
+/// Returns whether a name is in [`PLAIN`], ignoring case.
 fn is_plain(name: &str) -> bool {
     PLAIN.contains(&name.to_lowercase().as_str())
 }

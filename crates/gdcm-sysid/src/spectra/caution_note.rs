@@ -16,7 +16,6 @@ pub struct CautionNote {
     /// Affected frequencies \[rad/s\]; for the codes `band-narrowed` and `order-limit`, the
     /// narrower band instead.
     pub band_rad_s: Option<[f64; 2]>,
-    /// The full text.
     pub text: String,
 }
 

@@ -18,15 +18,16 @@ use super::value_range::ValueRange;
 const FLAT: f64 = 1e-3;
 /// Shortest run at a limit, in samples.
 const SHORTEST: f64 = 5.0;
-/// Shortest run at a limit, relative to the usual length that flat runs elsewhere have.
+/// Shortest run at a limit, relative to the usual length of flat runs elsewhere.
 const OVER_USUAL: f64 = 3.0;
 /// The usual length is this quantile over the flat runs elsewhere.
 const USUAL: f64 = 0.9;
 /// Share of the range, at each end, that counts as a limit.
 const OUTER: f64 = 0.05;
-/// Largest share of samples at a limit that is acceptable in a smooth channel.
+/// Largest acceptable share of samples at a limit in a smooth channel.
 const MOST_AT_LIMIT: f64 = 0.005;
-/// Largest acceptable share in a held channel, such as one with coarse steps or stairs.
+/// Largest acceptable share of samples at a limit in a held channel ([`HELD_SHARE`]), such as a
+/// coarsely quantised one.
 const MOST_AT_LIMIT_HELD: f64 = 0.1;
 /// A channel counts as held if flat runs away from the limits hold more than this share of its
 /// samples.

@@ -2,13 +2,14 @@
 //! the sampling after it (M14.1).
 //!
 //! ```text
+//! wc cut-off, whi highest line used, dt sample time
 //! wc = 5 whi, or 2 whi for a vibrating output
 //! D = floor(2 pi / (20 whi dt)), at least 1:  the projections use every D-th filtered sample
 //! ```
 //!
-//! Half the remaining sampling frequency is at least 10 whi, so that only frequencies above 18 whi
-//! could alias to the lines used, and the low-pass lets less than 1/500 of them pass. Spectra are
-//! computed from all samples.
+//! If samples are thinned, half the remaining sampling frequency is at least 10 whi, so that only
+//! frequencies above 18 whi could alias to the lines used, and the low-pass lets less than 1/500 of
+//! them pass. Spectra are computed from all samples.
 
 use std::f64::consts::TAU;
 
@@ -21,9 +22,9 @@ use super::spectrum::spectra;
 const USUAL: f64 = 5.0;
 /// Ratio of the cut-off to the highest line used, if an output vibrates (M14.1).
 const VIBRATING: f64 = 2.0;
-/// Ratio of the sampling frequency that the projections need to the highest line used (M14.1).
+/// Sampling frequency that the projections need, relative to the highest line used (M14.1).
 const SAMPLING: f64 = 20.0;
-/// Tolerance for a sample time that was rounded.
+/// Relative tolerance in the thinning factor, so that a rounded sample time does not lower it by 1.
 const ROUNDING: f64 = 1e-9;
 /// An output vibrates if more than this share of its variance lies above `VIBRATING` times the
 /// highest line used.
@@ -160,8 +161,8 @@ mod tests {
         let segment = wave(HIGHEST, 0.004, 5000);
         let thinned = applied(&segment);
         let filtered = LowPass::applied(usual().omega, &segment);
-        // The filter has no phase: away from the ends the wave keeps its times, and 1e-3 of its
-        // size.
+        // The filter has no phase: away from the ends the wave keeps its times, and its size
+        // changes by less than 2e-3.
         for n in 0..thinned.inputs.nrows() {
             assert_eq!(thinned.outputs[n], filtered.outputs[4 * n]);
         }

@@ -22,7 +22,7 @@ use super::value_range::ValueRange;
 
 /// Shortest frozen run \[s\].
 const FROZEN_S: f64 = 1.0;
-/// Shortest frozen run, relative to the usual run with equal samples.
+/// Shortest frozen run, relative to the usual length of a run with equal samples.
 const TIMES_USUAL: f64 = 5.0;
 /// The usual length is this quantile over all runs with equal samples.
 const USUAL_QUANTILE: f64 = 0.95;

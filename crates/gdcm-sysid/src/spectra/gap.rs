@@ -15,9 +15,9 @@ pub enum Cause {
     RowsMissing,
     /// Channels have no value.
     SamplesMissing(Vec<Signal>),
-    /// Outputs stood still while others moved.
+    /// Outputs stood still while another channel moved.
     Frozen(Vec<Signal>),
-    /// The part between two gaps is shorter than the minimum segment; its length \[s\].
+    /// A part without gaps is shorter than the minimum segment; its length \[s\].
     SegmentTooShort(f64),
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A gap lies between two stamps or, in a channel, between two valid samples. Gaps up to the length
 //! that the settings allow are bridged by straight lines (`valid_samples`), others are cut out or,
-//! if their samples can be estimated, filled (`preparation`). Parts too short to be used become
-//! gaps there too.
+//! if their samples can be estimated, filled (`preparation`). `preparation` then adds the parts
+//! between gaps that are too short to be used.
 
 use std::collections::BTreeMap;
 

@@ -43,8 +43,8 @@ pub(crate) struct GridRows {
 
 /// Reads a record on the grid `k dt`, relative to its first stamp. `inputs` channels come first.
 ///
-/// Rows end, and further ones begin, at a gap without stamps that is longer than all stretches with
-/// stamps together, so that missing rows cannot fill the memory.
+/// New [`GridRows`] begin after a gap without stamps that is longer than all stretches with stamps
+/// together, so that missing rows cannot fill the memory.
 pub(crate) fn grid_rows(clock: &Clock, channels: &[ValidSamples], inputs: usize) -> Vec<GridRows> {
     let grid = clock.grid();
     let stamped_points: usize = grid.iter().map(|stretch| stretch.points).sum();
@@ -84,7 +84,6 @@ impl GridRows {
         self.values.len() / self.width.max(1)
     }
 
-    /// Returns the rows in a range.
     fn rows(&self, range: RowRange) -> &[Option<f64>] {
         &self.values[range.start * self.width..range.end * self.width]
     }

@@ -11,7 +11,7 @@ use super::polynomial_window::Window;
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::Spectrum;
 
-/// Window half-width, relative to the centre frequency (M14.2).
+/// First window half-width, relative to the centre frequency (M14.2).
 const HALF_WIDTH_SHARE: f64 = 0.2;
 
 /// Estimates the response at `omegas` \[rad/s\] from all segments' lines (M14.2).
@@ -25,8 +25,8 @@ const HALF_WIDTH_SHARE: f64 = 0.2;
 /// Y = (G0 + G1 x + G2 x^2) U + (t0 + t1 x + t2 x^2)_r + V
 ///
 /// 1  h = max(0.45, 0.2 omega), times 1.2 once and then times 1.05 until the window holds
-///    3 inputs + 3 records + outputs + 6 lines; records with fewer than four lines there are
-///    omitted; if all lines together are too few, the terms in x^2 are omitted too
+///    3 inputs + 3 records + outputs + 6 lines; records with fewer than four lines in the window
+///    are omitted; if all lines together are too few, the terms in x^2 are omitted too
 /// 2  for each record A = [U, x U, x^2 U] and B = Y, less their projection on [1, x, x^2],
 ///    which removes the transient
 /// 3  [A B] = Q R, all records stacked;    R = [R11 R12; 0 R22]
@@ -52,7 +52,7 @@ pub fn local_polynomial(
     Ok(ResponseEstimate { points })
 }
 
-/// Fits local polynomials around each frequency in `omegas` \[rad/s\]; `share` is the window
+/// Fits local polynomials around each frequency in `omegas` \[rad/s\]; `share` is the first window
 /// half-width over the centre frequency. See [`local_polynomial`].
 pub(crate) fn local_fits(
     spectra: &[Spectrum],

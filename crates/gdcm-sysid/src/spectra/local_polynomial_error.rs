@@ -6,7 +6,7 @@ pub enum LocalPolynomialError {
     /// No lines, inputs, outputs or frequencies.
     #[error("the records have no {missing}")]
     Nothing {
-        /// What is missing: "spectral lines".
+        /// Missing item, such as "spectral lines".
         missing: &'static str,
     },
     /// A segment has other channel counts than the first; its record index, from 0.

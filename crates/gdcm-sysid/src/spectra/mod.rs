@@ -3,7 +3,7 @@
 //! | stage | files |
 //! |---|---|
 //! | records to segments (M14.1) | [`preparation`], [`preparation_settings`], `record_clock` |
-//! | samples that count, and gaps (M14.1) | `valid_samples`, `frozen_outputs`, `gap_search`, [`gap`], `grid_stretches` |
+//! | valid samples, and gaps (M14.1) | `valid_samples`, `frozen_outputs`, `gap_search`, [`gap`], `grid_stretches` |
 //! | missing samples as unknowns (M14.21) | [`filled_segment`], [`gap_hat`] |
 //! | use of each record | [`record_use`] |
 //! | doubts about channels (M14.18) | [`record_cautions`], [`caution_note`], `clipping`, `stairs`, `coarse_steps`, `spikes`, `rate_limit` |

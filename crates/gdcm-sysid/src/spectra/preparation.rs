@@ -21,7 +21,7 @@ const CONSTANT: f64 = 1e-12;
 /// Relative tolerance on the minimum segment length, so that 500 times 0.02 s count as 10 s.
 const LENGTH_ROUNDING: f64 = 1e-9;
 
-/// Flight records cut into gap-free segments on a uniform time grid.
+/// Flight records cut into segments on a uniform time grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
     /// Segments without gaps, by record and time; not empty.
@@ -45,7 +45,8 @@ pub struct Prepared {
 ///    (valid_samples, frozen_outputs); between them, the gaps (gap_search)
 /// 3  value of a channel at t: the straight line at t + shift between two samples that are at most
 ///    (bridge + 1.5) dt apart, for fresh samples (bridge + 1.5) times the sensor's sample time
-/// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
+/// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least the
+///    minimum segment length (10 s by default)
 /// then, over all records
 ///    no segment, or a channel that is constant in all of them: an error
 ///    cautions about channels (record_cautions)

@@ -10,7 +10,7 @@ const LONGEST_SHIFT_S: f64 = 10.0;
 /// Longest gap that may be bridged, in samples.
 const LONGEST_BRIDGE: usize = 1000;
 
-/// What stairs mean in a channel that is logged more often than it changes (M14.1).
+/// Meaning of stairs in a channel that is logged more often than it changes (M14.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Hold {
     /// A continuous signal; stairs raise a caution.
@@ -60,7 +60,7 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns the hold \[s\]; 0 if there is none.
+    /// Returns the stated hold \[s\]; 0 if none is stated.
     fn hold_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } | Hold::SlowSensor { hold_s } => hold_s,
@@ -78,8 +78,8 @@ pub struct Preparation {
     pub outputs: Vec<ChannelPreparation>,
     /// Whether a record with uneven sample times may be interpolated.
     pub resample: bool,
-    /// Whether samples are kept while an output is constant and others move; otherwise they are a
-    /// gap.
+    /// Whether an output's samples are used while it is constant and another channel moves;
+    /// otherwise they are a gap.
     pub keep_frozen: bool,
     /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record.
     pub longest_bridge: usize,
@@ -140,7 +140,8 @@ impl Preparation {
             .get_mut(signal.index)
     }
 
-    /// Returns an error for invalid settings.
+    /// Checks that there are inputs and outputs, and that delays, holds, the longest bridge and the
+    /// minimum segment are possible.
     pub(crate) fn check(&self) -> Result<(), PreparationError> {
         for role in [ChannelSide::Input, ChannelSide::Output] {
             if role.pick(&self.inputs, &self.outputs).is_empty() {

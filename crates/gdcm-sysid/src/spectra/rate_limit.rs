@@ -45,9 +45,9 @@ const LEAST_SHARE: f64 = 0.05;
 const RAMPS: f64 = 0.9;
 /// Largest share of the moving slopes that may be above the limit.
 const MOST_ABOVE: f64 = 0.01;
-/// Ratio between the wider tolerance and the tolerance.
+/// Ratio of the wider tolerance in the last condition (step 4) to the tolerance.
 const WIDER: f64 = 5.0;
-/// Within the wider tolerance, at least this share of slopes must be at the limit.
+/// Minimum share of the slopes within the wider tolerance that must be within the tolerance.
 const SHARP: f64 = 0.7;
 /// Samples are consecutive up to this time difference, in sample times.
 const CONSECUTIVE: f64 = 1.5;

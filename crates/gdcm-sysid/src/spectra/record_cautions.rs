@@ -36,7 +36,7 @@ pub enum RecordCaution {
         /// The steps' deviation from multiples of the sample time, 95th percentile \[%\].
         percent: f64,
     },
-    /// A part between two gaps was left out because it is too short.
+    /// A part without gaps was left out because it is shorter than the minimum segment.
     #[error(
         "{record}: the part between two gaps at {start_s:.2} s was left out, because it lasts only \
         {length_s:.1} s"
@@ -56,7 +56,7 @@ pub enum RecordCaution {
     )]
     SampleHold {
         signal: Signal,
-        /// Share of samples equal to the one before \[%\].
+        /// Share of samples equal to the preceding sample, while the channel moves \[%\].
         percent: f64,
         /// Median time between changes \[s\].
         hold_s: f64,
@@ -65,7 +65,7 @@ pub enum RecordCaution {
     #[error("{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
-        /// Largest modulus of the samples that are used, spikes apart.
+        /// Largest modulus among the samples that are used and are in no spike.
         greatest: f64,
         /// Largest plausible modulus.
         limit: f64,
@@ -123,7 +123,7 @@ pub enum RecordCaution {
         /// Number of affected records.
         records: usize,
     },
-    /// Outputs stood still while others moved.
+    /// Outputs stood still while another channel moved.
     #[error(
         "{record}: {} stood still for {seconds:.1} s while other channels moved; these samples are not used",
         names(signals)
@@ -326,7 +326,8 @@ fn stairs_caution(
     })
 }
 
-/// Returns a caution about an output at its limit; it names the worst record.
+/// Returns a caution about an output at its limit; it names the record with the largest share of
+/// samples at the limit.
 fn limit_caution(signal: &Signal, spikes: &[RecordSpikes<'_>]) -> Option<RecordCaution> {
     let mut clipped = Vec::new();
     for record in spikes {
@@ -427,8 +428,7 @@ fn correlation_cautions(segments: &[Segment], preparation: &Preparation) -> Vec<
     cautions
 }
 
-/// Returns a caution about the outputs that were constant in a record while others moved, from its
-/// gaps.
+/// Returns a caution about the outputs that were frozen in a record, from its gaps.
 pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution> {
     let mut stuck = BTreeSet::new();
     let mut seconds = 0.0;
@@ -448,8 +448,8 @@ pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution>
     })
 }
 
-/// Returns the inputs that reach their limit in a record, each with its share of samples there
-/// \[%\].
+/// Returns the inputs with an excessive share of samples at an end of their range
+/// ([`Clipping::is_excessive`]), each with this share \[%\].
 pub(crate) fn inputs_at_limit(
     record: &FlightRecord,
     preparation: &Preparation,

@@ -11,7 +11,7 @@ use super::preparation_settings::PreparationError;
 /// Stamps are even if they deviate from multiples of the sample time by at most this much \[%\]
 /// (M14.1).
 const UNEVEN_PERCENT: f64 = 20.0;
-/// The quantile of the deviations to compare with the limit: a single late stamp is no jitter.
+/// Quantile of the deviations that is compared with the limit: a single late stamp is no jitter.
 const COUNTED: f64 = 0.95;
 /// Tolerance for rounded stamps: relative to the jitter limit, and in samples at a grid point.
 const ROUNDING: f64 = 1e-6;

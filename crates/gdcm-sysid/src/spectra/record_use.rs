@@ -1,4 +1,4 @@
-//! What an identification uses of a record: its parts and gaps, and inputs at their limit.
+//! The parts of a record that an identification uses, its gaps, and its inputs at their limit.
 
 use gdcm_model::simulation::{FlightRecord, Signal};
 
@@ -7,7 +7,6 @@ use super::gap::{Gap, Treatment};
 /// The parts used from a record, and its gaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordUse {
-    /// Record name.
     pub record: String,
     /// Median sample time \[s\], 0 for fewer than two stamps.
     pub sample_time_s: f64,
@@ -17,13 +16,14 @@ pub struct RecordUse {
     pub used_s: f64,
     /// Gaps, sorted by their start.
     pub gaps: Vec<Gap>,
-    /// Inputs that reach their limit, each with its share of samples there \[%\]. They need no
-    /// caution: a saturated actuator position is a valid input.
+    /// Inputs with an excessive share of samples at an end of their range, each with this share
+    /// \[%\]. They need no caution: a saturated actuator position is a valid input.
     pub inputs_at_limit: Vec<(Signal, f64)>,
 }
 
 impl RecordUse {
-    /// Returns where the parts that remain after the gaps are cut out begin and end \[s\].
+    /// Returns the start and the end of each part between gaps that are cut out \[s\], on the clock
+    /// of `record`, which must be this record.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
         let mut stamps = record
             .time_s

@@ -7,10 +7,10 @@
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
 //! 3  U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines with leverage
 //!    R S R' < 0.5: the spectra for the cost (M14.4)
-//! 4  bands: standard deviations of this model from the lines as logged,
+//! 4  bands: standard deviations of the fitted model from the lines as logged,
 //!    divided by sqrt(coherence between input and R)
 //! 5  valid where the coherence between an input and R, which takes the place of the partial
-//!    coherence, is at least 0.6: elsewhere R does not excite
+//!    coherence, is at least 0.6: elsewhere R does not excite this input
 //! ```
 //!
 //! `U`, `Y` and `R` are the spectral lines of inputs, outputs and references, `Gamma_y` and
@@ -18,8 +18,9 @@
 //! the transient, `N` the noise in `[Y; U]`. In instrumental-variable identification, such a
 //! reference is called the instrument.
 //!
-//! The leverage excludes the ends of a chirp's band, where its smooth spectrum and the
-//! transient look alike. The cost per degree of freedom is far below 1 and meaningless.
+//! The leverage excludes the ends of a chirp's band, where its smooth spectrum and the transient
+//! look alike. A model's cost per degree of freedom over the spectra from step 3 is far below 1 and
+//! meaningless.
 
 use nalgebra::{Complex, DMatrix, DVector, DVectorView};
 
@@ -33,9 +34,9 @@ use super::local_polynomial_error::LocalPolynomialError;
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::{LineRange, Spectrum};
 
-/// Window half-width, relative to the centre frequency.
+/// First window half-width, relative to the centre frequency.
 const HALF_WIDTH: f64 = 0.15;
-/// Smallest singular value of `Gamma_u` that counts, relative to the largest.
+/// Smallest singular value of `Gamma_u` that is inverted, relative to the largest.
 const TOLERANCE: f64 = 1e-3;
 /// Lines with at least this leverage are left out.
 const LEVERAGE: f64 = 0.5;

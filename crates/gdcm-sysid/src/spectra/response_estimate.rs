@@ -10,9 +10,9 @@ use super::scales::Scales;
 
 /// Number of terms in a local polynomial: 1, x, x^2.
 pub(crate) const TERMS: usize = 3;
-/// Minimum median partial coherence for an input that was swept by itself (M14.2).
+/// Median partial coherence from which an input counts as swept by itself (M14.2).
 const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
-/// Largest condition number of the inputs' spectral matrix if they were moved independently.
+/// Condition number of the inputs' spectral matrix up to which they count as moved independently.
 const GREATEST_CONDITION: f64 = 1e3;
 /// Minimum partial coherence at which a point is trusted (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
@@ -76,7 +76,7 @@ impl EstimatePoint {
         (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
     }
 
-    /// Converts a point in scaled units to file units.
+    /// Converts a point in scaled units to record units.
     fn in_units(&self, response_factors: &DMatrix<f64>, outputs: &DVector<f64>) -> Self {
         Self {
             response: self
@@ -136,8 +136,8 @@ impl ResponseEstimate {
     /// end, the upper end or both, where at least a fifth (in logarithm) shows none, because no
     /// input is coherent with any output there.
     ///
-    /// `None` if fewer than two points show a response, if both ends do, or if what is left is
-    /// narrower than a fifth.
+    /// `None` if fewer than two points show a response, if both ends show one, or if the remaining
+    /// band is narrower than a fifth of the given one (in logarithm).
     #[must_use]
     pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
         let mut shown = self
@@ -220,7 +220,7 @@ impl ResponseEstimate {
         }
     }
 
-    /// Converts an estimate from the units in `scales` to file units.
+    /// Converts an estimate from the units in `scales` to record units.
     #[must_use]
     pub fn in_units(&self, scales: &Scales) -> Self {
         let response_factors = scales.response_factors();

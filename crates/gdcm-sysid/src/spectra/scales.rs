@@ -9,11 +9,12 @@ use gdcm_model::simulation::Segment;
 /// rounding.
 const CONSTANT: f64 = 1e-12;
 
-/// Scale for every channel, in file units: its rms about each segment's mean, over all segments
+/// Scale for every channel, in record units: its rms about each segment's mean, over all segments
 /// (M14.1).
 ///
 /// ```text
 /// s_c = sqrt( sum_r sum_n (x_c[n] - mean_r x_c)^2 / sum_r N_r )
+///       channel c, segment r with N_r samples
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
@@ -80,7 +81,7 @@ impl Scales {
         scaled
     }
 
-    /// Returns the factors, outputs x inputs, that convert a scaled response to file units.
+    /// Returns the factors, outputs x inputs, that convert a scaled response to record units.
     #[must_use]
     pub fn response_factors(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| {

@@ -30,17 +30,17 @@ const LONGEST_S: f64 = 0.1;
 const EVEN: f64 = 0.5;
 /// Largest difference between the neighbours, relative to the nearest distance.
 const RETURNED: f64 = 0.5;
-/// Quantile of single samples' distances in the record.
+/// The usual distance in the record is this quantile over single samples.
 const USUAL: f64 = 0.95;
-/// Quantile of single samples' distances nearby.
+/// The usual distance nearby is this quantile over single samples.
 const USUAL_NEARBY: f64 = 0.9;
 /// Number of samples on each side that are nearby.
 const NEARBY: usize = 25;
 /// Minimum distance at which a sample is a spike, relative to the usual distance.
 const OVER_USUAL: f64 = 6.0;
-/// Minimum distance in standard deviations of the other samples.
+/// Minimum distance at which a sample is a spike, in standard deviations of the other samples.
 const LEAST_DEVIATIONS: f64 = 1.0;
-/// Minimum distance in logging steps.
+/// Minimum distance at which a sample is a spike, in logging steps.
 const LEAST_STEPS: f64 = 3.0;
 /// Largest difference between a neighbour and the sample beyond it, relative to the nearest
 /// distance.

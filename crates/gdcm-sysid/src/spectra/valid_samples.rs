@@ -39,7 +39,7 @@ pub(crate) fn valid_samples(
 /// A channel's valid samples, at times relative to the record's first stamp.
 pub(crate) struct ValidSamples {
     pub signal: Signal,
-    /// Runs in which samples are not finite or frozen.
+    /// Runs of samples that are frozen or not finite.
     pub invalid: Vec<InvalidRun>,
     /// Samples further apart than this \[s\] have a gap between them that is not bridged.
     pub longest_step_s: f64,
@@ -56,7 +56,8 @@ pub(crate) struct ValidSamples {
 }
 
 impl ValidSamples {
-    /// Takes the samples that are finite and not frozen; if the hold asks for it, the fresh ones.
+    /// Takes the samples that are finite and not frozen; with [`Hold::FreshSamples`], only the
+    /// fresh ones.
     fn new(
         channel: &StampedValues,
         frozen: &[StampRange],

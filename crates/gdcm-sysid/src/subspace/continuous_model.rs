@@ -4,29 +4,31 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::StateSpace;
 
-/// Returns the continuous-time model that corresponds to `law`, a model of the Laguerre projections
-/// with the pole `pole` \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
+/// Converts `law`, a discrete model `Ao`, `Bo`, `Co`, `Do` of the Laguerre projections with the
+/// pole `pole` \[rad/s\], to continuous time; `None` if `Ao + I` is singular or a matrix is not
+/// finite.
 ///
 /// ```text
 /// xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k,   y~_k = Co xi_k + Do u~_k + e~_k,   k = 0, 1, ...
+///     xi_k states, u~_k, y~_k projections k of inputs and outputs, e~_k innovations
 /// M = (Ao + I)^-1
-/// A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
+/// A = pole M (Ao - I),   B = sqrt(2 pole) M Bo,   C = sqrt(2 pole) Co M,   D = Do - Co M Bo
 /// ```
 pub(crate) fn continuous(pole: f64, law: &StateSpace) -> Option<StateSpace> {
-    let a = law.a();
-    let b = law.b();
-    let c = law.c();
-    let d = law.d();
-    let identity = DMatrix::identity(a.nrows(), a.nrows());
-    let m = (a + &identity).try_inverse()?;
-    let mb = &m * b;
-    let cm = c * &m;
+    let ao = law.a();
+    let bo = law.b();
+    let co = law.c();
+    let do_ = law.d();
+    let identity = DMatrix::identity(ao.nrows(), ao.nrows());
+    let m = (ao + &identity).try_inverse()?;
+    let mb = &m * bo;
+    let cm = co * &m;
     let root = (2.0 * pole).sqrt();
     StateSpace::new(
-        &m * (a - &identity) * pole,
+        &m * (ao - &identity) * pole,
         &mb * root,
         cm * root,
-        d - c * mb,
+        do_ - co * mb,
     )
     .ok()
 }

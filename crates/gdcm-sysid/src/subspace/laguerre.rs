@@ -1,4 +1,4 @@
-//! Laguerre filters: projections of a signal onto its own future (M14.3).
+//! Laguerre filters: projections of a signal's future on the Laguerre functions (M14.3).
 //!
 //! ```text
 //! s_k(t) = int_0^inf l_k(tau) s(t + tau) dtau

@@ -21,7 +21,7 @@ const PASTS: [usize; 4] = [8, 10, 12, 16];
 const LONG_PAST: usize = 24;
 /// Up to this channel count, `LONG_PAST` is tried.
 const LONG_PAST_CHANNELS: usize = 4;
-/// Shortest past window.
+/// Shortest past window, for the shortest records.
 const LEAST_PAST: usize = 3;
 /// Minimum number of rows per column in a data matrix.
 const ROWS_PER_COLUMN: f64 = 2.0;
@@ -37,8 +37,8 @@ pub(crate) const SPACING: f64 = 1.2;
 /// (M14.13).
 pub(crate) const VALUES_PER_UNKNOWN: usize = 5;
 
-/// Counts a model's parameters at this order, without those that only change the state basis:
-/// `n (m + l) + m l`.
+/// Counts a model's parameters at this order, `n (m + l) + m l` for n states, m inputs and l
+/// outputs: those that only change the state basis do not count.
 pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
     order * (inputs + outputs) + inputs * outputs
 }
@@ -50,7 +50,7 @@ pub(crate) struct Extent {
     pub(crate) outputs: usize,
     /// Number of real values in all lines, less the unknowns in the transients.
     pub(crate) figures: usize,
-    /// Total record length times the upper end of the band \[rad\].
+    /// Total length without gaps times the upper end of the band \[rad\].
     pub(crate) radians: f64,
 }
 
@@ -90,7 +90,8 @@ impl Extent {
     ///
     /// ```text
     /// 1 to 8, without 5 and 7 for more than 6 channels;   10, 12 ... 24
-    /// at most as many as the map to the future has rows, min(longest_past, f_max) l
+    /// at most as many as the map to the future has rows: min(longest_past, longest_future) times
+    ///     the output count
     /// 5 real values for each parameter
     /// ```
     pub(crate) fn orders(self, longest_past: usize) -> Vec<usize> {

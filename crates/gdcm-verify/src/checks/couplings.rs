@@ -21,7 +21,7 @@ use crate::reference_study::ReferenceStudy;
 /// Airspeed at which constant couplings are evaluated \[kt\].
 const AIRSPEED_KT: f64 = 60.0;
 
-/// Compares a coupled model's state-space matrices.
+/// Compares a coupled model's state-space matrices with the reference.
 pub(super) fn coupled_state_space(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let case = MIXING.read()?.member("state_space")?;
     let physics = StateSpace::new(
@@ -81,7 +81,7 @@ fn constant_couplings(
     }
 }
 
-/// Compares the synthetic aircraft's coupling coefficients after each solve.
+/// Compares the synthetic aircraft's coupling coefficients after each solve with the reference.
 pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let aircraft = MIXING.read()?.member("toy")?;
     let omega: Arc<[f64]> = aircraft.numbers("omega_rad_s")?.into();

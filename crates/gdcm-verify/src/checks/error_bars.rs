@@ -11,7 +11,7 @@ use crate::reference_study::ReferenceStudy;
 /// Confidence level in the reference file.
 const LEVEL: f64 = 0.9;
 
-/// Compares the error bars for net gains and delta delays.
+/// Compares the error bars for net gains and delays with the reference.
 pub(super) fn bars_of_the_example(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let analysis = study.analysis()?;
     let uncertainty = study

@@ -19,7 +19,7 @@ const COST: f64 = 1.0;
 /// Scale for the objective in eq. (11), a sum of squared delays \[s^2\].
 const DELAY_OBJECTIVE: f64 = 1e-4;
 
-/// Runs `compare` on every condition.
+/// Runs `compare` on every condition in the reference; a condition without a result disagrees.
 fn each_condition(
     study: &mut ReferenceStudy,
     compare: fn(&mut Found, &ConditionAnalysis, &Reference) -> Result<(), CheckFault>,
@@ -134,15 +134,14 @@ pub(super) fn costs(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     })
 }
 
-/// Part of J.
 #[derive(Clone, Copy)]
 enum Part {
     Magnitude,
     Phase,
 }
 
-/// Compares one part of J for all responses, before the correction if `index` is [`BEFORE`], after it
-/// otherwise.
+/// Compares one part of J with the reference for all responses, before the correction if `index` is
+/// [`BEFORE`], after it otherwise.
 fn compare_costs(
     found: &mut Found,
     result: &ConditionAnalysis,

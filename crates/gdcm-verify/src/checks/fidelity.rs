@@ -52,7 +52,7 @@ fn middle_of_rising(omega: &[f64], function: fn(f64) -> f64) -> f64 {
     0.5 * (function(omega[half - 1]) + function(omega[half]))
 }
 
-/// Compares coherence weights.
+/// Compares coherence weights with the reference.
 pub(super) fn coherence_weights(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for row in MUAD.read()?.list("Wgamma")? {
@@ -65,7 +65,7 @@ pub(super) fn coherence_weights(_: &mut ReferenceStudy) -> Result<Found, CheckFa
     Ok(found)
 }
 
-/// Compares the envelopes for maximum unnoticeable added dynamics (MUAD).
+/// Compares the envelopes for maximum unnoticeable added dynamics (MUAD) with the reference.
 pub(super) fn envelopes(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for row in MUAD.read()?.list("rows")? {

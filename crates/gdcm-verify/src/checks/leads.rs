@@ -28,8 +28,8 @@ fn design(entry: &Reference) -> Result<LeadDesign, CheckFault> {
     Ok(LeadDesign::new(settings, grid.omega().into()))
 }
 
-/// Compares filters, their gains at infinity and band delays, and the lead time that a signed delay
-/// needs.
+/// Compares with the reference: filters, their gains at infinity and band delays, and the lead time
+/// that a signed delay needs.
 pub(super) fn filters(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let reference = LEADS.read()?;
     let mut found = Found::default();
@@ -61,8 +61,8 @@ pub(super) fn filters(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     Ok(found)
 }
 
-/// Compares minima for signed delays; a minimum disagrees if it is not proven, or if it differs on
-/// whether the held delays are feasible.
+/// Compares minima for signed delays with the reference; a minimum disagrees if it is not proven,
+/// or if it differs on whether the held delays are feasible.
 pub(super) fn programs(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for entry in LEADS.read()?.list("programs")? {

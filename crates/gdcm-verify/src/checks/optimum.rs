@@ -81,7 +81,8 @@ pub(super) fn held_products(_: &mut ReferenceStudy) -> Result<Found, CheckFault>
     Ok(found)
 }
 
-/// Compares minima for eq. (11) with certified ones, and whether the held delays are feasible.
+/// Compares minima for eq. (11), and whether the held delays are feasible, with the results of an
+/// interior-point method.
 pub(super) fn certified_delays(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for instance in DELAY_INSTANCES.read()?.list("instances")? {

@@ -20,7 +20,7 @@ use crate::reference_study::ReferenceStudy;
 /// The synthetic aircraft's parameters: the first has two runs, the second has one.
 const PARAMETERS: [&str; 2] = ["a", "b"];
 
-/// A run with one parameter moved; the step is in plausible standard deviations.
+/// A physics model with one parameter moved by `z` plausible standard deviations.
 struct Run {
     z: f64,
     model: StateSpace,
@@ -91,8 +91,8 @@ fn condition(
     })
 }
 
-/// Compares the synthetic aircraft's parameters and misfit after each pass, and its delays, for
-/// exact and for disturbed flight responses.
+/// Compares the synthetic aircraft's parameters and misfit after each pass, and its delays, with
+/// the reference: once for exact, once for disturbed flight responses.
 pub(super) fn synthetic_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let aircraft = PHYSICS.read()?.member("toy")?;
     let models = aircraft.list("models")?;

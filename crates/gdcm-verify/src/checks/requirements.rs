@@ -56,7 +56,8 @@ fn attitude(case: usize, s: Complex<f64>) -> Complex<f64> {
     }
 }
 
-/// Compares bandwidths, phase delays and the frequencies that they are read from.
+/// Compares bandwidths, phase delays and the frequencies that they are read from with the
+/// reference.
 pub(super) fn bandwidths(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let band = Band::new(0.5, 12.0).map_err(CheckFault::no_result)?;
     let settings = BandwidthSettings {

@@ -117,8 +117,8 @@ impl TimedLag {
         .map_err(CheckFault::no_result)
     }
 
-    /// `(b / (z - a) + d) exp(-j omega (tau_o + tau_i))`, with `z = exp(j omega T)`, or `j omega` in
-    /// continuous time.
+    /// `(b / (z - a) + d) exp(-j omega (tau_o + tau_i))`, with the pole `a`, the delays `tau_o` and
+    /// `tau_i`, and `z = exp(j omega T)` for the sample time `T`, or `j omega` in continuous time.
     fn closed_form(&self, omega: f64) -> Complex<f64> {
         let z = match self.sample_time_s {
             None => Complex::new(0.0, omega),

@@ -229,7 +229,7 @@ pub struct CoverageRow {
     pub what: &'static str,
 }
 
-/// Measured coverages.
+/// Measured coverages, in page order.
 pub const COVERAGE: &[CoverageRow] = &[
     CoverageRow {
         code: "bars-of-independent-models",
@@ -260,7 +260,7 @@ pub const COVERAGE: &[CoverageRow] = &[
     },
 ];
 
-/// Returns the measured coverages.
+/// Returns the measured coverages, in page order.
 pub fn coverage_rows() -> &'static [CoverageRow] {
     COVERAGE
 }

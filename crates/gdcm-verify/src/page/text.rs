@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(bound_text(9.7e-5), "1e-4");
     }
 
-    /// The page is the one of its figures, and is whole.
+    /// The page in `docs` is the one that the recorded figures give.
     #[test]
     fn the_page_is_made_of_the_recorded_figures() {
         let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");

@@ -142,11 +142,9 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
         } else {
             band(&window).1
         };
-        // The tolerance is a hundredth of a point on the screen.
-        assert!(
-            (found / expected - 1.0).abs() < 1e-4,
-            "{end} dragged to {expected}: {found}"
-        );
+        // A dragged limit has the three digits that it displays.
+        let displayed: f64 = format!("{expected:.2e}").parse().unwrap();
+        assert_eq!(found, displayed, "{end} dragged to {expected}");
         // The axis shows the range of the curves: 1.7 times the band at either end.
         let (first, last) = state(&window).display.frequency.bode.omega_range();
         let (min, max) = band(&window);

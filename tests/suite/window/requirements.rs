@@ -783,7 +783,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     assert!(texts(&window).contains(&words), "{words}");
     let records = state(&window).records.conditions.get(&id);
     assert!(records.is_none_or(|records| records.used_rows().next().is_none()));
-    assert!(texts(&window).contains("add one in Records"));
+    assert!(texts(&window).contains("add or use one in Records"));
     let grid = shown_grid(state(&window)).unwrap();
     for row in &grid.rows {
         assert!(!matches!(row.requirement, Requirement::Bandwidth(_)));

@@ -6,6 +6,7 @@ use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Color, Figure, Panel, Range, Role as CurveRole};
 
 use super::*;
+use crate::gui::plot::viewed_range::ranges_of;
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
@@ -219,8 +220,15 @@ fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
         zooms: true,
         ..Model::default()
     });
-    let ranges = |harness: &Harness<'_, Model>| harness.state().view.ranges(0).unwrap();
+    let ranges = |harness: &Harness<'_, Model>| {
+        ranges_of(harness.state().view.transform(0).unwrap().bounds())
+    };
     let whole = ranges(&harness);
+    assert_eq!(
+        harness.state().view.ranges(0),
+        None,
+        "whole ranges follow the marks"
+    );
     let at = harness.state().view.position(0, [90.0, 1.15]).unwrap();
     harness.hover_at(at);
     harness.step();
@@ -234,6 +242,14 @@ fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
     double_click(&mut harness, at);
     harness.run();
     assert_eq!(ranges(&harness), whole);
+    // A pinch is counted once, although egui_plot knows this gesture too.
+    harness.hover_at(at);
+    harness.step();
+    harness.event(egui::Event::Zoom(1.25));
+    harness.run_steps(3);
+    for (pinched, whole) in ranges(&harness).into_iter().zip(whole) {
+        assert!((whole.width() / pinched.width() - 1.25).abs() < 1e-3);
+    }
 }
 
 #[test]

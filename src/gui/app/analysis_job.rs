@@ -1,4 +1,5 @@
-//! Live-analysis job, which is repeated after every change to the study.
+//! Live-analysis job, which starts again after every change to the study or the displayed
+//! condition, and after a proof.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -21,13 +22,12 @@ pub(super) struct Proof {
     pub(super) solution: Arc<Solution>,
 }
 
-/// An analysis and its computing time.
 pub(super) struct TimedAnalysis {
     pub(super) analysis: Arc<Analysis>,
     pub(super) elapsed_ms: f64,
 }
 
-/// Request for the live analysis of a study. All parts are shared, so a copy is cheap.
+/// Request for the live analysis of a study. The large parts are shared, so a copy is cheap.
 #[derive(Clone)]
 pub(super) struct AnalysisJob {
     /// Job number. A later proof causes another job, with a new number, for the same request.
@@ -35,16 +35,16 @@ pub(super) struct AnalysisJob {
     /// Request number; it increases with each request.
     pub(super) request: u64,
     pub(super) study: Study,
-    /// The displayed condition, whose result and curves are computed first.
+    /// The displayed condition, whose result is computed first.
     pub(super) condition: ConditionId,
-    /// Optimality proofs found since the last analysis.
+    /// Optimality proofs that the displayed analysis does not contain yet.
     pub(super) proofs: Vec<Proof>,
     /// Channel to the window, which receives the displayed condition's result before the others.
     pub(super) replies: ReplySender,
 }
 
 impl AnalysisJob {
-    /// Returns whether the job has a proof for `problem`.
+    /// Returns whether the job has a proof for `problem`, compared by pointer.
     pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
         self.proofs
             .iter()
@@ -63,8 +63,9 @@ impl AnalysisJob {
             .send(move |app| app.state.results.first = Some(first));
     }
 
-    /// Returns whether both jobs compare the same models at the same frequencies, starting with the
-    /// same condition.
+    /// Returns whether both jobs compute the same responses (same dataset, band and frequencies)
+    /// and begin with the same condition. Their distances agree too, unless the coherence threshold
+    /// differs.
     fn compares_the_same(&self, other: &Self) -> bool {
         let settings = &self.study.settings;
         let others = &other.study.settings;
@@ -109,8 +110,8 @@ impl Job for AnalysisJob {
         if self.request == newer.request {
             return true;
         }
-        // The comparison is complete once each condition has only its last step left: the optimum,
-        // which also depends on other settings.
+        // The comparison counts as complete once no more steps are left than conditions: the last
+        // step in each condition is the optimum, which also depends on other settings.
         let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
         !is_compared && self.compares_the_same(newer)
     }

@@ -23,7 +23,7 @@ const FOLDER: &str = "recovery";
 /// Waiting time if no work is pending.
 const NEVER: Duration = Duration::from_secs(3600);
 
-/// Decisions to keep. All parts are shared, so a copy is cheap.
+/// Decisions to keep. Study and dataset are shared, so a copy is cheap.
 #[derive(Clone, Debug)]
 pub(super) struct Unsaved {
     pub(super) study: Study,
@@ -46,10 +46,9 @@ pub enum Remains {
     Saved,
     /// All unsaved decisions are in the recovery file.
     Kept(Kept),
-    /// Some decisions are in the recovery file; for later ones, writing failed for the given
-    /// reason.
+    /// Some decisions are in the recovery file; later ones are not, for the given reason.
     KeptInPart(Kept, String),
-    /// Unsaved decisions are lost, because writing failed for the given reason.
+    /// Unsaved decisions could not be kept, for the given reason.
     Lost(String),
 }
 
@@ -85,9 +84,9 @@ pub(super) enum Task {
 #[derive(Clone)]
 pub struct Autosave {
     tasks: Sender<Task>,
-    /// Decisions most recently kept; `None` once they are saved.
+    /// Decisions most recently kept; `None` once they are saved or discarded.
     kept: Arc<Mutex<Option<Kept>>>,
-    /// State of the unsaved decisions when the window and this thread ended.
+    /// State of the unsaved decisions when the window ended; empty before.
     at_end: Arc<OnceLock<Remains>>,
 }
 
@@ -153,7 +152,8 @@ impl Autosave {
         }
     }
 
-    /// Finishes pending work, for which it waits at most `limit`, then ends the thread.
+    /// Finishes pending work, for which it waits at most `limit`, records the resulting state for
+    /// [`Self::flush`], then ends the thread.
     pub(super) fn close(&self, limit: Duration) {
         self.at_end.get_or_init(|| self.flush(limit));
         self.send(Task::Close);

@@ -1,6 +1,6 @@
 //! The window's background jobs: the continuously updated analysis ("live analysis") and all
 //! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
-//! its trigger (in `wanted_jobs.rs`) and its destination.
+//! its trigger (often in `wanted_jobs.rs`) and its destination.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
@@ -74,7 +74,7 @@ pub(super) struct BackgroundJobs {
 }
 
 impl BackgroundJobs {
-    /// Starts the threads.
+    /// Starts the thread pool, with a queue for each kind of job.
     ///
     /// # Errors
     /// The operating system's reason, if a thread cannot be started.
@@ -109,7 +109,7 @@ impl BackgroundJobs {
     }
 }
 
-/// Makes an engine for each kind of job.
+/// Makes the engines for the kinds of jobs that need one.
 struct Engines {
     make: EngineMaker,
     known: KnownModels,

@@ -17,7 +17,7 @@ use crate::gui::views::need::Need;
 
 /// The window's background work, and the requests from which it follows.
 pub(super) struct BackgroundWork {
-    /// Live-analysis job that is running, waiting or complete.
+    /// Latest live-analysis job: waiting, running, complete or stopped.
     pub(super) live_job: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
     /// Proofs that are not yet part of the results; each live analysis receives all of them.
@@ -25,12 +25,11 @@ pub(super) struct BackgroundWork {
     /// Jobs needed by the visible views in addition to the live analysis.
     pub(super) needs: Vec<Need>,
     pub(super) newest_request: Option<(Study, ConditionId)>,
-    /// Report that is being written.
+    /// Report that waits to be written, or is being written.
     pub(super) report_job: Option<ReportJob>,
     /// Number of reports started so far.
     pub(super) report_number: u64,
     pub(super) replies: ReplySender,
-    /// Replies from threads.
     pub(super) reply_receiver: Receiver<Reply>,
 }
 

@@ -14,7 +14,8 @@ impl GdcmApp {
         }
     }
 
-    /// Stops the work shown next to the Stop button: the file being read, or else the computation.
+    /// Stops the work shown next to the Stop button: the reading of a file and of records, or, if
+    /// nothing is being read, the computation.
     pub(super) fn stop_work(&mut self) {
         let opening = self.state.opening.take();
         let records = self.state.records.reading.take();

@@ -29,7 +29,7 @@ pub(super) enum ReadFor {
     Opening,
     /// The file replaces the open dataset, which was read from it earlier.
     Reloading,
-    /// The file continues unsaved decisions; holds the offer number.
+    /// The file holds unsaved decisions to be continued; the value is the number of their offer.
     Restoring(usize),
 }
 
@@ -89,7 +89,8 @@ impl DocumentFiles {
         path.display().to_string()
     }
 
-    /// Returns a proposed path for the study.
+    /// Returns the path that is proposed for saving the study: its own path, or else a path in the
+    /// proposed folder.
     pub(super) fn proposed_name(&self) -> String {
         if let Some(path) = &self.saved.path {
             return path.display().to_string();
@@ -140,10 +141,9 @@ pub(super) fn with_study_extension(path: PathBuf) -> PathBuf {
     }
 }
 
-/// A dataset made from records.
 pub(super) struct DatasetOfRecords {
     pub(super) path: PathBuf,
-    /// Channel locations in the records, and units.
+    /// Channels read from the records, with their aliases, units and conversions.
     pub(super) channels: RecordChannels,
     /// Records left out, with reasons.
     pub(super) left_out: Vec<String>,

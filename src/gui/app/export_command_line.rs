@@ -20,7 +20,7 @@ use crate::message::Message;
 pub(super) struct CommandSource {
     /// `None` for an embedded example.
     file: Option<PathBuf>,
-    /// Study in the file; `None` if a command cannot read it.
+    /// Study in the file, for a dataset with default decisions; `None` if a command cannot read it.
     study: Option<Study>,
 }
 
@@ -184,8 +184,8 @@ fn study_words(study: &Study, source: &CommandSource) -> Option<Vec<String>> {
     if is_same { Some(words) } else { None }
 }
 
-/// Returns the option for the held responses, if they differ, and holds them in `trial`; `None` if
-/// the study does not permit this.
+/// Returns the option for the held responses, and applies it to `trial`; empty if the responses do
+/// not differ, `None` if the study does not permit this.
 fn held_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
     if trial.settings.constrained == study.settings.constrained {
         return Some(Vec::new());
@@ -207,7 +207,8 @@ fn held_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
     Some(vec!["--on".to_owned(), names])
 }
 
-/// Returns the options for rejected models and held-out conditions; applies them to `trial`.
+/// Returns the options for the rejected models and held-out conditions that `trial` lacks, and
+/// applies them to it; `None` if the study does not permit this.
 fn condition_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
     let mut words = Vec::new();
     let mut held_out = Vec::new();
@@ -237,7 +238,7 @@ fn condition_words(study: &Study, trial: &mut Study) -> Option<Vec<String>> {
     Some(words)
 }
 
-/// Joins words to a line for a shell; words with other than plain characters are quoted.
+/// Joins words to a line for a shell; empty words, and words with special characters, are quoted.
 fn shell_line(words: &[String]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| shell_word(word)).collect();
     quoted.join(" ")

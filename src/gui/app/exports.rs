@@ -1,4 +1,4 @@
-//! Exporting the corrections: the dialog's dry run, the written files, and what follows.
+//! Exporting the corrections: the dialog's dry run, the written files, the messages and the report.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ use crate::message::Message;
 const SIGNED_DELAY_DEGREE: usize = 1;
 
 impl GdcmApp {
-    /// Fills the export dialog with the choices from the last export.
+    /// Fills the export dialog with the choices stored in the study.
     pub(super) fn open_export_form(&mut self) {
         let study = self.files.saved.path.as_deref();
         let file = study.or(self.files.loaded.path());
@@ -44,7 +44,7 @@ impl GdcmApp {
         self.state.forms.export = form;
     }
 
-    /// Stores a dry run's outcome; writes the files if the engineer has asked for it meanwhile.
+    /// Stores a dry run's outcome; writes the files if the engineer has chosen Export meanwhile.
     pub(super) fn take_export_plan(&mut self, job: ExportPlanJob, plan: ExportPlan) {
         self.state.forms.export.plan = Some((job, plan));
         self.state.forms.export.join_report_notes();
@@ -123,7 +123,7 @@ impl GdcmApp {
                 counted(count, "file"),
                 sanitized_path(&folder)
             );
-            // The notice offers the folder of a file.
+            // The notice offers the folder that contains the given file, so any file name will do.
             let any_file = folder.join("file");
             self.notify_written_to(Activity::Export, Message::new("exported", text), &any_file);
         }
@@ -155,7 +155,7 @@ impl GdcmApp {
         }
     }
 
-    /// Copies the command line that writes the same files.
+    /// Copies the command line from [`Self::export_command`]; an error is shown in the dialog.
     pub(super) fn copy_export_command(&mut self) {
         match self.export_command() {
             Ok(line) => {

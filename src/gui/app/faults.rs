@@ -46,7 +46,7 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
 /// Recorded panics that have not been caught yet. Another thread may catch a panic, so the list is
 /// not thread-local.
 static RECORDED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Maximum count of recorded panics; the oldest is dropped.
+/// Maximum count of recorded panics; beyond it, the oldest is dropped.
 const MOST_RECORDED: usize = 50;
 
 /// Records a panic's message and location; called by the process's panic hook.

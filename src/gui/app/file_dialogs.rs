@@ -11,7 +11,6 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, RequirementTable};
 
-/// Purpose for which a file dialog is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DialogPurpose {
     Open,
@@ -30,12 +29,12 @@ impl GdcmApp {
             return;
         }
         self.is_dialog_open = true;
-        // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
-        // a choice.
         let folder = match purpose {
             DialogPurpose::ExportFolder => Some(self.state.forms.export.folder_path()),
             _ => self.files.proposed_folder(),
         };
+        // Without desktop dialogs, the call fails or panics; this counts as a dialog closed without
+        // a choice.
         let ask = move || {
             caught(|| show_dialog(purpose, &file_name, folder.as_deref())).unwrap_or_default()
         };
@@ -58,7 +57,7 @@ impl GdcmApp {
             DialogPurpose::Open => self.open(path, None),
             DialogPurpose::SaveStudy => {
                 // The dialog has asked only about the chosen name, not about the name with the
-                // extension that is added here.
+                // extension that `save_as` adds.
                 let existing = if with_study_extension(path.clone()) == path {
                     Existing::Replace
                 } else {

@@ -21,8 +21,8 @@ pub(super) struct Loaded {
     pub(super) trouble: Option<Message>,
 }
 
-/// Loads a file. A fault is also printed on the terminal, where it remains visible if no window
-/// opens.
+/// Loads the requested file, or the example if there is none or it is faulty. A fault is also
+/// printed on the terminal, where it remains visible if no window opens.
 pub(super) fn load_and_report(path: Option<PathBuf>) -> Loaded {
     let loaded = load(path);
     if let Some(trouble) = &loaded.trouble {

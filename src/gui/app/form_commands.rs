@@ -36,10 +36,10 @@ impl GdcmApp {
     fn show_form(&mut self, form: Option<FormKind>) {
         match form {
             Some(FormKind::Export) => self.open_export_form(),
-            // The dry run holds the bytes of all files.
+            // Free the memory: the dry run holds the bytes of all files.
             _ => self.state.forms.export.drop_contents(),
         }
-        // The keys of the palette, pressed while it is open, begin a new search.
+        // Pressing the palette's shortcut while it is open begins a new search.
         if form == Some(FormKind::Palette) {
             self.state.forms.palette = PaletteForm::default();
         }

@@ -13,7 +13,6 @@ pub(super) struct JobKind<J: Job> {
     /// Returns the jobs that the current display needs, the most urgent first. Other jobs of this
     /// kind are cancelled.
     pub(super) wanted: fn(&mut GdcmApp) -> Vec<J>,
-    /// Stores a job's output.
     pub(super) store: fn(&mut GdcmApp, J, J::Output),
     /// Adds the unfinished work to the displayed progress.
     pub(super) report: fn(&JobQueue<J>, &mut Background),

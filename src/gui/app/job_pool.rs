@@ -1,7 +1,7 @@
 //! Thread pool for the window's background work. Each kind of job has its own queue (lane); a free
 //! thread runs the next job in the most urgent lane that has a waiting job and that the thread may
-//! serve. One thread is reserved for the live analysis and one for short jobs: long jobs never
-//! delay them.
+//! serve. One thread is reserved for the live analysis and one for short jobs, so that long jobs
+//! never make them wait for a thread.
 
 use std::num::NonZero;
 use std::sync::Arc;

@@ -2,10 +2,10 @@
 //! equal are treated as the same job; this is how running, finished and stopped jobs are
 //! recognised.
 //!
-//! The window calls [`JobQueue::want`] after each frame with the jobs that it needs now. A free
+//! The window requests the jobs that it needs now after each frame ([`JobQueue::want`]). A free
 //! pool thread takes the first unfinished job ([`Lane::begin`]), runs it and delivers its ending
-//! ([`Lane::run`]). A running job that is no longer wanted is cancelled, unless it serves a wanted
-//! one ([`Job::serves`]).
+//! ([`Lane::run`]). A running job that is no longer requested is cancelled, unless it serves a
+//! requested one ([`Job::serves`]).
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -21,17 +21,17 @@ use crate::gui::state::background::Steps;
 /// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
-/// Age up to which a job continues although it is no longer wanted: during a drag, every output is
-/// worth showing.
+/// Age up to which a job continues although it is no longer requested: during a drag, every output
+/// is worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
-/// Progress of a running job, and whether it is still wanted.
+/// Progress of a running job, and whether it should continue.
 #[derive(Debug)]
 struct Run {
     started: Instant,
     /// Whether the job is no longer requested, and serves no requested job.
     outdated: AtomicBool,
-    /// Whether the job was stopped.
+    /// Whether the job was stopped by hand, or its queue was dropped.
     stopped: AtomicBool,
     /// Completed steps.
     done: AtomicUsize,
@@ -50,7 +50,6 @@ impl Run {
         }
     }
 
-    /// Returns completed and total steps.
     fn steps(&self) -> Steps {
         Steps {
             done: self.done.load(Ordering::Relaxed),
@@ -72,7 +71,6 @@ impl Progress for Run {
     }
 }
 
-/// A started job.
 #[derive(Clone)]
 struct Running<J> {
     job: J,

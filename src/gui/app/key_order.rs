@@ -6,10 +6,10 @@ use egui::{Context, Event, Key, Plugin, RawInput};
 /// Forwards keyboard and pointer events in their original order.
 ///
 /// If a frame takes long, "3", Tab and "4" arrive in the same frame, in which a single field has
-/// the focus. Events that move the focus therefore get their own frame, and text typed after them
-/// goes to a later frame. After Tab another frame passes: a widget that receives the focus by
-/// Shift+Tab is informed only in the next frame, and selects its text, to be replaced, when that
-/// frame ends.
+/// the focus. Therefore a key that moves the focus gets its own frame, clicks share a frame only
+/// with clicks, and text typed after either goes to a later frame. After Tab another frame passes:
+/// a widget that receives the focus by Shift+Tab is informed only in the next frame, and selects
+/// its text, to be replaced, when that frame ends.
 #[derive(Default)]
 pub(super) struct KeyOrder {
     /// Events for later frames.

@@ -1,4 +1,4 @@
-//! Keys: the shortcuts in the command table.
+//! Keyboard shortcuts: finds the entries in the command table whose keys were pressed.
 
 use std::cmp::Reverse;
 
@@ -10,7 +10,8 @@ use crate::gui::commands::entry::Reach;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::escape_key::was_focused;
 
-/// Returns the commands for keys pressed since the last frame, and consumes the key events.
+/// Returns the commands whose shortcuts were pressed since the last frame, and consumes these key
+/// events.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     if !is_any_key_pressed(ctx) {
         return Vec::new();
@@ -46,7 +47,7 @@ struct ActiveShortcut {
     command: Command,
 }
 
-/// Returns the shortcuts of enabled entries that the focus allows.
+/// Returns the shortcuts of enabled entries that the focus, forms and popups allow.
 fn active_shortcuts(ctx: &Context, state: &State) -> Vec<ActiveShortcut> {
     let is_focused = ctx.memory(|memory| memory.focused().is_some());
     let is_free = !is_focused

@@ -1,5 +1,5 @@
-//! Starts the program: from the command line to a window on the screen, and the message if there is
-//! none.
+//! Starts the program: from the command line to a window on the screen, or to a message if no
+//! window can be opened.
 //!
 //! The requested file is read in a thread while the window library starts (`first_file.rs`).
 //! Whether an error means "no window" or "the window has ended" depends on whether a frame was

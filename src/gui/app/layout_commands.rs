@@ -24,7 +24,7 @@ pub(super) enum NextFocus {
 }
 
 impl NextFocus {
-    /// Number of frames in which a newly opened section draws its fields.
+    /// Number of frames after which a newly opened section has drawn its fields.
     const FRAMES: u8 = 3;
 
     fn field(name: &'static str) -> Self {
@@ -82,7 +82,8 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the page after or before the shown page in the front view, if the view has pages.
+    /// Shows the page after or before the shown page in the front view, wrapping around, if the
+    /// view has several pages.
     fn turn_page(&mut self, forward: bool) {
         let view = self.state.display.layout.arrangement.view();
         let pages = (view_content(view).pages)(&self.state);
@@ -100,8 +101,8 @@ impl GdcmApp {
         self.ctx.request_repaint();
     }
 
-    /// Moves the focus to a field, at the latest after `frames` further frames: a section that has
-    /// just been opened draws its fields only in this frame.
+    /// Moves the focus to a field; if it is not drawn yet, as in a section that has just been
+    /// opened, tries again in up to `frames` further frames.
     fn focus_field_within(&mut self, name: &'static str, frames: u8) {
         if !focus_field(&self.ctx, name) && frames > 0 {
             let frames = frames - 1;
@@ -109,7 +110,7 @@ impl GdcmApp {
         }
     }
 
-    /// Moves the focus to the requested target, unless a form covers it.
+    /// Moves the focus to the requested target; waits while a form or another modal layer is open.
     pub(super) fn move_focus(&mut self) {
         if self.state.forms.shown.is_some()
             || self.ctx.memory(|memory| memory.top_modal_layer().is_some())

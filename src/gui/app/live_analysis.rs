@@ -6,7 +6,7 @@
 //!    (`background_jobs.rs`) passes it to its queue, also after each frame.
 //! 3. The job sends the displayed condition's result (`Results::first`) before the others.
 //! 4. `show_analysis` stores the whole analysis and its request number (`Results::received`), and
-//!    wants the jobs that complete it: curves, error bars, proofs.
+//!    requests the jobs that complete it: curves, error bars, proofs.
 //! 5. `take_proof` receives a proof and starts the job again, with the same request number.
 
 use std::sync::Arc;
@@ -43,8 +43,8 @@ impl GdcmApp {
         self.start_live_analysis();
     }
 
-    /// Begins and ends the settings session when the panel is opened and closed, by whichever
-    /// command.
+    /// Begins and ends the settings session when the settings panel is opened and closed, by
+    /// whichever command.
     fn follow_settings_panel(&mut self) {
         let is_open = self.state.display.layout.settings_open;
         match (is_open, self.state.settings_session.is_some()) {
@@ -74,7 +74,7 @@ impl GdcmApp {
     }
 
     /// Records that the live analysis was stopped, by the user or by a fault; the displayed results
-    /// remain.
+    /// remain, and new proofs are dropped.
     pub(super) fn live_analysis_stopped(&mut self) {
         self.work.new_proofs.clear();
         let results = &mut self.state.results;

@@ -66,7 +66,7 @@ impl GdcmApp {
         });
     }
 
-    /// Adds the models that were read to the import. Additional files count as far as they were
+    /// Adds the models found in the files to the import. Additional files count as far as they were
     /// read before a stop. Files read again replace all models, so after a stop they are ignored.
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
         let Some(import) = &mut self.state.assembling else {
@@ -121,12 +121,12 @@ struct ReadingReport {
     number: u64,
     replies: ReplySender,
     stop: Arc<AtomicBool>,
-    /// Bytes read at the last progress report.
+    /// Bytes of the current file that had been read at the last progress report.
     reported: Cell<u64>,
 }
 
 impl ReadingReport {
-    /// Changes the displayed progress, unless a newer reading has begun.
+    /// Changes the displayed progress, unless a newer reading has begun or the import has ended.
     fn send(&self, change: impl FnOnce(&mut Option<ReadingProgress>) + Send + 'static) {
         let number = self.number;
         self.replies.send(move |app| {

@@ -23,7 +23,7 @@ impl GdcmApp {
         self.notify(NoticeKind::Done, Activity::Other, message, None);
     }
 
-    /// Shows a toast about a completed activity, with what can be done next; resolves its earlier
+    /// Shows a toast about a completed activity, with an optional next action; resolves its earlier
     /// failures.
     pub(super) fn notify_done_with(
         &mut self,
@@ -34,7 +34,7 @@ impl GdcmApp {
         self.notify(NoticeKind::Done, activity, message, action);
     }
 
-    /// Shows a toast about written files, with the folder of `path`.
+    /// Shows a toast about written files, with a button that opens the folder of `path`.
     pub(super) fn notify_written_to(&mut self, activity: Activity, message: Message, path: &Path) {
         let folder = path.parent().map(Path::to_owned);
         self.notify_done_with(activity, message, folder.map(NoticeAction::ShowFolder));
@@ -112,8 +112,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a panic: the interrupted work, that the decisions are kept, and the details to be
-    /// sent to the authors.
+    /// Reports a panic in a bar, which replaces an earlier one: the interrupted work, that the
+    /// decisions are kept, and the details to be sent to the authors.
     pub(super) fn report_fault(&mut self, work: &str, fault: &Fault) {
         let report = FaultReport {
             work: work.to_owned(),

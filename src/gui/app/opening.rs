@@ -4,7 +4,7 @@
 //!    `reload.rs` start with their own purposes.
 //! 2. `read` reads in a thread.
 //! 3. `answer_opened` asks first if unsaved decisions would be lost, and reports an error.
-//! 4. `show_read` shows what was read, as its purpose requires; for a new study, by `show`.
+//! 4. `show_read` shows what was read: by `show`, `show_reloaded` or `show_restored`.
 
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! Actions that wait for the engineer's consent.
 //!
 //! An action that would lose unsaved decisions waits for the form `Unsaved`
-//! ([`GdcmApp::ask_to_lose`]), which saves first, goes on, or cancels. A command that would
-//! overwrite files waits for the question in its own form ([`GdcmApp::ask_to_overwrite`]); if
+//! ([`GdcmApp::ask_to_lose`]), which offers to save first, to go on, or to cancel. A command that
+//! would overwrite files waits for the question in its own form ([`GdcmApp::ask_to_overwrite`]); if
 //! confirmed, the command is repeated with permission to replace them. Opening another form forgets
 //! both, except that the form Save keeps an action that continues after saving.
 
@@ -38,7 +38,7 @@ pub(super) struct PostponedActions {
     /// Treatment of existing files: [`Existing::Replace`] only while a confirmed command is carried
     /// out.
     pub(super) existing: Existing,
-    /// Whether the window is closing: the engineer has already been asked about unsaved decisions.
+    /// Whether the window is closing; the engineer is not asked again about unsaved decisions.
     pub(super) closing: bool,
 }
 

@@ -52,7 +52,7 @@ impl Reader {
         self.newest == number
     }
 
-    /// Stops the reading in progress; the content read so far is used.
+    /// Stops the reading in progress; the content read so far may still be used.
     pub(super) fn stop(&self) {
         self.stop.store(true, Ordering::Release);
     }

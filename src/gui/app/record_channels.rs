@@ -7,9 +7,9 @@ use gdcm_sysid::records::RecordChannels;
 use super::GdcmApp;
 
 impl GdcmApp {
-    /// Returns the channels expected in a condition's records: the dataset's channels, at the given
-    /// locations if the dataset was made from records. Topics are resampled as the identification
-    /// band requires.
+    /// Returns the channels expected in a condition's records: the dataset's channels, with the
+    /// names and units in the files if the dataset was made from records. Topics are resampled as
+    /// the identification band requires.
     pub(super) fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
         let [_, end] = self.state.identified_band(condition);

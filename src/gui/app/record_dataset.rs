@@ -17,7 +17,7 @@ use crate::gui::state::wanted_dataset::WantedDataset;
 use crate::message::Message;
 use crate::message_codes::layout_problem_code;
 
-/// Maximum count of problems reported individually.
+/// Maximum count of reported problems if no record is suitable.
 const MOST_PROBLEMS: usize = 6;
 
 /// Sources and settings of a dataset that is to be made from records.

@@ -14,8 +14,8 @@ use crate::gui::state::records::RecordsSnapshot;
 use crate::message::Message;
 
 impl GdcmApp {
-    /// Applies an edit to a condition's records, which makes the identification outdated; it can be
-    /// undone.
+    /// Applies an edit to a condition's records, after which the identification is outdated; the
+    /// edit can be undone.
     pub(super) fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);

@@ -35,8 +35,8 @@ impl GdcmApp {
     /// conditions' records. In each frame:
     ///
     /// 1. adapt the displayed condition's records to its band, and in the Records view show a
-    ///    record that excites the input in focus;
-    /// 2. stop here if no view shows records, if files are being read, or if every condition has
+    ///    record that excites the input in focus, unless the engineer has chosen a record;
+    /// 2. stop here if no view shows records, if records are being read, or if every condition has
     ///    an entry;
     /// 3. if none of the unread conditions can have records of its own, only create their entries;
     /// 4. otherwise read their records in a thread, which creates the entries when it ends.

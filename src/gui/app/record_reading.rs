@@ -63,8 +63,8 @@ impl OwnRecords {
         }
     }
 
-    /// Reads the conditions' own records; `ids` selects the conditions. Every condition gets an
-    /// entry, even an empty one.
+    /// Reads the own records of the conditions `ids` into `found`. Each of these conditions gets an
+    /// entry, even if it has no records.
     ///
     /// # Errors
     /// The fault in an embedded record; faults in files are collected in `found`.

@@ -21,7 +21,7 @@ use crate::message::Message;
 /// Maximum time that a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 
-/// State of the recovery of unsaved decisions.
+/// The recovery thread's handle, and the offers to restore lost studies.
 pub(super) struct Recovery {
     pub(super) autosave: Autosave,
     /// Set once the window has drawn a frame; gives the code that opened the window access to the
@@ -52,7 +52,8 @@ impl GdcmApp {
         }
     }
 
-    /// Keeps unsaved decisions in the recovery file; deletes the file once they are saved.
+    /// Passes unsaved decisions to the recovery thread; if there are none, lets it delete the
+    /// recovery file.
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
             let study = self.state.study.clone();
@@ -67,7 +68,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reads lost decisions to open them; the bar disappears once they are open.
+    /// Starts reading the decisions in an offer; [`Self::show_restored`] opens them and closes the
+    /// offer's message bar.
     pub(super) fn restore(&mut self, offer: usize) {
         if let Some(Some(lost)) = self.recovery.offers.get(offer) {
             let path = lost.path().to_owned();
@@ -79,7 +81,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows restored decisions, which are still unsaved.
+    /// Shows restored decisions, which are still unsaved, and closes their offer.
     pub(super) fn show_restored(&mut self, offer: usize, opened: Opened) {
         let Some(lost) = self.recovery.offers.get_mut(offer).and_then(Option::take) else {
             return;

@@ -30,7 +30,7 @@ impl GdcmApp {
         }
     }
 
-    /// Closes the offer to reload; the open dataset remains until its file changes again.
+    /// Closes the offer to reload; the next one appears when the file changes again.
     pub(super) fn keep_open(&mut self) {
         self.state
             .notices

@@ -68,7 +68,7 @@ impl GdcmApp {
         });
     }
 
-    /// Collects what a report on an analysis is made of.
+    /// Collects the inputs for a report on an analysis.
     fn report_inputs(&self, analysis: Arc<Analysis>) -> Arc<ReportInputs> {
         let source = self.report_source();
         Arc::new(ReportInputs {
@@ -98,7 +98,7 @@ impl GdcmApp {
         let analysis = self.state.results.analysis.clone()?;
         let known = self.state.forms.export.report_inputs.as_ref();
         let inputs = match known {
-            // Saving the study in the dialog changes its name in the report.
+            // The source changes if the study is saved while the dialog is open.
             Some(inputs)
                 if Arc::ptr_eq(&inputs.shown, &analysis)
                     && inputs.source == self.report_source() =>

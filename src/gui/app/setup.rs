@@ -16,7 +16,7 @@ use crate::message::Message;
 /// Application id on the desktop, and name of the data directory.
 pub(super) const APP_ID: &str = "gdcm";
 
-/// Window setup; tests use other values than the program.
+/// Window setup; by default nothing is kept on disk.
 #[derive(Clone)]
 pub struct Setup {
     pub engine: EngineMaker,

@@ -47,7 +47,7 @@ pub(super) fn trade_off_job(state: &State) -> Option<TradeOffJob> {
     TradeOffJob::new(state.analysis()?, state.condition().id())
 }
 
-/// Returns the job that computes what constraining or releasing each response would cost, in the
+/// Returns the job that computes the cost of constraining or releasing each response in the
 /// displayed condition; `None` without a result, and while a setting is dragged.
 pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
     if state.is_setting_dragged() {

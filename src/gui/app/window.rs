@@ -42,7 +42,7 @@ const REPAINT_AFTER: Duration = Duration::from_millis(160);
 /// Key for the preferences in eframe's storage.
 pub(super) const PREFERENCES: &str = "preferences";
 
-/// The program's window.
+/// The window: the state that its views show, and the parts that use files and threads.
 pub struct GdcmApp {
     pub(super) ctx: Context,
     pub(super) state: State,
@@ -121,7 +121,8 @@ impl GdcmApp {
         Ok(app)
     }
 
-    /// Shows what the engineer sees first: a problem, the start page, or the guided tour.
+    /// Shows a problem found at the start, or else the start page if the preferences ask for it; at
+    /// the first start also the guided tour.
     fn show_first_page(&mut self, trouble: Option<Message>, offers_tour: bool) {
         self.state.on_start_page = self.state.example.is_some()
             && self.state.display.layout.opens_with == OpensWith::StartPage
@@ -138,7 +139,6 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the state shown by the window.
     pub fn state(&self) -> &State {
         &self.state
     }

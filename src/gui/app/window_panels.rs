@@ -23,7 +23,8 @@ use crate::gui::views::records::{records_panel_ui, records_sheet_ui};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 
-/// Minimum window width \[pt\] for full names and the full left panel.
+/// Minimum window width \[pt\] for full names and, unless the engineer has chosen otherwise, for
+/// the full left panel.
 const WIDE: f32 = 1400.0;
 
 /// Draws the bars at the top and at the foot, and between them: the model import, if it is open;
@@ -69,7 +70,8 @@ const CONDITIONS_PART: f32 = 0.365;
 
 /// Draws the left panel: as a narrow rail, with the settings beside it while they are open; or in
 /// full, with the condition list above. Below the list are the settings while they are open, else
-/// what belongs to the view in front: records, physics parameters or, for the others, models.
+/// the list that belongs to the view in front: records, physics parameters or, for other views,
+/// models.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     let layout = &state.display.layout;

@@ -8,8 +8,9 @@ use gdcm_model::message_text::{sanitized, sanitized_path};
 /// Usable zoom factors.
 const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
 
-/// Replaces an unusable zoom factor in eframe's preferences file with 1; returns a caution about
-/// it. The file is not parsed: the number follows the first "zoom_factor:".
+/// Replaces an unusable zoom factor in eframe's preferences file with 1, and returns a caution;
+/// `None` if the stored factor is usable, or if there is none. The file is not parsed: the number
+/// follows the first "zoom_factor:".
 pub(super) fn repair_zoom(preferences: &Path) -> Option<String> {
     const KEY: &str = "zoom_factor:";
     let text = std::fs::read_to_string(preferences).ok()?;

@@ -37,7 +37,7 @@ const GAP: f32 = 8.0;
 /// Gap between the read-out and the plots above and below it \[pt\].
 const READOUT_GAP: f32 = 6.0;
 
-/// Returns the pages; none if the window has room for both plots.
+/// Returns the pages "response" and "schedule error"; none if both plots are shown side by side.
 pub fn across_pages(state: &State) -> Vec<PageEntry> {
     if shows_both(state) {
         return Vec::new();
@@ -227,7 +227,8 @@ pub fn across_view_ui(
     state.display.frequency.across_error = errors;
 }
 
-/// Returns the message shown if there are no schedule errors.
+/// Returns the message shown where the schedule-error curves are missing: no analysis, no schedule,
+/// or nothing to compare.
 fn error_message(state: &State) -> String {
     let Some(analysis) = state.analysis() else {
         return state.results.absence().to_owned();
@@ -258,7 +259,7 @@ fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
     })
 }
 
-/// Plot of magnitude above phase, with a curve for each condition.
+/// Plot of magnitude above phase, with a curve for each condition and role.
 struct AcrossPlot<'a> {
     state: &'a State,
     scene: BodeScene<'a>,
@@ -369,7 +370,7 @@ fn fit_across(state: &mut State) {
     }
 }
 
-/// Returns the job that computes the view's responses: those of the models in each condition.
+/// Returns the job that computes the models' responses in each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
     AcrossJob::for_conditions(&state.study.dataset, state.analysis(), grid)

@@ -18,8 +18,9 @@ const SAMPLE: f32 = 18.0;
 const MIDDLE: u8 = 128;
 /// Number of colour steps in the key.
 const KEY_STEPS: u8 = 24;
-/// Size of the colour key \[pt\].
+/// Width of the colour key \[pt\].
 const KEY_WIDTH: f32 = 120.0;
+/// Height of the colour key \[pt\].
 const KEY_HEIGHT: f32 = 8.0;
 /// Distance between the key and its texts \[pt\].
 const TEXT_GAP: f32 = 8.0;

@@ -11,7 +11,7 @@ use crate::gui::plot::readout_strip::{Readout, ReadoutCell};
 use crate::gui::plot::value_unit::ValueUnit;
 use crate::gui::plot::{BodeCurve, CurveId, Pane};
 
-/// Curves whose values are listed.
+/// Source of the listed values: the curves, the displayed condition, the band and the unit.
 pub(super) struct AcrossReadout<'a> {
     pub(super) curves: &'a AirspeedCurves,
     /// Displayed condition.
@@ -82,7 +82,8 @@ impl AcrossReadout<'_> {
         })
     }
 
-    /// Formats the difference between a role's largest and smallest magnitude over the conditions.
+    /// Formats the difference between a role's largest and smallest magnitude at `omega` over the
+    /// conditions; "–" without curves.
     fn spread_text(&self, role: AcrossRole, omega: f64) -> String {
         let mut least = f64::INFINITY;
         let mut most = f64::NEG_INFINITY;

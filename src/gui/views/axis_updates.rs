@@ -5,8 +5,8 @@ use egui::Ui;
 use crate::gui::plot::steady_range::AxisUpdate;
 use crate::gui::state::window_state::State;
 
-/// Returns how axes follow the displayed results: they follow complete results, and only grow while
-/// the pointer drags.
+/// Returns how axes follow the displayed results: not while newer results are awaited, only to
+/// larger ranges while a pointer button is down, else completely.
 pub(super) fn axis_update(ui: &Ui, state: &State) -> AxisUpdate {
     if state.results.is_waiting() {
         AxisUpdate::Pending

@@ -137,8 +137,7 @@ pub(super) fn bandwidth_numbers_ui(
 }
 
 /// Returns the commands that show a response in a condition in the Bode view; marks at the
-/// frequencies that define bandwidth and phase delay for the model in a role replace pinned
-/// cursors.
+/// frequencies that define bandwidth and phase delay of the model in `role` replace pinned cursors.
 pub(super) fn bode_commands(
     requirements: &Requirements,
     condition: ConditionId,

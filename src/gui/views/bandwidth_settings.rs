@@ -86,7 +86,7 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
 }
 
-/// Draws a check box for each of the standard's boundary sets whose axis the dataset has.
+/// Draws a check box for each boundary set from ADS-33E-PRF whose axis the dataset has.
 pub(super) fn standard_levels_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let outputs = state.dataset().outputs();
     for standard in &STANDARD_LEVELS {

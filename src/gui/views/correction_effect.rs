@@ -21,7 +21,7 @@ const MATCHED_S: f64 = 0.5e-3;
 ///
 /// ```text
 /// left gain   G / k, in dB
-/// left delay  D - tau, in s; negative if the corrected model lags
+/// left delay  D - τ, in s; negative if the corrected model lags
 /// ```
 pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;

@@ -262,8 +262,8 @@ impl CouplingsWords<'_> {
 
     fn matrices_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in coupling_matrix_tables(self.assessment, self.state.dataset()) {
-            // Values in parentheses lie within their error bar, so they are not distinguishable
-            // from zero.
+            // Values in parentheses are smaller than their error bar, so they are not
+            // distinguishable from zero.
             let look = TableLook {
                 color: &|row, column| {
                     if table.rows[row][column].starts_with('(') {
@@ -300,9 +300,9 @@ impl CouplingsWords<'_> {
         table_block_ui(ui, table, &look, self.palette, commands);
     }
 
-    /// Builds the loop table: in each condition, the minimum singular value of `I - K H` with its
-    /// frequency, and the on-axis response that the couplings change most above the band, with that
-    /// change.
+    /// Builds the loop table: in each condition, the minimum singular value of `I - K H` (feedback
+    /// K, physics responses H; M16) with its frequency, and the on-axis response that the couplings
+    /// change most above the band, with that change.
     fn loop_table(&self) -> Table {
         let dataset = self.state.dataset();
         let columns = [

@@ -10,7 +10,8 @@ use gdcm_study::{CouplingCorrection, PhaseCorrection};
 
 use crate::gui::state::window_state::State;
 
-/// Returns the job that assesses the couplings.
+/// Returns the job that assesses the requested couplings; if none are requested, mixing and
+/// feedback.
 pub fn couplings_job(state: &State) -> CouplingsJob {
     CouplingsJob {
         study: state.study.clone(),

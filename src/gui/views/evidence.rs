@@ -1,6 +1,7 @@
 //! Evidence view: significant differences between net gains at equal airspeed, sources of their
 //! scatter, and the scheduling variables and schedule form that they require (M13). A difference is
-//! significant if it exceeds the one expected from the uncertainty of trim and identification.
+//! significant if the uncertainty of trim and identification does not explain it at the confidence
+//! level.
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
@@ -79,7 +80,6 @@ pub fn evidence_view_ui(
     state.display.gains.evidence_tables = sortings;
 }
 
-/// Context for drawing the evidence.
 struct EvidenceTables<'a> {
     uncertainty: &'a Uncertainty,
     palette: &'a Palette,

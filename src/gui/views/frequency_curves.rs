@@ -131,9 +131,9 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Adds to the curves what depends on the pointer and on running computations: a label for a
-/// scheduled curve from older settings, and for each model its highlight and what a click on it
-/// does. `reference` is the model with which error curves are compared; it cannot be rejected.
+/// Adds the parts that depend on the pointer and on running computations: a label for a scheduled
+/// curve from older settings, and for each model its highlight and what a click on it does.
+/// `reference` is the model with which error curves are compared; it cannot be rejected.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,
@@ -160,7 +160,7 @@ fn is_highlighted(state: &State, id: &ModelId, is_reference: bool) -> bool {
     is_hovered || (is_selected && !is_reference)
 }
 
-/// Adds to a model's description what a click on its curve does.
+/// Adds the effect of a click to a model's description; for the reference, its role instead.
 fn add_click_note(curve: &mut BodeCurve, is_reference: bool) {
     let note = if is_reference {
         "reference for the errors"

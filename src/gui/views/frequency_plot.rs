@@ -24,7 +24,6 @@ use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, bode_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Plot over frequency in the displayed condition, to be drawn with [`Self::ui`].
 pub(super) struct FrequencyPlot<'a> {
     pub(super) state: &'a State,
     /// Scene without cursors, values and chips, which [`Self::ui`] adds.

@@ -82,7 +82,7 @@ impl FigureWords for GainPlots<'_> {
     }
 
     /// Describes a dot: condition, value, error bar, scheduled value, bounds, use in the schedule,
-    /// and what clicks do.
+    /// and the effect of clicks.
     fn status_text(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else {
             return None;

@@ -23,8 +23,8 @@ use crate::gui::widgets::tables::{TableLook, table_block_ui};
 /// Initial table width, as a share of the view width.
 const TABLE_PART: f32 = 0.5;
 
-/// Draws the gain and phase added by leads up to ten times the band's upper end, and the channel
-/// table.
+/// Draws the gain and phase added by leads in the response in focus, up to ten times the band's
+/// upper end, and the channel table.
 pub fn leads_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -10,7 +10,6 @@ use crate::gui::widgets::number_entry::number_entry_ui;
 /// Field width \[pt\].
 const FIELD: f32 = 56.0;
 
-/// Text field for a limit, with its unit conversion.
 pub(super) struct LimitField {
     /// Accessible name.
     name: String,

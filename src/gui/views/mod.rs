@@ -135,7 +135,6 @@ pub fn view_content(view: View) -> ViewContent {
 /// Draws the right panel below the verdict.
 pub type SideUi = fn(&mut Ui, &State, &Palette, &mut Vec<Command>);
 
-/// Content of a view.
 #[derive(Clone, Copy)]
 pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
@@ -182,7 +181,6 @@ pub struct PageEntry {
 }
 
 impl PageEntry {
-    /// Creates the entry for a page, with the command that shows it.
     fn new(page: ViewPage, is_shown: bool) -> Self {
         Self {
             words: page.words(),
@@ -376,7 +374,8 @@ fn modes_needs(state: &State) -> Vec<Need> {
     }
 }
 
-/// Returns the assessment of the newest analysis; none without one, or while a setting is dragged.
+/// Returns the job that assesses the newest analysis; none without an analysis, or while a setting
+/// is dragged.
 fn assessment_needs(state: &State) -> Vec<Need> {
     if state.is_setting_dragged() {
         return Vec::new();

@@ -17,9 +17,9 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageOption;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws magnitude ratio and phase difference to the identified model for every kept physics model
-/// and for the representative with each correction, in the response in focus. The Bode view takes
-/// over the frequency range.
+/// Draws magnitude ratio and phase difference to the identified model for every physics model that
+/// is not rejected and for the representative with each correction, in the response in focus. The
+/// Bode view takes over the frequency range.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -12,10 +12,9 @@ use gdcm_study::jobs::requirement_jobs::{
 
 use crate::gui::state::window_state::State;
 
-/// Computation that a view needs in addition to the current analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Need {
-    /// All models' modes in the condition.
+    /// All models' modes in the displayed condition.
     Modes(ModesJob),
     Assessment(AssessmentJob),
     /// Models' responses in each condition.

@@ -25,7 +25,8 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::panel_layout::restore_panel_size;
 use crate::gui::widgets::tables::{TableLook, table_block_ui};
 
-/// Draws each displayed response's net gain over airspeed.
+/// Draws each displayed response's net gain over airspeed and, if switched on, the evidence beside
+/// the plots.
 pub fn net_gain_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -26,7 +26,7 @@ const HELP_HEIGHT: f32 = 30.0;
 /// Width that the controls need in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// Returns the description in the view's header.
+/// Returns the text beside the title: plotted quantity, displayed responses and error bars.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.gains.hide_bars {

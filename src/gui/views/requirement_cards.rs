@@ -53,7 +53,8 @@ pub(super) fn card_ui(
     area.with_min_y(row.bottom())
 }
 
-/// Returns the colour for the model in a role.
+/// Returns the colour for texts about a role's model; the corrected and the scheduled model share a
+/// colour.
 pub(super) fn role_color(palette: &Palette, role: RequirementRole) -> Color32 {
     let hue = match role {
         RequirementRole::Physics => Hue::Perturbed,

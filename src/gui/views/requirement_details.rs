@@ -227,7 +227,6 @@ fn detail_words(detail: RequirementDetail) -> PageWords {
     }
 }
 
-/// Details about the selected requirement.
 struct Details<'a> {
     requirements: &'a Requirements,
     requirement: Requirement,

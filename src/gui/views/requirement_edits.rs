@@ -8,7 +8,8 @@ use gdcm_study::decisions::requirement_settings::{RequirementPart, RequirementSe
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
 
-/// Returns the command that changes a part of the requirement settings.
+/// Returns the command that applies `change` to the requirement settings. Consecutive changes of
+/// the same `part` form one undo step.
 pub(super) fn requirement_edit(
     state: &State,
     part: RequirementPart,

@@ -36,7 +36,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium,
 
 /// Window width from which the grid shows all groups and the drawer all details \[pt\].
 pub(super) const FULL_WIDTH: f32 = 1400.0;
-/// Column widths \[pt\].
+// Column widths [pt].
 const GROUP: f32 = 94.0;
 const NAME: f32 = 158.0;
 const UNIT: f32 = 28.0;
@@ -59,7 +59,7 @@ const STRIP: f32 = 5.0;
 const CELL_GAP: f32 = 2.0;
 /// Distance from a number to its cell's right edge \[pt\].
 const NUMBER_MARGIN: f32 = 8.0;
-/// Row indentation in an open group \[pt\].
+/// Indentation of group names and requirements if groups are folded \[pt\].
 const INDENT: f32 = 13.0;
 /// Share of the warning colour in the background of a cell outside its limit.
 const OUTSIDE_TINT: f32 = 0.32;
@@ -264,7 +264,7 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws the condition numbers; a click sorts by number.
+    /// Draws the condition numbers; a click on the row's name sorts the columns by number.
     fn conditions_ui(&self, ui: &mut Ui, row: Rect, commands: &mut Vec<Command>) {
         self.heading_ui(ui, row, "condition", GridOrder::Number, commands);
         let shown = self.state.condition().id();
@@ -291,7 +291,7 @@ impl GridPainter<'_> {
             .text(at, Align2::RIGHT_CENTER, "limit", small(), color);
     }
 
-    /// Draws the conditions' airspeeds; a click sorts by airspeed.
+    /// Draws the conditions' airspeeds; a click on the row's name sorts the columns by airspeed.
     fn airspeeds_ui(&self, ui: &mut Ui, row: Rect, commands: &mut Vec<Command>) {
         self.heading_ui(ui, row, "airspeed, kt", GridOrder::Airspeed, commands);
         for (place, column) in self.columns.iter().enumerate() {

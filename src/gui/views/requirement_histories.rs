@@ -41,8 +41,8 @@ const SHARES_GAP: f32 = 7.0;
 /// Relative height of the test-input panel.
 const INPUT_WEIGHT: f64 = 0.4;
 
-/// Draws the selector between the condition's records, the held-out ones first, and a test input;
-/// draws nothing without records.
+/// Draws the selector between the condition's records in use, the held-out ones first, and a test
+/// input; draws nothing without records in use.
 pub(super) fn record_choice_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let mut choices: Vec<(Option<usize>, &str, &str)> = Vec::new();
@@ -291,7 +291,7 @@ pub(super) fn time_numbers_ui(
 }
 
 /// Draws the fields for the test input: shape, size and duration; above them, the record being
-/// read, or that the condition has none.
+/// read, or that the condition has no record in use.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     if let Some(reading) = &state.records.reading {
         ui.label(palette.small(format!("reading {reading} …")));

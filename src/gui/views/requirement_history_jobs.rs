@@ -74,7 +74,7 @@ pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     })
 }
 
-/// Returns the job for the responses to the test input.
+/// Returns the job for the responses to the test input; `None` without an analysis.
 fn test_job(state: &State) -> Option<TestAnswersJob> {
     Some(TestAnswersJob {
         analysis: current_analysis(state)?.into(),

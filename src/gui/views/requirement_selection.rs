@@ -31,7 +31,6 @@ pub fn shown_grid(state: &State) -> Option<RequirementGrid> {
     }))
 }
 
-/// Returns the names for the study's requirements.
 pub(super) fn requirement_names(state: &State) -> RequirementNames<'_> {
     RequirementNames {
         dataset: state.dataset(),
@@ -103,7 +102,7 @@ pub(super) fn select_commands(
     commands
 }
 
-/// Returns the column indices in display order.
+/// Returns the column indices in display order: by number or by airspeed, reversed if so chosen.
 pub(super) fn column_order(grid: &RequirementGrid, display: &RequirementsDisplay) -> Vec<usize> {
     let mut columns: Vec<usize> = (0..grid.conditions.len()).collect();
     match display.order {

@@ -29,7 +29,7 @@ use crate::gui::widgets::panel_layout::in_line_ui;
 /// Height of the line with the counts \[pt\].
 const COUNTS: f32 = 24.0;
 
-/// Returns the view's context: what is compared, and that it is no qualification.
+/// Returns the text beside the title: the compared models, and that this is no qualification.
 pub fn requirements_words(_: &State) -> String {
     "corrected vs identified models, and vs held-out records; not a qualification".to_owned()
 }

@@ -20,7 +20,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Index of the net-gain plot; the other plot shows J.
 const NET_GAIN_PLOT: usize = 0;
-/// Whether significant differences are marked: not on this page, only in the net-gain view.
+/// Whether significant differences are marked: not here, only in the net-gain view.
 const SHOWS_DIFFERENCES: bool = false;
 
 /// Draws net gain and J over airspeed for the response in focus; a click selects a condition.
@@ -71,7 +71,7 @@ pub(super) fn schedule_cost_view_ui(
 /// 1. Plots of the net gain, with error bars if they are shown, and of J.
 /// 2. Dims error bars from earlier settings.
 /// 3. Adds the previous analysis in grey, behind the net gains only: J has no previous marks.
-/// 4. Rings the dot of the displayed condition, and removes the other labels.
+/// 4. Rings the dot of the displayed condition, and removes the other labels and all brackets.
 /// 5. Stores the axis ranges, which must include the marks added before.
 fn cost_figure(state: &State, pair: Pair) -> Figure {
     let Some(analysis) = state.analysis() else {
@@ -90,7 +90,7 @@ fn cost_figure(state: &State, pair: Pair) -> Figure {
     figure.with_ranges()
 }
 
-/// Returns the page's context: "LON → Q, schedule against the optimum of each condition".
+/// Returns the text beside the title: "LON → Q, schedule against the optimum of each condition".
 pub(super) fn schedule_cost_words(state: &State) -> String {
     let name = state.dataset().pair_name(state.display.selection.pair);
     format!("{name}, schedule against the optimum of each condition")

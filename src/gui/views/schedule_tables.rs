@@ -2,7 +2,7 @@
 //! each polynomial degree in the signed delays, residuals, and coefficients; with a cache for the
 //! comparisons. The net-gain view and the evidence view draw them.
 //!
-//! **Fit* is a form's error in the conditions to which it is fitted, *left out* its error in each
+//! *Fit* is a form's error in the conditions to which it is fitted, *left out* its error in each
 //! condition if it is fitted to the others.
 
 use std::sync::Arc;
@@ -25,7 +25,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Evidence for each schedule form; its conditions are in the order of `conditions`.
+/// Errors of each schedule form; the residuals are in the order of `conditions`.
 #[derive(Clone, Copy)]
 pub(super) struct ScheduleEvidence<'a> {
     pub(super) conditions: &'a [ConditionId],
@@ -120,7 +120,8 @@ fn kind_name(kind: ScheduleKind) -> String {
     }
 }
 
-/// Formats a root mean square error in `ln k` as a relative gain error \[%\]; "–" for `None`.
+/// Formats a root mean square error in the logarithm of the net gain as a relative error \[%\]; "–"
+/// for `None`.
 fn percent_text(rms_ln: Option<f64>) -> String {
     match rms_ln {
         Some(rms_ln) => format!("{:.2}", 100.0 * rms_ln),
@@ -136,8 +137,8 @@ fn delay_text(error_s: Option<f64>) -> String {
     }
 }
 
-/// Computes the root mean square residual in `ln k` over these responses; `None` without responses,
-/// or if a response has no residuals.
+/// Computes the root mean square residual in the logarithm of the net gain over these responses;
+/// `None` without responses, or if a response has no residuals.
 fn fit_rms_ln(form: &FormFit, pairs: &[Pair]) -> Option<f64> {
     if pairs.is_empty() {
         return None;

@@ -67,8 +67,7 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws a part of the panel; while the pointer is on that part, the panel shows its
-    /// explanation.
+    /// Draws a part of the panel; while the pointer is on that part, the panel shows `explanation`.
     pub(super) fn explained<T>(
         &mut self,
         explanation: &'static str,
@@ -81,7 +80,8 @@ impl SettingControls<'_, '_> {
         shown.inner
     }
 
-    /// Draws the caption, in the text colour if the setting has changed since the panel was opened.
+    /// Draws the caption, in the text colour if the setting has changed since the settings panel
+    /// was opened, otherwise dim.
     pub fn caption_ui(&mut self, setting: &'static Setting) {
         let words = setting_words(setting);
         let text = self.caption(setting);
@@ -97,8 +97,8 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the caption in its own row; if the setting has changed since the panel was opened,
-    /// also its former value, `end` points from the right. Returns the row's area.
+    /// Draws the caption in its own row; if the setting has changed since the settings panel was
+    /// opened, also its former value, `end` points from the right. Returns the row's area.
     fn captioned_row_ui(&mut self, setting: &'static Setting, end: f32) -> Rect {
         let width = self.ui.available_width();
         let (row, response) = self
@@ -122,7 +122,7 @@ impl SettingControls<'_, '_> {
         row
     }
 
-    /// Returns "was 1" if the setting has changed since the panel was opened.
+    /// Returns "was 1" if the setting has changed since the settings panel was opened.
     fn was_text(&self, setting: &'static Setting) -> Option<String> {
         let previous = self.state.previous_setting(setting)?;
         Some(format!("was {}", setting.text(previous)))
@@ -293,9 +293,9 @@ impl SettingControls<'_, '_> {
         self.end(entered);
     }
 
-    /// Draws a number in a row with its caption and the value from when the panel was opened, and
-    /// below a slider on which that value is marked. Returns the slider rail's area; draws nothing
-    /// and returns `None` unless the setting is a number.
+    /// Draws a number in a row with its caption and its value at the time the settings panel was
+    /// opened, if that differs, and below a slider on which the former value is marked. Returns the
+    /// slider rail's area; draws nothing and returns `None` unless the setting is a number.
     pub fn slider_ui(&mut self, setting: &'static Setting) -> Option<Rect> {
         let Kind::Number { range, .. } = setting.kind else {
             return None;

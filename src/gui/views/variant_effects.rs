@@ -10,7 +10,8 @@ use super::net_gain_pairs::net_gain_pairs;
 use super::variant_analyses::variant_analysis;
 use crate::gui::state::window_state::State;
 
-/// Tabulates the effects for the current decisions and for each variant.
+/// Tabulates the effects: a row for each effect, a column for the current decisions and for each
+/// variant. A cell is "…" until its analysis is available.
 pub(super) fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
     let title =

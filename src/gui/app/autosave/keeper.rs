@@ -28,7 +28,8 @@ struct Pending {
     due: Instant,
 }
 
-/// State in the recovery thread.
+/// State of the recovery thread: the pending decisions, and the files that it has written or is to
+/// delete.
 pub(super) struct Keeper {
     /// Folder for recovery files; with `None`, decisions remain pending.
     folder: Option<PathBuf>,
@@ -64,7 +65,7 @@ impl Keeper {
         }
     }
 
-    /// Carries out tasks until the window closes.
+    /// Carries out tasks, and writes pending decisions when they are due, until the window closes.
     pub(super) fn work(mut self, tasks: &Receiver<Task>) {
         loop {
             match tasks.recv_timeout(self.wait()) {
@@ -90,7 +91,7 @@ impl Keeper {
         }
     }
 
-    /// Returns the time until the pending decisions are due.
+    /// Returns the time until the pending decisions are due; [`NEVER`] if there are none.
     fn wait(&self) -> Duration {
         match &self.pending {
             Some(pending) => pending.due.saturating_duration_since(Instant::now()),
@@ -98,8 +99,8 @@ impl Keeper {
         }
     }
 
-    /// Replaces the pending decisions by newer ones; the time at which they are due does not
-    /// change.
+    /// Replaces the pending decisions by newer ones, due at the same time. If none are pending, the
+    /// new ones are due after `keep_after`, or, without a folder, after [`NEVER`].
     fn postpone(&mut self, unsaved: Box<Unsaved>, decided: SystemTime) {
         let due = match &self.pending {
             Some(pending) => pending.due,
@@ -135,8 +136,9 @@ impl Keeper {
         Remains::new(locked(&self.kept).clone(), trouble)
     }
 
-    /// Writes the pending decisions, if any, then deletes the old files of restored ones. Decisions
-    /// that cannot be written remain pending for a retry; without a folder, nothing happens.
+    /// Writes the pending decisions, then deletes the old files of restored ones; does nothing
+    /// without pending decisions or without a folder. Decisions that cannot be written remain
+    /// pending for a retry.
     fn keep(&mut self) -> Result<(), KeepFailure> {
         let Some(folder) = &self.folder else {
             return Ok(());

@@ -12,7 +12,7 @@ const HEADING_WIDTH: f32 = 180.0;
 /// Maximum count of displayed columns; a note counts the others.
 const MOST_COLUMNS: usize = 60;
 
-/// Shows a field for each column heading; after a change the file is read again.
+/// Shows a field for each column heading; after a change all files are read again.
 pub(super) fn column_headings_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

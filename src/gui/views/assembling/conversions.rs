@@ -27,7 +27,8 @@ impl Conversion {
     }
 }
 
-/// Shows a factor for each declared conversion, then for each conversion that is still required.
+/// Shows a field with the factor for each declared conversion, then for each conversion that is
+/// still required.
 pub(super) fn conversions_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

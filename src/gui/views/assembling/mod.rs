@@ -1,5 +1,5 @@
 //! Importing models from several files: sources above, the dataset to be made below; on the left a
-//! table with a row per model, and the problem list; on the right the selected model, the channels
+//! table with a row per model, and the problem list; on the right the displayed model, the channels
 //! and a preview of the model's response.
 
 mod channels;
@@ -34,7 +34,7 @@ use preview::preview_ui;
 use problems::problems_ui;
 use source_bar::source_bar_ui;
 
-/// Draws the view, which covers everything below the menu.
+/// Draws the view, which covers everything between the menu bar and the status bar.
 pub fn assembling_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -70,7 +70,7 @@ pub fn assembling_ui(
     });
 }
 
-/// Draws the selected model and the channels above its response.
+/// Draws the displayed model and the channels above the model's response.
 fn right_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,

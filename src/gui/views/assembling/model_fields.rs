@@ -29,7 +29,6 @@ enum Effect {
     Parsed(fn(&mut RowRule, &str) -> Result<(), String>),
 }
 
-/// Field with its name, current text, and effect on the rule.
 struct Field {
     name: &'static str,
     value: String,
@@ -100,14 +99,14 @@ fn field_ui(
     }
     if fill_down_ui(ui, field.name) {
         commands.push(assembly.fill_down_change(assembly.selected, |rule| {
-            // The displayed text was accepted before, so it cannot be refused.
+            // The displayed text has the form that the field parses, so it cannot be refused.
             field.apply(&field.value, rule).unwrap_or_default();
         }));
     }
     ui.end_row();
 }
 
-/// Draws a button that copies the setting to the models below in the same folder; returns whether
+/// Draws the button for copying a setting to the models below in the same folder; returns whether
 /// it was clicked.
 pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
     let name = format!("Fill down {name}");

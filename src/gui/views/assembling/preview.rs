@@ -61,8 +61,8 @@ fn response_choice_ui(ui: &mut Ui, names: &[String], shown: usize, commands: &mu
     }
 }
 
-/// Recomputes the curve if another model or response has been selected, or the model's reading or
-/// the band has changed.
+/// Recomputes the curve if another model or response has been selected, or if the model's content
+/// or the band has changed.
 fn update_curves(preview: &mut Preview, found: &FoundModel, response: usize, band: (f64, f64)) {
     let mut is_same_model = false;
     if let Some(drawn) = &preview.drawn {

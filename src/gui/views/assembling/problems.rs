@@ -8,7 +8,8 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Maximum count of displayed lines; a note counts the others.
+/// Maximum count of lines about incomplete items, whose others a note counts, and of lines about
+/// unused content, whose others are dropped.
 const MOST_LINES: usize = 200;
 /// Maximum count of displayed tables without models. Others are shown once these have been read as
 /// models.

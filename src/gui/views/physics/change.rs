@@ -1,4 +1,5 @@
-//! Responses and poles in the displayed condition, without and with the physics parameters.
+//! Responses and poles in the displayed condition, with unchanged and with changed physics
+//! parameters.
 
 use egui::{RichText, Ui, Vec2, vec2};
 

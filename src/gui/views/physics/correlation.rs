@@ -108,8 +108,9 @@ impl CorrelationMatrix<'_> {
         }
     }
 
-    /// Paints a cell with a correlation or a share: stronger for a larger magnitude, in the warning
-    /// colour above `limit`; with the number if it is at least [`WRITTEN`] and fits.
+    /// Paints a cell with a correlation or a share: the larger its magnitude, the stronger; above
+    /// `limit`, in the warning colour. Adds the number if its magnitude is at least [`WRITTEN`] and
+    /// it fits.
     fn cell_ui(&self, ui: &Ui, place: Rect, value: f64, limit: f64) {
         let inner = place.shrink(1.0);
         let strength = value.abs().clamp(0.0, 1.0) as f32;

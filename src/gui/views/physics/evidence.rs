@@ -61,7 +61,6 @@ pub fn physics_evidence_ui(
         });
 }
 
-/// Diagnosis, and the selected parameter.
 struct Evidence<'a> {
     state: &'a State,
     assessment: &'a PhysicsAssessment,
@@ -135,7 +134,7 @@ impl Evidence<'_> {
         });
     }
 
-    /// Draws mean J and the channel delays without and with the parameters.
+    /// Draws mean J and the channel delays with unchanged and with changed parameters.
     fn effect_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = self.assessment.correction.name();
         self.heading_ui(ui, &format!("Effect of {name} on the correction"));
@@ -152,7 +151,8 @@ impl Evidence<'_> {
         }
     }
 
-    /// Returns whether any channel has a delay or a lead, without or with the parameters.
+    /// Returns whether any channel has a delay or a lead, with unchanged or with changed
+    /// parameters.
     fn has_delays(&self) -> bool {
         let Some(mean) = self.assessment.mean_delays_s() else {
             return false;
@@ -228,8 +228,8 @@ fn decision(name: &str, decision: ParameterDecision) -> Command {
     .into()
 }
 
-/// Tabulates what the diagnosis knows about a parameter; a row is omitted if its quantity is
-/// undefined, as for a value set by hand.
+/// Tabulates a parameter's diagnosis; a row is omitted if its quantity is undefined, as for a value
+/// set by hand.
 fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings) -> Table {
     let diagnosis = diagnosed.diagnosis;
     let mut table = Table::new("Evidence", ["quantity", "value"]);

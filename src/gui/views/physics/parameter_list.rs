@@ -1,5 +1,5 @@
 //! The dataset's physics parameters in the left panel: whether each is fitted, its plausible
-//! change, and how many model runs change it in the condition.
+//! change, and how many model runs change it in the displayed condition.
 
 use egui::{Button, RichText, ScrollArea, Sense, Ui, vec2};
 
@@ -105,7 +105,7 @@ fn row_ui(
     painted_text(ui, row, AT_RIGHT_END, &runs.to_string(), body(), color);
 }
 
-/// Counts the model runs that change a parameter in the condition.
+/// Counts the model runs that change a parameter in the displayed condition.
 fn runs_of(state: &State, name: &str) -> usize {
     let mut runs = 0;
     for model in state.condition().moved_models() {

@@ -94,7 +94,8 @@ impl SdAxis {
         }
     }
 
-    /// Returns the horizontal screen position for a change `z`, clamped to the axis.
+    /// Returns the horizontal screen position for a change of `z` plausible standard deviations,
+    /// clamped to the axis.
     fn place(self, z: f32) -> f32 {
         self.middle + self.per_sd * z.clamp(-SHOWN_SD, SHOWN_SD)
     }

@@ -16,7 +16,7 @@ pub(super) type Autospectra = Vec<Arc<[[f64; 2]]>>;
 /// Computes each input's one-sided power spectral density `G` about its mean, up to twice the upper
 /// band edge `highest` \[rad/s\].
 ///
-/// With the input u, the sample time dt and the record length T \[s\]:
+/// With the input u at the times t, the sample time dt and the record length T \[s\]:
 ///
 /// ```text
 /// U(ω) = dt / sqrt(T) Σ u exp(-j ω t)    computed by `spectra`

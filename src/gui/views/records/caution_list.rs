@@ -1,5 +1,5 @@
-//! Cautions about the identified models, each in two lines with a button for its first remedy;
-//! further remedies (`caution_remedies`) are in a menu.
+//! Cautions about the identified models, each in two lines. A button beside them applies the first
+//! remedy (`caution_remedies`), if there is any; further remedies are in a menu.
 
 use std::sync::Arc;
 
@@ -112,7 +112,7 @@ fn late_channel(ui: &Ui, page: Page<'_>) -> Option<Entry> {
     })
 }
 
-/// Draws a caution in two lines, with a button at the right.
+/// Draws a caution in two lines, with its remedies at the right.
 fn entry_ui(
     ui: &mut Ui,
     page: Page<'_>,

@@ -1,4 +1,5 @@
-//! Short marks for the cautions about a channel.
+//! Marks for a channel's cautions: for its time chart's accessible name, and its read-out's
+//! tooltip.
 
 use super::page::Page;
 

@@ -20,13 +20,13 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 
-/// Periods at the lowest frequency that the longest record must contain: slightly more than five,
-/// so that rounding does not cause the same caution again.
+/// Periods at the lowest frequency that the longest usable segment must contain: slightly more than
+/// five, so that rounding does not cause the same caution again.
 const PERIODS: f64 = 5.001;
 /// Maximum count of buttons for references.
 const MOST_REFERENCES: usize = 3;
 
-/// Button that removes a caution's cause.
+/// Button that removes a caution's cause, or shows what is needed for this.
 pub(super) struct Remedy {
     /// Button text.
     pub(super) short: String,
@@ -271,9 +271,9 @@ fn use_band(band: [f64; 2]) -> Remedy {
     )
 }
 
-/// Returns a remedy that raises the lower band edge so that the longest record contains [`PERIODS`]
-/// periods; at the frequency `once` \[rad/s\], it contains a single period. `None` if the raised
-/// edge would reach the upper one.
+/// Returns a remedy that raises the lower band edge so that the longest usable segment contains
+/// [`PERIODS`] periods; at the frequency `once` \[rad/s\], this segment contains a single period.
+/// `None` if the raised edge would reach the upper one.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;

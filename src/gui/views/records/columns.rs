@@ -1,7 +1,7 @@
 //! Page Columns: assignment of the displayed record's columns to the channels, with factor and time
 //! skew (the delay with which a channel is logged). Columns and factors apply to all records with
-//! the same columns, the common skew to all records, and the last two fields (a remedy) to this
-//! record.
+//! the same columns, the common skew to all records, and the last two fields (a remedy) to the
+//! displayed record.
 
 use egui::{Grid, ScrollArea, Ui};
 

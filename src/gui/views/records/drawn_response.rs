@@ -1,7 +1,8 @@
 //! Curves for an identified response: measured points, models and their confidence bands.
 //!
-//! Unwrapped phases are known up to whole turns. All curves are shifted by whole turns to the
-//! branch of the *anchor*, the first trusted measured point: there each is within half a turn.
+//! Unwrapped phases are known up to whole turns. Models' curves are shifted by whole turns, so that
+//! they are within half a turn of the measured phase at the *anchor*, the first trusted measured
+//! point; without an anchor they are not shifted.
 
 use nalgebra::Complex;
 
@@ -19,7 +20,7 @@ use crate::gui::plot::BodeCurve;
 
 /// Number of points on a model's curve.
 const POINTS: usize = 200;
-/// Factor by which curves extend beyond the band.
+/// Factor by which models' curves extend beyond the band at either end.
 const BEYOND: f64 = 2.0;
 
 /// Upper or lower half in a Bode plot.
@@ -271,7 +272,8 @@ fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
     measured
 }
 
-/// Returns the intervals \[rad/s\] in which cautions report a deviation from the measured points.
+/// Returns the intervals \[rad/s\] in which cautions report that the model deviates from the
+/// measured points.
 fn deviating(found: &Identification, pair: Pair) -> Vec<[f64; 2]> {
     let mut intervals = Vec::new();
     for caution in &found.cautions {

@@ -17,7 +17,7 @@ use crate::gui::state::records::RecordsPage;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::palette::body;
 
-/// Draws the page; `curves` are the Bode view's curves for the response in focus.
+/// Draws the page; `curves` are those from `plain_curves` for the response in focus.
 pub(super) fn fit_ui(
     ui: &mut Ui,
     page: Page<'_>,

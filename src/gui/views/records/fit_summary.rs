@@ -189,7 +189,8 @@ fn limit_color(value: f64, limit: f64, palette: &Palette) -> Color32 {
     }
 }
 
-/// Shows the button that uses the models in the study, and which models are in use.
+/// Shows the button that uses the models in the study, and which models are in use; if they come
+/// from the records, also the button that restores the file's models.
 fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,

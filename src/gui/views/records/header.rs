@@ -1,4 +1,4 @@
-//! Commands and progress in the view's page bar.
+//! Commands and progress in the page bar of the Records view.
 
 use egui::containers::menu::MenuButton;
 use egui::{Align, Button, Layout, RichText, Role, Sense, Ui, vec2};

@@ -49,8 +49,8 @@ pub(super) struct TimeView {
 ///
 /// 1. The channels, in the order of the places, and the place of the spectrogram, if it is switched
 ///    on.
-/// 2. A chart in each place that the spectrogram leaves: models below, samples in use above,
-///    samples outside the parts in use pale.
+/// 2. A chart in each place that the spectrogram leaves: the samples in front of the models, those
+///    outside the spans in [`RecordSpan::bright_s`] pale.
 /// 3. The spectrogram on the same time axis.
 /// 4. The common cursor with its values in every chart, and the unit at the lower left corner.
 pub(super) fn histories_ui(
@@ -383,8 +383,7 @@ impl<'a> TimeCharts<'a> {
         values
     }
 
-    /// Returns short marks for the cautions about a channel, in the displayed record or in all
-    /// records.
+    /// Returns the notes in a chart's accessible name: marks for the cautions about its channel.
     fn caution_marks(&self, channel: &str) -> Vec<(String, Color32)> {
         let mut marks = Vec::new();
         for mark in channel_caution_marks(self.page, channel) {
@@ -401,7 +400,8 @@ fn add_lines(chart: &mut Chart<'_>, lines: &[Arc<[[f64; 2]]>], role: TimeRole, p
     }
 }
 
-/// Returns the time \[s\] at which the samples in use deviate most from their mean.
+/// Returns the time \[s\] at which the samples inside the bright spans deviate most from their
+/// mean; `None` without such samples.
 fn time_of_largest(recorded: &RecordedLines) -> Option<f64> {
     let points: Vec<[f64; 2]> = recorded
         .inside

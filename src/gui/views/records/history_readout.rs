@@ -37,7 +37,6 @@ pub(super) struct RoleValue {
     pub(super) value: Option<f64>,
 }
 
-/// Read-out for a channel.
 pub(super) struct ChannelReadout<'a> {
     pub(super) channel: &'a Channel,
     /// Output index; `None` for an input.

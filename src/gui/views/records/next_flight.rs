@@ -58,7 +58,7 @@ fn table_ui(ui: &mut Ui, table: &Table) {
         });
 }
 
-/// Returns the dataset's channel names and units, in dataset order.
+/// Returns the dataset's channel names and the inputs' units, in dataset order.
 pub(super) fn planned_channels(dataset: &Dataset) -> PlannedChannels {
     let mut channels = PlannedChannels::default();
     for input in dataset.inputs() {

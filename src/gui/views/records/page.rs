@@ -11,7 +11,6 @@ use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Context for drawing a page.
 #[derive(Clone, Copy)]
 pub struct Page<'a> {
     pub state: &'a State,

@@ -20,7 +20,7 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::choices::DropDown;
 use crate::gui::widgets::palette::{BODY_SIZE, medium};
 
-/// Distance below an autospectrum's maximum within which an input counts as excited \[dB\].
+/// Distance below an autospectrum's maximum within which a frequency counts as excited \[dB\].
 const EXCITED_DB: f64 = 20.0;
 
 /// Shows the displayed record's name, its problems, and three lines about it.

@@ -1,6 +1,7 @@
 //! The displayed condition's records: a row for each record and each part. From left to right: box
-//! that takes it into use, name, length \[s\], cost of the model's fit (χ²/dof), caution sign, lock
-//! that holds it out of the fit, and for a part the button that removes it.
+//! that takes the record into use, name, length \[s\], cost of the model's fit (χ²/dof), caution
+//! sign, lock that holds the record out of the fit, and for a part the button that removes the
+//! part.
 
 use std::sync::Arc;
 
@@ -27,7 +28,7 @@ pub(super) const CHI_SQUARED: &str =
 const NAME: f32 = 20.0;
 /// Indentation of parts below their record \[pt\].
 const INDENT: f32 = 18.0;
-/// Column distances from a row's right edge \[pt\].
+// Right ends and centres of columns, as distances from a row's right edge [pt].
 const LENGTH_END: f32 = 88.0;
 const COST_END: f32 = 46.0;
 const CAUTION_CENTER: f32 = 36.0;

@@ -26,12 +26,13 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small
 
 /// Substitute band \[rad/s\] if no identification has run.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half-height of marks along the recommended model's curve \[dB\] and \[deg\].
+/// Half-height of strips along the recommended model's magnitude curve \[dB\].
 const MARK_DB: f64 = 2.0;
+/// Half-height of strips along the recommended model's phase curve \[deg\].
 const MARK_DEG: f64 = 15.0;
 /// Value axis width \[pt\].
 const VALUE_AXIS: f32 = 40.0;
-/// Factors by which the visible frequencies extend beyond the band.
+/// Factors by which the visible frequencies extend beyond the band at its lower and upper end.
 const BEYOND: [f64; 2] = [1.4, 1.7];
 /// Upper limit of the coherence axis.
 const HIGHEST_COHERENCE: f64 = 1.08;
@@ -42,7 +43,7 @@ const RESIDUAL_LIMITS: [f64; 2] = [4.0, 10.0];
 /// Share of the curves' range within the band by which error bars may extend the axis.
 const MOST_EXTENSION: f64 = 0.3;
 
-/// Draws the response in focus; `curves` are those of the Bode view.
+/// Draws the response in focus; `curves` are those from `plain_curves`.
 ///
 /// 1. Heading: the name at the left, marks for cautions at the right, an explanation of bands and
 ///    bars between them.
@@ -183,7 +184,7 @@ fn job_band(page: Page<'_>) -> [f64; 2] {
 struct ResponseCharts<'a> {
     page: Page<'a>,
     drawn: &'a DrawnResponse,
-    /// Curves drawn in the Bode view, from which the physics curves are taken.
+    /// Curves from which those of the physics representative and its corrections are taken.
     curves: &'a [BodeCurve],
     name: &'a str,
     /// Identification band \[rad/s\].
@@ -212,7 +213,8 @@ impl ResponseCharts<'_> {
         chart
     }
 
-    /// Draws a chart below its caption, with the frequency unit at its lower left corner.
+    /// Draws a chart below its caption; if it has tick labels, with the frequency unit at its lower
+    /// left corner.
     fn show(&self, ui: &mut Ui, place: CaptionedChart, caption: [&str; 2], chart: &Chart<'_>) {
         let palette = self.page.palette;
         let frame = *chart_ui(ui, place.chart, chart, palette).transform.frame();

@@ -20,7 +20,8 @@ const GAP: f32 = 8.0;
 /// Height reserved for the cautions \[pt\].
 const LEAST_CAUTIONS: f32 = 90.0;
 
-/// Draws the column into the available room.
+/// Draws the column from top to bottom; the identified responses leave at least `LEAST_CAUTIONS`
+/// for the cautions, which scroll.
 pub fn records_side_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let nothing = ConditionRecords::default();
     let condition = state.condition().id();

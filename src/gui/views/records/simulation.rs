@@ -133,7 +133,7 @@ pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
         .collect()
 }
 
-/// Returns the models compared with the displayed record.
+/// Returns the models compared with the displayed record, with their responses as far as computed.
 pub(super) fn simulated(state: &State) -> Vec<Simulated<'_>> {
     let mut models = Vec::new();
     for ModelJob { role, job } in model_jobs(state) {

@@ -12,7 +12,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::view_content;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::controls::{Asks, named_switch};
-use crate::gui::widgets::page_switch::{PageTab, page_switch_ui};
+use crate::gui::widgets::page_switch::{PageTab, page_switch_ui, page_switch_width};
 use crate::gui::widgets::painted_text::chevron;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::panel_layout::{in_line_ui, restore_panel_size};
@@ -175,7 +175,8 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
         .asks(LayoutCommand::OpenDock(!is_open), commands);
 }
 
-/// Draws the switch between the dock's pages, or a plain name if there is only one.
+/// Draws the switch between the dock's pages, or a plain name if there is only one. Without room
+/// beside the tools, the schedule's cost has a shorter name.
 fn dock_pages_ui(
     ui: &mut Ui,
     state: &State,
@@ -189,12 +190,18 @@ fn dock_pages_ui(
         ui.label(RichText::new(name).font(medium(BODY_SIZE)));
         return;
     }
+    let is_narrow =
+        page_switch_width(ui, views.iter().map(|view| view.name())) > ui.available_width();
     let mut tabs = Vec::new();
     for view in &views {
+        let short_name = match view {
+            View::ScheduleCost if is_narrow => "Cost",
+            _ => view.name(),
+        };
         tabs.push(PageTab {
             words: PageWords {
                 name: view.name(),
-                short_name: view.name(),
+                short_name,
                 purpose: view.facts().purpose,
             },
             is_shown: *view == front,

@@ -22,6 +22,15 @@ const SEGMENT_PADDING: f32 = 11.0;
 /// Distance between the frame and the selected segment \[pt\].
 const INSET: f32 = 2.0;
 
+/// Returns the width of the segments with these names \[pt\].
+pub fn page_switch_width<'a>(ui: &Ui, names: impl IntoIterator<Item = &'a str>) -> f32 {
+    let mut width = 2.0 * INSET;
+    for name in names {
+        width += text_width(ui, name, medium(BODY_SIZE)) + 2.0 * SEGMENT_PADDING;
+    }
+    width
+}
+
 /// Draws a row of joined segments, one for each page; returns the index of a clicked segment unless
 /// it is already selected. A segment's accessible name is "Page NAME".
 ///

@@ -172,7 +172,8 @@ fn phase_words(analysis: &Analysis) -> String {
             format!("corrected by delays; D is the {}", settings.delay_from)
         }
         PhaseCorrection::Lead => format!(
-            "corrected by a delay or a lead filter per channel: order {}, n {}, R_max {}",
+            "corrected by a delay or a lead filter per channel: order {}, n {} (--lead-n), R_max {} \
+            (--lead-r-max)",
             settings.lead.order.number(),
             six_digits(settings.lead.pole),
             six_digits(settings.lead.limit)

@@ -92,7 +92,7 @@ pub enum Command {
         file: PathBuf,
         #[command(flatten)]
         opening: OpeningArguments,
-        /// Invert the models of a channel first, as with `analyze`: CHANNEL=-1. May be repeated.
+        /// Reverse the sign of a channel in the models first, as with `analyze`: CHANNEL=-1. May be repeated.
         #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
         sign: Vec<ChannelSign>,
     },

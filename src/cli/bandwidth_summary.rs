@@ -42,9 +42,10 @@ pub(super) fn bandwidth_section(study: &Study, requirements: &Requirements) -> S
     } else {
         ""
     };
+    let end = if table.rows.is_empty() { ": none" } else { ":" };
     let mut text = line(
         "Bandwidth",
-        &format!("of the attitude [rad/s] / phase delay [ms]{level}{star}:"),
+        &format!("of the attitude [rad/s] / phase delay [ms]{level}{star}{end}"),
     );
     if !table.rows.is_empty() {
         text += &indented(&table, 2);

@@ -127,7 +127,11 @@ fn decisions(file: &Path, study: &Study) -> String {
         }
         for kind in BundleKind::BOTH {
             if let Some(name) = &choice.bundle(kind).pinned {
-                text += &line("Pinned", &format!("condition {id}: {}", sanitized(name)));
+                let words = format!(
+                    "condition {id}: {} as {kind} representative",
+                    sanitized(name)
+                );
+                text += &line("Chosen", &words);
             }
         }
         if choice.held_out {

@@ -1,7 +1,8 @@
 //! Conditions and responses that options name in a dataset, with the failure if the dataset lacks
 //! them.
 
-use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
+use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, Pair};
+use gdcm_sysid::records::record_table::shortened_list;
 
 use super::failure::Failure;
 use super::option_values::PairName;
@@ -32,7 +33,21 @@ pub(super) fn condition_ids(dataset: &Dataset) -> String {
     ids.join(", ")
 }
 
-/// Returns the responses listed in an option; an error if the dataset lacks one.
+/// Lists the names of a condition's models of one kind; "none" without models.
+pub(super) fn model_names(condition: &Condition, bundle: BundleKind) -> String {
+    let names: Vec<&str> = condition
+        .bundle(bundle)
+        .iter()
+        .map(|model| model.name.as_str())
+        .collect();
+    if names.is_empty() {
+        "none".to_owned()
+    } else {
+        shortened_list(&names)
+    }
+}
+
+/// Returns the responses listed in an option.
 pub(super) fn pairs_of(
     dataset: &Dataset,
     list: &[PairName],

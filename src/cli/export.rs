@@ -32,7 +32,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         (None, Some(path)) => match formats[..] {
             [format] if !has_checksums => export_file(arguments, format, path),
             _ => {
-                let reason = "takes a single format; several need --folder";
+                let reason = "takes a single format, and no checksums; several files need --folder";
                 Err(Failure::coded_option("--out", "several-formats", reason))
             }
         },
@@ -159,7 +159,7 @@ fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRe
 fn check_options(arguments: &ExportArguments, formats: &[ExportFormat]) -> Result<(), Failure> {
     if formats.is_empty() {
         let reason =
-            format!("{CHECKSUMS} lists the checksums of the other files: add another format");
+            format!("{CHECKSUMS} lists the checksums of the other files; add another format");
         return Err(Failure::coded_option("--as", "no-format", reason));
     }
     let options = [

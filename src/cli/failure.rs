@@ -6,6 +6,7 @@ use gdcm_io::FileError;
 use gdcm_io::export_fault::ExportFault;
 use gdcm_model::number_format::counted;
 use gdcm_model::progress::Cancelled;
+use gdcm_sysid::records::record_table::shortened_list;
 
 use super::printed_lines::listed_paths;
 
@@ -64,11 +65,14 @@ pub(super) enum Failure {
     #[error("{paths}: not read, or read only in part; the results do not include the missing data")]
     Unread { paths: String },
     /// Identification was completed, but the records identify no input.
-    #[error("the records identify no input: the models do not describe the responses to {inputs}")]
+    #[error(
+        "the records identify no input: the models do not describe the responses to {inputs}; \
+        add records with sweeps of these inputs"
+    )]
     NotIdentified { inputs: String },
     #[error("no thread can be started: {reason}")]
     NoThreads { reason: String },
-    #[error("no model was identified: {reason}")]
+    #[error("{reason}")]
     NoModels { reason: String },
     #[error("no flight can be planned: {reason}")]
     NoPlan { reason: String },
@@ -124,8 +128,11 @@ impl Failure {
     }
 
     /// Returns the failure for an option that names an unknown record.
-    pub(super) fn unknown_record(option: &'static str, record: &str) -> Self {
-        let reason = format!("no record is called \"{record}\"");
+    pub(super) fn unknown_record(option: &'static str, record: &str, names: &[&str]) -> Self {
+        let reason = format!(
+            "no record is called \"{record}\"; records are {}",
+            shortened_list(names)
+        );
         Self::coded_option(option, "unknown-record", reason)
     }
 

@@ -116,7 +116,7 @@ pub(super) fn drawn_figure(
     };
     figure.ok_or_else(|| Failure::NoResult {
         reason: format!(
-            "figure {}: this study has no data for it; choose another figure or condition",
+            "the study has no data for the figure {}; choose another figure or condition",
             view.name()
         ),
     })
@@ -186,7 +186,7 @@ fn figure_of_condition(
         Some(Err(failure)) => {
             return Err(Failure::NoResult {
                 reason: format!(
-                    "condition {condition}: {}",
+                    "condition {condition} ({})",
                     failure_text(failure, &study.dataset)
                 ),
             });

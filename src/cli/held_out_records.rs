@@ -1,6 +1,7 @@
 //! Records that are held out for validation (`gdcm identify --hold-out`).
 
 use gdcm_sysid::records::LaidOutRecord;
+use gdcm_sysid::records::record_table::shortened_list;
 
 use super::failure::Failure;
 use super::option_values::record_part;
@@ -37,8 +38,15 @@ pub(super) fn hold_out(
             }
         }
         if !is_found {
-            let reason =
-                format!("no record is called \"{name}\"; give its file among the records too");
+            let names: Vec<&str> = records
+                .iter()
+                .map(|record| record.table.name.as_str())
+                .collect();
+            let reason = format!(
+                "no record is called \"{name}\"; records are {}; give the file of the held-out \
+                record among the records too",
+                shortened_list(&names)
+            );
             return Err(Failure::coded_option(
                 "--hold-out",
                 "unknown-record",

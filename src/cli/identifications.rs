@@ -90,7 +90,7 @@ impl<'a> Identifications<'a> {
                 Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
                 Err(why) if tasks.len() == 1 => {
                     return Err(Failure::NoModels {
-                        reason: why.to_string(),
+                        reason: format!("no model was identified: {why}"),
                     });
                 }
                 Err(why) => self.cautions.push(ConditionMessage::new(
@@ -214,7 +214,7 @@ impl<'a> Identifications<'a> {
         }
         if self.count == 0 {
             return Err(Failure::NoModels {
-                reason: format!("all {task_count} conditions failed"),
+                reason: format!("no model was identified: all {task_count} conditions failed"),
             });
         }
         if let Some(destination) = &self.destination {

@@ -79,7 +79,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
             Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
             Err(why) if tasks.len() == 1 => {
                 return Err(Failure::NoModels {
-                    reason: why.to_string(),
+                    reason: format!("no model was identified: {why}"),
                 });
             }
             Err(why) => failures.push(ConditionMessage::new(
@@ -211,10 +211,13 @@ impl<'a> WantedFlights<'a> {
     /// Returns the failure for sweeps about which nothing can be predicted. If the options give
     /// their length or band, the reason is that the sweeps have no spectral line in the band.
     fn no_plan(&self) -> Failure {
-        let reason = "the sweeps have no spectral line in the band";
         if self.arguments.length.is_some() {
+            let reason =
+                "the planned sweeps have no spectral line in the band; give a longer sweep";
             Failure::option("--length", reason)
         } else if self.arguments.sweep_band.is_some() {
+            let reason = "the planned sweeps have no spectral line in the band; give a wider band of \
+                the sweeps";
             Failure::option("--sweep-band", reason)
         } else {
             no_information()
@@ -291,7 +294,18 @@ fn pair_of(channels: &PlannedChannels, name: &PairName) -> Result<Pair, Failure>
     match (output, input_index(channels, &name.input)) {
         (Some(output), Some(input)) => Ok(Pair { output, input }),
         _ => {
-            let reason = format!("there is no response {}/{}", name.output, name.input);
+            let inputs: Vec<&str> = channels
+                .inputs
+                .iter()
+                .map(|input| input.name.as_str())
+                .collect();
+            let reason = format!(
+                "there is no response {}/{}; outputs are {}; inputs are {}",
+                name.output,
+                name.input,
+                channels.outputs.join(", "),
+                inputs.join(", ")
+            );
             Err(Failure::coded_option(
                 "--target",
                 "unknown-response",

@@ -174,7 +174,9 @@ fn group_for_condition(
     }
     if own.is_empty() {
         let reason = format!(
-            "no record is left for condition {condition}; rename the records that belong to it"
+            "no record is left for condition {condition}; rename the records of this condition: a \
+            name with cond{:02} gives condition {condition}",
+            condition.0
         );
         return Err(Failure::coded_option("--condition", "no-records", reason));
     }

@@ -47,7 +47,8 @@ pub(super) fn cut_parts(
         }
         if !is_found {
             let record = part.record.as_deref().unwrap_or_default();
-            return Err(Failure::unknown_record("--part", record));
+            let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
+            return Err(Failure::unknown_record("--part", record, &names));
         }
     }
     Ok(cut)

@@ -33,7 +33,7 @@ pub(super) fn apply_record_remedies(
     } in record_remedies(arguments)
     {
         if !has_channel(channels, channel) {
-            return Err(unknown_channel(option, channel));
+            return Err(unknown_channel(option, channel, channels));
         }
         let mut is_found = false;
         for record in records.iter_mut() {
@@ -55,7 +55,11 @@ pub(super) fn apply_record_remedies(
             }
         }
         if !is_found {
-            return Err(Failure::unknown_record(option, name));
+            let names: Vec<&str> = records
+                .iter()
+                .map(|record| record.table.name.as_str())
+                .collect();
+            return Err(Failure::unknown_record(option, name, &names));
         }
     }
     Ok(())

@@ -181,13 +181,17 @@ fn set_locations(
         return Err(Failure::given_twice(OPTION, channel));
     }
     for ChannelValue { channel, value } in &arguments.topic {
+        if !has_channel(channels, channel) {
+            return Err(unknown_channel(OPTION, channel, channels));
+        }
         let rule = channels
             .inputs
             .iter_mut()
             .chain(&mut channels.outputs)
             .find(|rule| rule.name == *channel);
-        let rule = rule.ok_or_else(|| unknown_channel(OPTION, channel))?;
-        rule.aliases = vec![value.clone()];
+        if let Some(rule) = rule {
+            rule.aliases = vec![value.clone()];
+        }
     }
     Ok(())
 }
@@ -196,7 +200,8 @@ fn set_locations(
 fn check_held(arguments: &RecordArguments, channels: &RecordChannels) -> Result<(), Failure> {
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
-            let reason = format!("{held} is not an input");
+            let names = rule_names(&channels.inputs);
+            let reason = format!("{held} is not an input; inputs are {names}");
             return Err(Failure::coded_option("--held", "unknown-channel", reason));
         }
     }
@@ -212,7 +217,7 @@ pub(super) fn requested_preparation(
     let delays = for_all_records(&arguments.delay);
     for delay in &delays {
         if !has_channel(channels, &delay.channel) {
-            return Err(unknown_channel(OPTION, &delay.channel));
+            return Err(unknown_channel(OPTION, &delay.channel, channels));
         }
     }
     if let Some(channel) = first_duplicate(delays.iter().copied()) {
@@ -246,9 +251,22 @@ pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
 }
 
 /// Returns the failure for an option that names an unknown channel.
-pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
-    let reason = format!("there is no channel {channel}");
+pub(super) fn unknown_channel(
+    option: &'static str,
+    channel: &str,
+    channels: &RecordChannels,
+) -> Failure {
+    let reason = format!(
+        "there is no channel {channel}; inputs are {}; outputs are {}",
+        rule_names(&channels.inputs),
+        rule_names(&channels.outputs)
+    );
     Failure::coded_option(option, "unknown-channel", reason)
+}
+
+fn rule_names(rules: &[ChannelRule]) -> String {
+    let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
+    names.join(", ")
 }
 
 /// Applies an option's declarations to the channels; rejects unknown channels and duplicates.
@@ -260,7 +278,7 @@ pub(super) fn declare_conversions<'a, T: Clone + 'a>(
 ) -> Result<(), Failure> {
     for ChannelValue { channel, value } in declarations {
         if !has_channel(channels, channel) {
-            return Err(unknown_channel(option, channel));
+            return Err(unknown_channel(option, channel, channels));
         }
         let previous = channels
             .declared

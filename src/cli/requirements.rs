@@ -227,7 +227,8 @@ fn summary_section(requirements: &Requirements) -> String {
         }
         table.row(cells);
     }
-    let words = "on-axis mean of J, and of the share of the band inside the MUAD envelopes:";
+    let words = "on-axis mean of J, and of the share of the band inside the envelopes of maximum unnoticeable \
+        added dynamics (MUAD):";
     line("Summary", words) + &indented(&table, 2)
 }
 
@@ -252,7 +253,10 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
     let labels = [
         (ModeVerdict::Within, "within the tolerance"),
         (ModeVerdict::Outside, "outside"),
-        (ModeVerdict::NotDetermined, "not determined by flight"),
+        (
+            ModeVerdict::NotDetermined,
+            "not determined by the flight data",
+        ),
         (ModeVerdict::NoTolerance, "without a tolerance"),
         (ModeVerdict::NotPaired, "unpaired"),
     ];
@@ -296,11 +300,15 @@ fn history_section(histories: &TimeHistories) -> String {
         "" => String::new(),
         source => format!(" of {}", sanitized(source)),
     };
+    let omission = match count - table.rows.len() {
+        0 => String::new(),
+        omitted => {
+            format!("; omitting {omitted} of {count} rows, in which every model is always inside")
+        }
+    };
     let words = format!(
         "share of time inside the tolerances{source}, over all records of a condition; attitudes \
-        are integrals of rates; omitting {} of {count} rows, in which every model is always \
-        inside:",
-        count - table.rows.len()
+        are integrals of rates{omission}:"
     );
     let costs = format!(
         "rms error J_rms and Theil's coefficients, over all records of a condition, {}:",

@@ -118,8 +118,8 @@ pub struct StudyArguments {
         allow_negative_numbers = true
     )]
     pub hold_out: Vec<i64>,
-    /// Invert the models of a channel with the opposite sign: CHANNEL=-1 (the identified models), CHANNEL=-1:physics or
-    /// CHANNEL=-1:all; CHANNEL=1 restores them. May be repeated.
+    /// Reverse the sign of a channel in the models: CHANNEL=-1 (the identified models), CHANNEL=-1:physics or
+    /// CHANNEL=-1:all; CHANNEL=1 restores the sign. May be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
     pub sign: Vec<ChannelSign>,
     /// Change of a physics parameter set by hand, in its unit: NAME=CHANGE[UNIT] (Ixx=+4%). Without --physics, only

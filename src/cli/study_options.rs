@@ -17,7 +17,7 @@ use gdcm_study::{Edit, Study};
 
 use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
 use super::condition_messages::listed_conditions;
-use super::dataset_lookup::{condition_ids, pairs_of};
+use super::dataset_lookup::{condition_ids, model_names, pairs_of};
 use super::failure::Failure;
 use super::option_values::{PairName, Rejection};
 use super::parameter_values::apply_parameters;
@@ -217,11 +217,17 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
                 .filter(|channel| channel.name(&inputs, &outputs) == *name)
                 .collect();
         let [channel] = named[..] else {
-            let count = named.len();
             let names = [inputs, outputs].concat().join(", ");
-            let reason = sanitized(&format!(
-                "expected one of {names}; {count} channels are called {name}"
-            ));
+            let reason = if named.is_empty() {
+                format!("the dataset has no channel {name}; channels are {names}")
+            } else {
+                format!(
+                    "{} channels are called {name}, so the name does not tell which one is meant; \
+                    reverse the sign in a study instead",
+                    named.len()
+                )
+            };
+            let reason = sanitized(&reason);
             return Err(Failure::coded_option(OPTION, "unknown-channel", reason));
         };
         apply(
@@ -268,13 +274,17 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
             apply(study, OPTION, &Edit::Reject(model))
         }
         [] => {
-            let reason = format!("condition {id} has no model \"{name}\"");
+            let reason = sanitized(&format!(
+                "condition {id} has no model \"{name}\"; physics models: {}; identified models: {}",
+                model_names(condition, BundleKind::Physics),
+                model_names(condition, BundleKind::Identified)
+            ));
             Err(Failure::coded_option(OPTION, "unknown-model", reason))
         }
         _ => {
             let reason = format!(
                 "\"{name}\" is both a physics and an identified model of condition {id}; reject \
-                it in a study instead"
+                the model in a study instead"
             );
             Err(Failure::coded_option(OPTION, "ambiguous-model", reason))
         }

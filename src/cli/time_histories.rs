@@ -183,7 +183,7 @@ fn report_record(laid_out: &ConditionRecord) {
         caution(layout_caution_code(words), &format!("{name}: {words}"));
     }
     for words in &record.problems {
-        let text = format!("{name}: left out: {words}");
+        let text = format!("{name} is left out: {words}");
         caution(layout_problem_code(words), &text);
     }
     if !record.used {

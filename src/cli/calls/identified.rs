@@ -10,6 +10,7 @@ use gdcm_model::message_text::sanitized;
 use gdcm_model::progress::Progress;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{Identification, IdentificationError};
+use gdcm_sysid::records::record_table::shortened_list;
 
 use super::opened::OpenedData;
 use super::options::parsed;
@@ -64,7 +65,7 @@ pub fn identify(
             Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
             Err(why) => {
                 return Err(Failure::NoModels {
-                    reason: why.to_string(),
+                    reason: format!("no model was identified: {why}"),
                 });
             }
         };
@@ -114,7 +115,15 @@ impl IdentifiedRecords {
                 return Ok(model);
             }
         }
-        let reason = format!("there is no identified model \"{}\"", sanitized(name));
+        let mut names = vec![
+            self.found.refined.name.as_str(),
+            self.found.unrefined.name.as_str(),
+        ];
+        names.extend(self.found.bundle.iter().map(|model| model.name.as_str()));
+        let reason = sanitized(&format!(
+            "there is no identified model \"{name}\"; models are {}",
+            shortened_list(&names)
+        ));
         Err(Failure::coded_option("--model", "unknown-model", reason))
     }
 

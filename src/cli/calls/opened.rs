@@ -18,7 +18,7 @@ use gdcm_study::Study;
 use super::options::parsed;
 use super::{CallError, Called, Responses, called, response_of};
 use crate::cli::assemble::{assembled_models, report_missing_references};
-use crate::cli::dataset_lookup::condition_of;
+use crate::cli::dataset_lookup::{condition_of, model_names};
 use crate::cli::failure::Failure;
 use crate::cli::model_arguments::AssembleArguments;
 use crate::cli::study_arguments::OpeningArguments;
@@ -163,7 +163,13 @@ impl OpenedData {
             match found {
                 Some(found) => Ok(response_of(&found.dynamics, omega)),
                 None => {
-                    let reason = format!("condition {id} has no model \"{}\"", sanitized(model));
+                    let names = match dataset.condition(id) {
+                        Some(condition) => model_names(condition, bundle),
+                        None => "none".to_owned(),
+                    };
+                    let reason = sanitized(&format!(
+                        "condition {id} has no {bundle} model \"{model}\"; {bundle} models: {names}"
+                    ));
                     Err(Failure::coded_option("--model", "unknown-model", reason))
                 }
             }

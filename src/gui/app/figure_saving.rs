@@ -86,9 +86,13 @@ impl GdcmApp {
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
-            let why = if self.state.analysis().is_some() {
-                "the results contain nothing to plot in it"
-            } else if self.state.results.stopped {
+            let results = &self.state.results;
+            let background = &results.background;
+            let is_pending =
+                background.stopped || background.curves.is_some() || background.views > 0;
+            let why = if self.state.analysis().is_some() && !is_pending {
+                "the results contain nothing to plot in this view"
+            } else if results.stopped || background.stopped {
                 "the computation was stopped; choose Compute to continue"
             } else {
                 "the results are still being computed; try again in a moment"

@@ -64,7 +64,7 @@ impl GdcmApp {
         self.state.records.running.retain(|other| *other != job);
         let requested = self.state.records.requested_count;
         if self.state.records.running.is_empty() && requested > 1 {
-            let text = format!("finished: models of {requested} conditions identified");
+            let text = format!("identification finished for {requested} conditions");
             self.notify_done(Message::new("identification-finished", text));
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
@@ -79,7 +79,7 @@ impl GdcmApp {
         if adopted.is_empty() {
             return self.notify_error(Message::new(
                 "nothing-identified",
-                "nothing has been identified yet",
+                "nothing has been identified yet; choose Identify first",
             ));
         }
         let models: usize = adopted

@@ -338,7 +338,7 @@ impl AddedCounts {
         if self.unassigned > 0 {
             let records = counted(self.unassigned, "record");
             parts.push(format!(
-                "{records} without a condition: choose it in the list"
+                "{records} without a condition: choose the condition in the list"
             ));
         }
         if self.known > 0 && parts.is_empty() {

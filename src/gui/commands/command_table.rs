@@ -53,7 +53,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries.push(use_leads.enabled(!has_leads));
     entries.push(Entry::new(
         "Keep the decisions as a variant…",
-        "Moves the focus to the field for its name",
+        "Moves the focus to the field for the name of the variant",
         LayoutCommand::NameVariant,
     ));
     entries.extend(help_entries());
@@ -109,7 +109,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
         .enabled(in_use.contains(&condition)),
         Entry::new(
             "Identify models of all conditions",
-            "From their flight records",
+            "From the flight records of each condition",
             RecordsCommand::IdentifyAll,
         )
         .enabled(!in_use.is_empty()),

@@ -23,7 +23,7 @@ pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
     };
     let schedule = Entry::new(
         schedule,
-        "Whether its gains enter the regression over airspeed",
+        "Whether the correction of the condition enters the schedule",
         Edit::SetScheduled {
             condition,
             scheduled: !scheduled,

@@ -38,24 +38,24 @@ fn message_entries(state: &State) -> Vec<Entry> {
             MessageBar::Changed { name } => {
                 entries.push(Entry::new(
                     format!("Reload {name}"),
-                    "Its file has changed; the decisions that still apply are kept",
+                    "The file has changed; the decisions that still apply are kept",
                     FileCommand::Reload,
                 ));
                 entries.push(Entry::new(
                     format!("Keep the open version of {name}"),
-                    "Its file has changed",
+                    "The file has changed; the results remain those of the open version",
                     FileCommand::KeepOpen,
                 ));
             }
             MessageBar::Recovery(offer) => {
                 entries.push(Entry::new(
                     format!("Restore unsaved decisions of {}", offer.kept_at),
-                    "Opens them with their dataset",
+                    "Opens the dataset with the decisions that were not saved",
                     FileCommand::RestoreRecovery(offer.number),
                 ));
                 entries.push(Entry::new(
                     format!("Discard unsaved decisions of {}", offer.kept_at),
-                    "Removes their recovery file",
+                    "Removes the recovery file of these decisions",
                     FileCommand::DiscardRecovery(offer.number),
                 ));
             }

@@ -188,7 +188,7 @@ fn fold_entries(state: &State) -> [Entry; 6] {
             } else {
                 "Unfold the settings"
             },
-            "Shown instead of the models",
+            "Settings of the study, at the left of the window",
             LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),
@@ -208,9 +208,9 @@ fn fold_entries(state: &State) -> [Entry; 6] {
                 "Enlarge the dock"
             },
             if is_dock_enlarged {
-                "To its usual height; also: double-click its bar"
+                "To the usual height; also: double-click the bar of the dock"
             } else {
-                "To twice its usual height; also: double-click its bar"
+                "To twice the usual height; also: double-click the bar of the dock"
             },
             LayoutCommand::EnlargeDock(!is_dock_enlarged),
         ),

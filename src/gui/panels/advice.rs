@@ -119,9 +119,11 @@ impl Advice {
 
     fn reverse_channel(state: &State, channel: Channel) -> Self {
         let (label, command) = sign_reversal_entry(state, channel, Some(SignRole::Identified));
+        let (inputs, outputs) = state.dataset().input_and_output_names();
+        let name = channel.name(&inputs, &outputs);
         Self {
             steps: vec![Step::new(label, command), Step::reasons()],
-            note: "its sign seems reversed".to_owned(),
+            note: format!("sign of {name} seems reversed"),
         }
     }
 

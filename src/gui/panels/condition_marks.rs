@@ -23,6 +23,8 @@ pub(super) struct Marks {
     /// Number of constrained delays that are not matched although a decision could match them.
     /// Delays that need lead do not count while leads are not requested.
     unmatched_delays: usize,
+    /// Whether the unmatched delays include those that need lead.
+    counts_leads: bool,
     pub(super) left_out: bool,
     held_out: bool,
     /// Reason for a missing result.
@@ -37,6 +39,7 @@ impl Marks {
             suggested: 0,
             unmatched_gains: 0,
             unmatched_delays: 0,
+            counts_leads: false,
             left_out: !choice.scheduled,
             held_out: choice.held_out,
             failure: None,
@@ -51,6 +54,7 @@ impl Marks {
                 marks.suggested = state.open_suggestions(result).len();
                 marks.unmatched_gains = result.gains.unmatched.len();
                 let has_leads = result.has_leads();
+                marks.counts_leads = has_leads;
                 marks.unmatched_delays = result
                     .delays
                     .unmatched
@@ -176,9 +180,11 @@ impl Marks {
         }
         if self.unmatched_delays > 0 {
             let delays = counted(self.unmatched_delays, "held delay");
-            tasks.push(format!(
-                "{delays} not matched (not counting those that need lead)"
-            ));
+            tasks.push(if self.counts_leads {
+                format!("{delays} not matched")
+            } else {
+                format!("{delays} not matched (not counting those that need lead)")
+            });
         }
         tasks
     }

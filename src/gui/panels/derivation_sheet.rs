@@ -37,8 +37,12 @@ pub fn derivation_sheet_ui(
             toggle_costs_ui(ui, state, asked, palette);
         }
         None => {
-            ui.label("This value is not available");
-            ui.label(state.results.absence());
+            if state.analysis().is_some() {
+                ui.label("The displayed results do not contain this value");
+            } else {
+                ui.label("This value is not available");
+                ui.label(state.results.absence());
+            }
         }
     }
 }

@@ -166,7 +166,7 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
     let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
     chevron(ui, place.center(), is_open, palette);
     let hint = if is_open {
-        "Fold the plots below; a double click on the bar doubles their height"
+        "Fold the plots below; a double click on the bar enlarges the dock, or restores it"
     } else {
         "Unfold the plots below"
     };

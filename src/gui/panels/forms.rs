@@ -126,7 +126,8 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
 fn unsaved_ui(form: &mut Form<'_, '_>) {
     form.title("Unsaved decisions");
     form.ui.label(
-        "Without saving, the rejected models, chosen representatives and settings are lost.",
+        "Without saving, all decisions since the last save are lost: rejected models, chosen \
+        representatives, settings.",
     );
     form.ui.add_space(4.0);
     form.line(|form| {

@@ -164,7 +164,7 @@ const MARKS: &[(&str, &str)] = &[
     ),
     (
         "dot or square",
-        "its altitude and weight: the same mark as in Net gain",
+        "altitude and weight of the condition: the same mark as in Net gain",
     ),
     (
         "cells",

@@ -265,8 +265,10 @@ impl<'a> ModelRow<'a> {
     }
 
     fn star_hint(&self, can_represent: bool) -> &'static str {
-        if !can_represent {
-            "Cannot be the representative: rejected or set aside"
+        if !can_represent && self.set_aside.is_some() {
+            "Cannot be the representative, because the model is set aside"
+        } else if !can_represent {
+            "Cannot be the representative, because the model is rejected; restore the model first"
         } else if self.pinned && self.set_aside.is_some() {
             "Chosen as representative, but set aside; click to use the medoid"
         } else if self.pinned {

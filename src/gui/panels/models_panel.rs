@@ -109,6 +109,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         let rejected = choice.physics.rejected.len();
         let words = match (open.len(), rejected) {
+            (0, 0) if state.shown().is_none() => "no result, so none suggested".to_owned(),
             (0, 0) => "none suggested".to_owned(),
             (0, rejected) => format!("{rejected} rejected"),
             (open, 0) => format!("{open} suggested"),

@@ -135,7 +135,7 @@ impl BundleButton {
             format!("Open the list: {}", self.name),
         )
         .on_hover_text(match self.sheet {
-            Sheet::Records => format!("{} used + held out", self.kept),
+            Sheet::Records => format!("{}: {} (used + held out)", self.name, self.kept),
             _ => format!("{}: {} kept", self.name, self.kept),
         })
         .asks(LayoutCommand::ShowSheet(Some(self.sheet)), commands);

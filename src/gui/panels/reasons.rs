@@ -241,7 +241,7 @@ fn objective_ui(
             commands,
         );
         label.on_hover_text(format!(
-            "eq. (7): {}{unit}, lower bound {}{unit}",
+            "eq. (7) in docs/method.md: {}{unit}, lower bound {}{unit}",
             shown.gains.objective, shown.gains.proof.lower_bound
         ));
         let label = value_label_ui(
@@ -251,9 +251,9 @@ fn objective_ui(
             commands,
         );
         let equation = if shown.has_leads() {
-            "M15.4"
+            "M15.4 in docs/lead.md"
         } else {
-            "eq. (11)"
+            "eq. (11) in docs/method.md"
         };
         label.on_hover_text(format!(
             "{equation}: {} s², global optimum (convex); KKT residual {:.0e} s",

@@ -267,7 +267,7 @@ fn export_ui(
     region_ui(ui, Region::Export, |ui| {
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
             let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
-            let hint = "Choose formats, conditions and folder; nothing is written before (Ctrl+E)";
+            let hint = "Choose formats, conditions and folder; nothing is written until you export (Ctrl+E)";
             export_button.on_hover_text(hint).asks(export(), commands);
         });
     });

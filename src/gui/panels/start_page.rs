@@ -109,7 +109,7 @@ pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mu
 fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     ui.label(RichText::new("Match a physics model to flight").font(medium(DISPLAY_SIZE)));
     ui.label(palette.dim(
-        "One gain and one delay per channel, scheduled with airspeed. Every number has an error bar.",
+        "One gain and one delay per channel, scheduled with airspeed. Gains and delays have error bars.",
     ));
     ui.add_space(16.0);
     for (place, way) in ways().into_iter().enumerate() {

@@ -74,8 +74,8 @@ const STEPS: [Step; 5] = [
     Step {
         region: Region::Models,
         title: "The bundle of models",
-        words: "Each physics model belongs to a perturbed trim. Its bar shows the distance from \
-            the other models, relative to the distance that the perturbation explains. The box \
+        words: "Each physics model belongs to the nominal trim or to a perturbed trim. The bar of a \
+            model shows the distance from the other models, relative to the distance that the perturbation explains. The box \
             rejects or restores the model, the star makes it the representative.",
     },
     Step {

@@ -70,7 +70,7 @@ pub(super) fn trade_off_ui(
     }
     let Some(trade_off) = state.trade_off() else {
         let words = match state.shown() {
-            Some(_) => "computing …",
+            Some(_) => state.results.absence(),
             None => "no result",
         };
         let font = FontId::proportional(SMALL_SIZE);

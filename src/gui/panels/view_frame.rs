@@ -152,8 +152,13 @@ pub(super) fn tools_ui(
     (view_content(view).tools)(ui, state, palette, commands);
     if view.facts().is_of_all_conditions && state.others_are_older() {
         let text = palette.small_warning("from older settings");
-        ui.label(text)
-            .on_hover_text("The displayed condition is up to date; the others are being computed");
+        let hint = if state.results.stopped {
+            "The displayed condition is up to date; the computation of the others was stopped: choose \
+            Compute to continue"
+        } else {
+            "The displayed condition is up to date; the others are being computed"
+        };
+        ui.label(text).on_hover_text(hint);
     }
 }
 

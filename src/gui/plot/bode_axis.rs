@@ -85,7 +85,12 @@ impl BodeAxis {
             Self::Frequency => "frequency",
             Self::Values(_) => "value",
         };
-        let refusal = || Message::new("not-on-axis", format!("\"{text}\" is not a {kind}"));
+        let refusal = || {
+            Message::new(
+                "not-on-axis",
+                format!("expected a {kind} on this axis, found \"{text}\""),
+            )
+        };
         let number: f64 = text
             .replace('\u{2212}', "-")
             .parse()

@@ -57,8 +57,8 @@ impl CoherenceStrip<'_> {
         );
         let response = ui.interact(strip, Id::unique(&name), Sense::hover());
         named(response, egui::Role::Label, name).on_hover_text(
-            "Coherence γ²; frequencies below the dashed line are not used, or are unreliable if \
-            no minimum coherence is set",
+            "Coherence γ²; frequencies at which it is below the dashed line are not used, or are \
+            unreliable if no minimum coherence is set",
         );
     }
 }

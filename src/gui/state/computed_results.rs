@@ -119,8 +119,8 @@ impl Results {
 
     /// Returns the message that explains a missing result.
     pub fn absence(&self) -> &'static str {
-        if self.stopped {
-            "not computed"
+        if self.stopped || (self.background.stopped && !self.is_behind()) {
+            "stopped; choose Compute"
         } else {
             "computing …"
         }

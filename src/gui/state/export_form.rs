@@ -196,7 +196,7 @@ impl ExportForm {
             match word.parse::<f64>() {
                 Ok(airspeed_kt) if airspeed_kt.is_finite() => airspeeds_kt.push(airspeed_kt),
                 _ => {
-                    let text = format!("breakpoints: expected airspeeds in kt, found {word}");
+                    let text = format!("breakpoints: expected airspeeds in kt, found \"{word}\"");
                     return Err(Message::new("breakpoints", text));
                 }
             }
@@ -205,7 +205,7 @@ impl ExportForm {
             return Ok(None);
         }
         if airspeeds_kt.windows(2).any(|pair| pair[0] >= pair[1]) {
-            let text = "breakpoints: the airspeeds must increase";
+            let text = "breakpoints: the airspeeds must increase, as in 40 60 80";
             return Err(Message::new("breakpoints", text));
         }
         Ok(Some(airspeeds_kt))

@@ -92,7 +92,9 @@ impl RecordChange {
 impl ConditionRecordChange {
     fn name(&self) -> String {
         match self {
-            Self::Kind { record, kind } => format!("set the kind of {record} to {}", kind.word()),
+            Self::Kind { record, kind } => {
+                format!("set the manoeuvre of {record} to {}", kind.word())
+            }
             Self::Use { record, used: true } => format!("use {record}"),
             Self::Use { record, .. } => format!("leave {record} out"),
             Self::HoldOut {

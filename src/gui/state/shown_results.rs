@@ -134,7 +134,7 @@ impl State {
         } else if self.curves().is_some() {
             None
         } else if results.background.stopped {
-            Some("not computed")
+            Some("stopped; choose Compute")
         } else {
             Some("computing …")
         }

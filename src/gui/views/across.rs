@@ -162,11 +162,18 @@ pub fn across_view_ui(
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.selection.pair);
     let names = end_names(state, &curves.responses);
+    let is_nothing_chosen =
+        curves.responses.is_empty() && state.across().is_some() && !state.results.is_behind();
+    let message = if is_nothing_chosen {
+        "No curve is chosen: choose models and conditions above"
+    } else {
+        state.results.absence()
+    };
     let response_scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_EVERY_CONDITION,
         unit: state.display.curves.unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
-        message: Some(state.results.absence()),
+        message: Some(message),
         cursor: pointed,
         end_names: &names,
         reserves_readout: true,
@@ -176,12 +183,17 @@ pub fn across_view_ui(
         cost: "green: range of optima".to_owned(),
         ..PaneNote::default()
     };
+    let shown_note = if curves.optima.is_some() {
+        Some(&optima_note)
+    } else {
+        None
+    };
     let error_message = error_message(state);
     let error_scene = BodeScene {
         quantity: BodeQuantity::ScheduleError,
         curves: &curves.errors,
         optima: curves.optima.as_ref(),
-        notes: [Some(&optima_note), None],
+        notes: [shown_note, None],
         message: Some(&error_message),
         end_names: &[],
         ..response_scene

@@ -106,7 +106,7 @@ fn average_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay) {
         (
             Some(CostAverage::Median),
             "median",
-            "J with medians over frequency (M4)",
+            "J with medians over frequency (docs/method.md)",
         ),
         (
             Some(CostAverage::Mean),
@@ -133,7 +133,7 @@ fn correction_choice_ui(ui: &mut Ui, chosen: &mut AssessmentDisplay, palette: &P
         (
             AssessedCorrection::ScheduledWithoutLeads,
             "scheduled, no leads",
-            "Schedule without its lead filters (M15)",
+            "Schedule without its lead filters (docs/lead.md)",
         ),
         (
             AssessedCorrection::Own,

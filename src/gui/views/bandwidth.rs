@@ -93,9 +93,20 @@ fn absence_text(state: &State, requirements: &Requirements, pair: Pair) -> Strin
     let finding = RequirementRole::ALL
         .into_iter()
         .find_map(|role| requirements.bandwidth_of(condition, pair, role));
-    match finding.and_then(|finding| finding.absent.get("omega_bw_rad_s")) {
+    let Some(finding) = finding else {
+        return if matches!(state.outcome(), Some(Ok(_))) {
+            format!("{name} has no bandwidth, because the response is not on-axis")
+        } else {
+            format!("{name} has no bandwidth, because condition {condition} has no result")
+        };
+    };
+    let why = finding
+        .absent
+        .get("omega_bw_rad_s")
+        .or_else(|| finding.absent.get("phase_delay_s"));
+    match why {
         Some(why) => format!("{name}: {}", no_bandwidth_text(why)),
-        None => format!("{name} is not on-axis: it has no bandwidth"),
+        None => format!("{name} has no bandwidth with a phase delay"),
     }
 }
 

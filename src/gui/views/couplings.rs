@@ -68,12 +68,12 @@ pub fn couplings_header_ui(
         (
             CouplingCorrection::Mixing,
             "mixing",
-            "Constant shares of the other inputs are added to each input (M16)",
+            "Constant shares of the other inputs are added to each input (docs/couplings.md)",
         ),
         (
             CouplingCorrection::MixingAndFeedback,
             "mixing and feedback",
-            "Constant shares of inputs and outputs are added to each input (M16)",
+            "Constant shares of inputs and outputs are added to each input (docs/couplings.md)",
         ),
     ];
     let option = PageOption {

@@ -99,8 +99,8 @@ pub fn error_bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &m
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
         "{level:.0} % error bars. Thick: uncertainty of the identification, for the chosen \
-        physics model. Thin: with the unknown trim of the flight. Bands: confidence of the \
-        schedule, and prediction for another condition"
+        physics model. Thin: with the unknown trim of the flight. Bands over airspeed: confidence \
+        of the schedule, and prediction for another condition"
     );
     let toggle = Toggle {
         text: "bars",

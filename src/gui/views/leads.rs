@@ -54,6 +54,9 @@ pub fn leads_view_ui(
     }
     let figure = figure(state);
     let message = match state.study.settings.phase {
+        PhaseCorrection::Lead if matches!(state.outcome(), Some(Err(_))) => {
+            "This condition has no result, so no leads"
+        }
         PhaseCorrection::Lead => state.results.absence(),
         _ => {
             "No leads: the phase is corrected by delays, or not at all. To use leads, choose \

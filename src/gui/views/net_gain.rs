@@ -38,7 +38,8 @@ pub fn net_gain_view_ui(
     } else {
         match state.display.gains.net_gain_pairs {
             PairSet::Picked => "No response is picked: select one in the matrix, then click +",
-            _ => "No response is held: hold one in the matrix",
+            PairSet::Held => "No response is held: hold one in the matrix",
+            _ => "These responses have no net gain to plot",
         }
     };
     if state.display.gains.show_evidence {

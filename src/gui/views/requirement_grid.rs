@@ -421,7 +421,11 @@ impl GridPainter<'_> {
             let id = self.grid.conditions[*column].id;
             let sense = Sense::CLICK;
             let response = ui.interact(cell, ui.scope_id().with(("count", group, id)), sense);
-            let words = format!("{name}, condition {id}: {text} met");
+            let words = if has_verdict {
+                format!("{name}, condition {id}: {text} met")
+            } else {
+                format!("{name}, condition {id}: no verdict")
+            };
             let response = named(response, Role::Button, &words);
             if response.clicked()
                 && let Some(first) = self.first_outside(group, *column)

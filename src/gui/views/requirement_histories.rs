@@ -51,9 +51,9 @@ pub(super) fn record_choice_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Co
             for (index, row) in records.used_rows() {
                 if row.guess.held_out == is_held_out {
                     let hint = if is_held_out {
-                        "Held out of the identification: it is judged in the grid"
+                        "Record held out of the identification: judged in the grid"
                     } else {
-                        "Used by the identification: it is not judged"
+                        "Record used by the identification: not judged in the grid"
                     };
                     choices.push((Some(index), &row.table.name, hint));
                 }

@@ -139,7 +139,10 @@ impl ModeRow<'_> {
             row.center().y,
         );
         painter.text(at, Align2::LEFT_CENTER, shown, small(), color);
-        let words = format!("Mode {name}: {}", mode_verdict_words(found.verdict));
+        let words = match self.mode.name {
+            Some(_) => format!("Mode {name}: {}", mode_verdict_words(found.verdict)),
+            None => format!("{name}: {}", mode_verdict_words(found.verdict)),
+        };
         let response = named(response, Role::Button, words);
         if response.clicked() {
             commands.push(LayoutCommand::ShowView(View::Poles).into());

@@ -130,7 +130,7 @@ impl Keeper {
         let kept = self.keep();
         let trouble = match (&self.pending, &self.folder) {
             (None, _) => None,
-            (Some(_), None) => Some("there is no directory in which to keep them".to_owned()),
+            (Some(_), None) => Some("the program has no directory for recovery files".to_owned()),
             (Some(_), Some(_)) => kept.err().map(|failure| failure.error().to_string()),
         };
         Remains::new(locked(&self.kept).clone(), trouble)

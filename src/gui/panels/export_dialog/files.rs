@@ -113,7 +113,7 @@ impl<'a> Entry<'a> {
                 (words, String::new(), [].as_slice())
             }
             (None, None) => {
-                let words = "computed when it is written";
+                let words = "computed when the report is written";
                 (words.to_owned(), String::new(), [].as_slice())
             }
         };

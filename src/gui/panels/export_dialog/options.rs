@@ -333,10 +333,10 @@ fn existing_words(state: &State) -> String {
     if existing == 0 {
         "no file exists yet".to_owned()
     } else if state.forms.export.choices.replaces {
-        format!("{existing} of {count} will be replaced")
+        format!("{existing} of {count} files will be replaced")
     } else {
         format!(
-            "{existing} of {count} exist; all names end in {}",
+            "{existing} of {count} files exist; all names end in {}",
             plan.number
         )
     }

@@ -44,7 +44,8 @@ pub(super) fn details_ui(
     }
     for side in part.sides_by_position() {
         ui.label(palette.small_warning(format!(
-            "caution: the file does not name its {side}s; the order of the dataset is assumed"
+            "caution: the file does not name its {side}s, so they are taken in the order of the \
+            dataset; if the order differs, give it in the field {side}s"
         )));
     }
     notes_ui(ui, part, palette);

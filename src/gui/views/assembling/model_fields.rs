@@ -109,9 +109,9 @@ fn field_ui(
 /// Draws the button for copying a setting to the models below in the same folder; returns whether
 /// it was clicked.
 pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
-    let name = format!("Fill down {name}");
+    let label = format!("Fill down {name}");
     let hint = format!("Copies {name} to every model below in the same folder");
-    named(ui.small_button("↓"), Role::Button, name)
+    named(ui.small_button("↓"), Role::Button, label)
         .on_hover_text(hint)
         .clicked()
 }

@@ -34,7 +34,7 @@ pub(super) fn typed_signs(text: &str) -> Result<Signs, String> {
     for (channel, sign) in &signs {
         if sign.abs() != 1.0 {
             return Err(format!(
-                "the sign of {channel}: expected 1 or -1, found {}",
+                "expected 1 or -1 as the sign of {channel}, found {}",
                 number(*sign)
             ));
         }
@@ -48,7 +48,7 @@ pub(super) fn typed_factors(text: &str) -> Result<BTreeMap<String, f64>, String>
     for (channel, factor) in &factors {
         if *factor == 0.0 {
             return Err(format!(
-                "the factor of {channel}: expected a number other than 0"
+                "expected a number other than 0 as the factor of {channel}, found 0"
             ));
         }
     }

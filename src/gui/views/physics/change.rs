@@ -41,7 +41,7 @@ pub(super) fn change_ui(
         let context = format!("condition {condition}, each response with its own G and D");
         ui.label(palette.small(&context)).on_hover_text(
             "The channels correct gain and delay, so each response is shown after its own G and D \
-            (eq. (5), (9)); J is the remaining cost. The most improved responses come first.",
+            (eq. (5) and (9) in docs/method.md); J is the remaining cost. The most improved responses come first.",
         );
     });
     figure_legend_ui(ui, &figure, palette);

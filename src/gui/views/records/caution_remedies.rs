@@ -124,7 +124,7 @@ pub(super) fn caution_remedies(
         IdentificationCaution::Unstable { .. } => vec![
             Remedy::new(
                 "Show poles",
-                "Show its poles",
+                "Show the poles of the model",
                 RecordsCommand::Show(RecordsPage::Order),
             ),
             choose_order(),
@@ -143,7 +143,7 @@ fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) 
         RecordCaution::MovedTogether { .. } => vec![show_inputs()],
         RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![Remedy::new(
             "Check",
-            "Set its column and factor…",
+            "Set column and factor on page Columns…",
             RecordsCommand::Show(RecordsPage::Columns),
         )],
         _ => Vec::new(),

@@ -3,6 +3,7 @@
 
 use egui::{Color32, Label, ProgressBar, Rect, RichText, Role, Sense, Ui, UiBuilder, vec2};
 
+use gdcm_model::dataset::BundleKind;
 use gdcm_model::number_format::{counted, decimals};
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
@@ -27,7 +28,7 @@ const LINE: f32 = 20.0;
 /// Height of the line about use in the study \[pt\].
 const USE_LINE: f32 = 26.0;
 /// Tooltip on the held-out records' cost.
-const HELD_OUT_HINT: &str = "χ²/dof of the held-out records for the model as it is";
+const HELD_OUT_HINT: &str = "χ²/dof of the held-out records for the identified model, unchanged";
 
 /// Shows the summary; only the reason for a failure may need more than the reserved height.
 pub(super) fn fit_summary_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
@@ -58,7 +59,7 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     }
     match &records.found {
         None => {
-            let text = "No identification yet";
+            let text = "No identification yet: choose Identify";
             let line = line_ui(ui, 2.0 * LINE);
             painted_text(ui, line, 0.0, text, body(), palette.dim_text);
         }
@@ -118,7 +119,7 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
             value: decimals(raw, 2),
             color: limit_color(normalised, HELD_OUT[1], palette),
             hint: format!(
-                "{HELD_OUT_HINT}; {} for the model adapted within its uncertainty, where values up \
+                "{HELD_OUT_HINT}; {} for this model adapted within its uncertainty, where values up \
                 to 1.3 are good",
                 decimals(normalised, 2)
             ),
@@ -127,7 +128,12 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
             name: "held out",
             value: value_text(raw, 2),
             color: palette.text,
-            hint: HELD_OUT_HINT.to_owned(),
+            hint: match raw {
+                Some(_) => HELD_OUT_HINT.to_owned(),
+                None => {
+                    "No cost of held-out records: hold out a record to test the model".to_owned()
+                }
+            },
         },
     };
     let order = match found.refined.order() {
@@ -214,6 +220,8 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             }
             let words = if is_taken {
                 "in use: from these records"
+            } else if state.condition().bundle(BundleKind::Identified).is_empty() {
+                "in use: no identified model"
             } else {
                 "in use: models of the file"
             };

@@ -19,8 +19,7 @@ use crate::gui::widgets::palette::Palette;
 const BAR: f32 = 72.0;
 /// Width for the progress text \[pt\].
 const BAR_WORDS: f32 = 112.0;
-const IDENTIFY_HINT: &str =
-    "Identifies models from the records: CT-PBSID, refined, with confidence bands (M14)";
+const IDENTIFY_HINT: &str = "Identifies models from the records: CT-PBSID, refined, with confidence bands (docs/identification.md)";
 
 /// Draws the commands, from right to left: *Use n fits*, then *Identify* or the progress with
 /// *Stop*.

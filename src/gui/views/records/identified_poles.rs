@@ -29,7 +29,7 @@ pub(super) fn stabilisation_chart<'a>(
     for mark in records.marks("order-limit") {
         chart.notes.push((mark, palette.warning));
     }
-    let note = "×: within 5 % of the order lower by 2".to_owned();
+    let note = "×: within 5 % of a pole two orders lower".to_owned();
     chart.notes.push((note, palette.dim_text));
     for is_stable in [false, true] {
         chart

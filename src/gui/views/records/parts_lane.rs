@@ -320,7 +320,7 @@ impl Lane<'_> {
         let is_whole = bar.row.is_none() && bar.ends_s == self.record.span_s;
         match (is_whole, bar.is_used) {
             (true, true) => format!("whole record, {from} to {to} s"),
-            (true, false) => format!("not used, {from} to {to} s"),
+            (true, false) => format!("whole record not used, {from} to {to} s"),
             (false, true) => format!("part used, {from} to {to} s"),
             (false, false) => format!("part not used, {from} to {to} s"),
         }
@@ -343,7 +343,7 @@ impl Lane<'_> {
                     let name = &self.page.records.rows[row].table.name;
                     format!("Move the {words} of {name}")
                 }
-                None => format!("Cut at the {words}"),
+                None => format!("Cut the record at the {words}"),
             };
             let response =
                 named(response, Role::Slider, name).on_hover_cursor(CursorIcon::ResizeHorizontal);

@@ -156,7 +156,7 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
         parts.push(format!("units of {} assumed", assumed.join(", ")));
     }
     if parts.is_empty() {
-        return "not yet checked by an identification".to_owned();
+        return "not checked by an up-to-date identification".to_owned();
     }
     parts.join(", ")
 }

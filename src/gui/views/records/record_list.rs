@@ -21,8 +21,7 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Tooltip on fit costs.
-pub(super) const CHI_SQUARED: &str =
-    "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14.6)";
+pub(super) const CHI_SQUARED: &str = "Cost per degree of freedom of the recommended model; 1 if only noise remains (docs/identification.md)";
 
 /// Left edge of record names \[pt\].
 const NAME: f32 = 20.0;

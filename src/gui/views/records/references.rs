@@ -49,7 +49,7 @@ pub(super) fn references_ui(
         list.response.request_focus();
     }
     let hint = "Columns with recorded external inputs of the closed loop, used as instrumental \
-        variables (M14.15)";
+        variables (docs/identification.md)";
     named(
         list.response.on_hover_text(hint),
         Role::ComboBox,

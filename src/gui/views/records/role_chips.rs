@@ -56,11 +56,20 @@ pub(super) fn role_chips_ui(
                         .to_owned()
                 }
             },
-            (TimeRole::Identified, None) => "No model has been identified from records".to_owned(),
-            (TimeRole::Scheduled, None) if has_no_schedule(page) => {
-                "There is no schedule".to_owned()
+            (TimeRole::Identified, None) => {
+                "No model has been identified from records: choose Identify".to_owned()
             }
-            (_, None) => "Not available as a state-space model without delays".to_owned(),
+            (_, None) if page.state.shown().is_none() => {
+                "The condition has no result, so no model to simulate".to_owned()
+            }
+            (TimeRole::Scheduled, None) if has_no_schedule(page) => {
+                "There is no schedule, so no scheduled model".to_owned()
+            }
+            (_, None) => {
+                "Not simulated: the record needs assigned columns, and the model must be a \
+                state-space model in continuous time without delays"
+                    .to_owned()
+            }
         };
         response.on_hover_text(hint);
     }

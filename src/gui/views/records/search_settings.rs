@@ -63,10 +63,8 @@ impl SearchList {
             Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
             Self::LaguerrePoles => {
                 if let Some(pole) = list.iter().find(|pole| **pole <= 0.0) {
-                    let text = format!(
-                        "Laguerre poles: expected positive values, found {}",
-                        number(*pole)
-                    );
+                    let text =
+                        format!("expected positive values in rad/s, found {}", number(*pole));
                     return Err(Message::new("pole-not-positive", text));
                 }
                 search.poles = list;
@@ -142,7 +140,10 @@ fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     if let Some(text) = field_ui(ui, "band [rad/s]", &value, &hint, page.palette) {
         commands.push(match numbers(&text).and_then(|list| typed_band(&list)) {
             Ok(band) => RecordsCommand::SetBand(band).into(),
-            Err(why) => Command::Form(FormCommand::Refuse(why)),
+            Err(why) => {
+                let text = format!("band: {}", why.text);
+                Command::Form(FormCommand::Refuse(Message::new(why.code, text)))
+            }
         });
     }
 }

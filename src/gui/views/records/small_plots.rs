@@ -41,8 +41,13 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
         area.with_max_x(middle - 0.5 * GAP),
         area.with_min_x(middle + 0.5 * GAP),
     ];
+    let has_held_out = page
+        .records
+        .identification()
+        .is_some_and(|found| found.held_out_cost.is_some());
+    let held_out_note = if has_held_out { "dashed: held out" } else { "" };
     let captions = [
-        ["χ²/dof vs order", "dashed: held out"],
+        ["χ²/dof vs order", held_out_note],
         ["poles, rad/s", "grey: not determined"],
     ];
     let palette = page.palette;
@@ -61,14 +66,20 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     let [orders, poles] = plots;
     let mut chart = small_chart("χ²/dof vs order");
     add_order_fits(&mut chart, found, palette);
-    plot_ui(ui, page, orders, &chart, commands);
+    let hint = if has_held_out {
+        "Opens page Order; dashed: held-out records"
+    } else {
+        "Opens page Order"
+    };
+    plot_ui(ui, page, orders, &chart, hint, commands);
     let mut chart = small_chart("poles, rad/s");
     add_poles(&mut chart, &found.poles, palette);
     if let Some([real, imaginary]) = pole_ranges(found) {
         chart.whole_across = Some(real);
         chart.values = Some(imaginary);
     }
-    plot_ui(ui, page, poles, &chart, commands);
+    let hint = "Opens page Order; grey: not determined by the records";
+    plot_ui(ui, page, poles, &chart, hint, commands);
 }
 
 fn small_chart(title: &str) -> Chart<'_> {
@@ -105,6 +116,7 @@ fn plot_ui(
     page: Page<'_>,
     place: Rect,
     chart: &Chart<'_>,
+    hint: &str,
     commands: &mut Vec<Command>,
 ) {
     chart_ui(ui, place, chart, page.palette);
@@ -117,6 +129,6 @@ fn plot_ui(
     );
     response
         .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text("Opens page Order. Dashed: held out; grey: not determined by the records")
+        .on_hover_text(hint)
         .asks(RecordsCommand::Show(RecordsPage::Order), commands);
 }

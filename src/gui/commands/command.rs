@@ -35,7 +35,6 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the command that shows a form.
     pub(super) fn show_form(form: FormKind) -> Self {
         Self::Form(FormCommand::ShowForm(Some(form)))
     }

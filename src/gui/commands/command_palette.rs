@@ -176,7 +176,8 @@ fn is_asked(name: &str, query: &str) -> bool {
     }
 }
 
-/// Scores a query's word; `None` if the name does not even contain its letters.
+/// Scores a query word from 4 (a whole word in the name) to 1 (only its letters, in order); `None`
+/// without a match.
 fn word_score(name: &str, word: &str) -> Option<usize> {
     if words_of(name).any(|whole| whole == word) {
         Some(4)

@@ -1,4 +1,4 @@
-//! Table that lists all commands, the source for menus, shortcuts, the palette and the page about
+//! Table of the commands, the source for menus, shortcuts, the command palette and the page about
 //! keys.
 
 use egui::{Key, Modifiers};
@@ -90,7 +90,8 @@ fn figure_entries(view: View) -> [Entry; 2] {
     ]
 }
 
-/// Returns the entries for the displayed condition's flight records.
+/// Returns the entries that identify models from flight records, and that use or remove these
+/// models in the displayed condition.
 fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
@@ -209,7 +210,8 @@ fn help_entries() -> impl Iterator<Item = Entry> {
 }
 
 /// Returns the entries in the palette: the command table without the palette itself, and entries
-/// for each set of net gains, condition, response, model and recent file.
+/// for each set of net gains, condition, response, model in the displayed condition, and recent
+/// file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let palette = Command::show_form(FormKind::Palette);
     let mut entries = command_table(state);

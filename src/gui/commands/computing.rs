@@ -1,6 +1,5 @@
 //! Commands that stop and resume the computation.
 
-/// Stops or resumes the computation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ComputingCommand {
     /// Stops reading a file; if none is being read, stops the computation.

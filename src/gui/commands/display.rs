@@ -39,9 +39,10 @@ pub enum DisplayCommand {
     ShowAcrossAlone(AcrossRole),
     /// Selects the conditions in the plots across conditions.
     ShowAcrossConditions(AcrossConditions),
-    /// Selects the page with plots across conditions.
+    /// Selects the page in the plots across conditions: responses or errors.
     ShowAcrossPage(AcrossPage),
-    /// Changes the assessed quantity or its representation.
+    /// Changes the assessed model, correction, average or responses, or how the assessment is
+    /// drawn.
     Assess(AssessmentDisplay),
     /// Selects a physics parameter by name.
     ShowParameter(String),

@@ -74,7 +74,8 @@ fn step_command(verb: &str, step: Option<&UndoStep>) -> String {
     }
 }
 
-/// Returns the entries that reject the displayed condition's suggested models, and restore all.
+/// Returns the entries that reject the displayed condition's suggested models, and restore all its
+/// rejected models.
 fn rejection_entries(state: &State) -> [Entry; 2] {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);

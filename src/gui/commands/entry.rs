@@ -12,7 +12,7 @@ pub enum Menu {
     Edit,
     /// Displayed content, steps through it, layout and theme.
     View,
-    /// Curve style: a submenu in `View`.
+    /// Units, styles and visibility of curves: a submenu in `View`.
     Curves,
     Help,
 }

@@ -37,9 +37,9 @@ pub enum FileCommand {
     Reload,
     /// Keeps the open dataset although its file has changed.
     KeepOpen,
-    /// Opens decisions from a recovery file; the argument is the number of the offer.
+    /// Restores the decisions in a recovery file; the argument is the index in `Recovery::offers`.
     RestoreRecovery(usize),
-    /// Removes a recovery file; the argument is the number of the offer.
+    /// Removes a recovery file; the argument is the index in `Recovery::offers`.
     DiscardRecovery(usize),
     /// Checks which recent files exist.
     LookForRecent,

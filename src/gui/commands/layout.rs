@@ -11,7 +11,7 @@ use crate::gui::state::view::{View, ViewGroup};
 pub enum LayoutCommand {
     /// Brings a view to the front.
     ShowView(View),
-    /// Shows the next page in the view in front, or the previous one.
+    /// Shows the next or the previous page in the view in front.
     TurnPage { forward: bool },
     /// Brings a view group to the front and shows the view that was last open in it.
     ShowGroup(ViewGroup),
@@ -27,17 +27,17 @@ pub enum LayoutCommand {
     ResetLayout,
     /// Shows the left panel in full (`true`) or as a narrow rail.
     ShowLeft(bool),
-    /// Shows a sheet over the views, or closes it.
+    /// Shows a sheet; `None` closes the open one.
     ShowSheet(Option<Sheet>),
-    /// Unfolds or folds the settings.
+    /// Opens (`true`) or closes the settings.
     ShowSettings(bool),
-    /// Unfolds or folds the rarely changed settings.
+    /// Unfolds (`true`) or folds the rarely changed settings.
     ShowAdvanced(bool),
-    /// Unfolds or folds the identified models.
+    /// Unfolds (`true`) or folds the identified models.
     ShowIdentified(bool),
     /// Selects a theme, or follows the desktop's.
     SetTheme(ThemePreference),
-    /// Shows the start page, or the study behind it.
+    /// Shows the start page (`true`), or the study behind it.
     ShowStart(bool),
     /// Sets what the program opens at the next start.
     BeginWith(OpensWith),
@@ -49,6 +49,6 @@ pub enum LayoutCommand {
     LeaveRegion { forward: bool },
     /// Shows the first step in the guided tour.
     StartTour,
-    /// Shows another step in the guided tour, or ends it.
+    /// Shows a step in the guided tour, counted from 0; `None` ends the tour.
     ShowTourStep(Option<usize>),
 }

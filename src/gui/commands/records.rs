@@ -12,7 +12,8 @@ use gdcm_sysid::records::RecordLayout;
 use crate::gui::state::column_groups::RecordPlace;
 use crate::gui::state::records::{RecordsFold, RecordsPage, TimeRole};
 
-/// A command in the Records view.
+/// A command in the Records view, in which a row index names a record or part in the displayed
+/// condition, unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordsCommand {
     /// Read files, and folders with all their files.
@@ -23,20 +24,20 @@ pub enum RecordsCommand {
     AskFolder,
     /// Type the path to a file, a folder or an archive.
     AskPath,
-    /// Assign these added records without a condition to a condition.
+    /// Assign added records without a condition, named by their index among these, to a condition.
     Assign(Vec<usize>, ConditionId),
-    /// Remove an added record without a condition.
+    /// Remove an added record without a condition, named by its index among these.
     Discard(usize),
-    /// Unfold a section below the records, or fold it.
+    /// Unfold a section below the records; `None` folds the unfolded one.
     ShowFold(Option<RecordsFold>),
     /// Ask for the channels in a dataset to be made from the added records.
     AskDataset,
     /// Make a dataset with the requested channels, and open it.
     MakeDataset,
     Choose(usize),
-    /// Use a record, or leave it out.
+    /// Use a record (`true`), or leave it out.
     SetUsed(usize, bool),
-    /// Hold a record out from the fit for validation, or include it.
+    /// Hold a record out from the fit for validation (`true`), or fit it.
     SetHeldOut(usize, bool),
     /// Set a record's manoeuvre.
     SetKind(usize, RecordKind),
@@ -60,7 +61,7 @@ pub enum RecordsCommand {
     ShowAdvanced(&'static str),
     /// The field asked for by [`Self::ShowAdvanced`] has the focus.
     AdvancedFocused,
-    /// Draw a role's curves over time, or hide them.
+    /// Draw a role's curves over time (`true`), or hide them.
     ShowTimeRole(TimeRole, bool),
     /// Draw these outputs over time below the output in focus.
     ShowOutputs(Vec<usize>),
@@ -68,15 +69,15 @@ pub enum RecordsCommand {
     ConfirmUnits,
     /// Show the first record with assumed units, from any condition, on the Columns page.
     CheckUnits,
-    /// Show a record's columns.
+    /// Show a record, from any condition, on the Columns page.
     ShowColumns(RecordPlace),
-    /// Add the part between two times \[s\] as a separate record, used in place of the whole.
+    /// Add the part between two times \[s\] as a separate record, used instead of the whole.
     AddPart(usize, [f64; 2]),
     /// Move the ends \[s\] of the part in this row.
     MovePart(usize, [f64; 2]),
     /// Remove this row, which is a part of a record.
     RemovePart(usize),
-    /// Show an input's spectrogram beside the records over time, or hide it.
+    /// Show an input's spectrogram beside the records over time; `None` hides it.
     ShowSpectrogram(Option<usize>),
     Show(RecordsPage),
     /// Identify models for the displayed condition.
@@ -89,7 +90,7 @@ pub enum RecordsCommand {
     Stop,
     /// Put the identified models into the displayed condition.
     Take(AdoptionChoice),
-    /// Put the models from every finished fit that is not yet in the study into its condition.
+    /// Put the models from each finished fit that is not yet in the study into the fit's condition.
     TakeAll(AdoptionChoice),
     /// Restore the models from the dataset's file in the displayed condition.
     Return,

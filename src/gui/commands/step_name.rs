@@ -5,7 +5,7 @@ use gdcm_words::edit::edit_text;
 
 use crate::gui::state::window_state::UndoStep;
 
-/// Returns a step's name: "reject nominal (condition 10)".
+/// Returns a step's name, such as "reject nominal (condition 10)".
 pub fn step_name(step: &UndoStep) -> String {
     match &step.change {
         Change::Decision(edit) => edit_text(edit, &step.study.dataset),

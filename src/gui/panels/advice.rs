@@ -21,14 +21,14 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::{offered_couplings, used_couplings};
 
-/// Text on the step that uses the offered couplings.
+/// Label of the button that uses the worthwhile couplings (`offered_couplings`).
 pub(super) const USE_COUPLINGS: &str = "Use couplings";
-/// Text on the step that shows the couplings.
+/// Label of the button that opens the Couplings view.
 pub(super) const INSPECT: &str = "Inspect";
-/// Text on the step that opens the reasons for the result.
+/// Label of the button that opens the sheet with the reasons for the result.
 const REASONS: &str = "Find the cause";
 
-/// Returns the text on the step that chooses this phase correction.
+/// Returns the label of the button that chooses this phase correction.
 pub(super) fn phase_step_label(phase: PhaseCorrection) -> &'static str {
     match phase {
         PhaseCorrection::None => "Leave phase uncorrected",
@@ -40,7 +40,6 @@ pub(super) fn phase_step_label(phase: PhaseCorrection) -> &'static str {
 /// Recommended or alternative action, drawn as a button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// Button text.
     pub label: String,
     pub command: Command,
 }
@@ -172,7 +171,8 @@ impl Advice {
     }
 }
 
-/// Formats "off-axis J 41→12".
+/// Formats J of the unconstrained responses without and with couplings, as "off-axis J 41→12";
+/// empty if it is undefined.
 fn off_axis_note(cost: CorrectionCost) -> String {
     match (cost.without.others, cost.with.others) {
         (Some(without), Some(with)) => {

@@ -166,7 +166,7 @@ impl Marks {
         }
     }
 
-    /// Describes open tasks: "3 suggested as outliers, not rejected".
+    /// Describes open tasks, such as "3 suggested as outliers, not rejected".
     fn open_tasks(&self) -> Vec<String> {
         let mut tasks = Vec::new();
         match self.suggested {

@@ -107,7 +107,7 @@ pub(super) const CELL_HEIGHT: f32 = 12.0;
 const MARK_ROOM: f32 = 16.0;
 
 impl<'a> ConditionRows<'a> {
-    /// Lays out rows with the given `width` \[pt\].
+    /// Lays out the list's rows with the given `width` \[pt\].
     pub(super) fn list(state: &'a State, width: f32) -> Self {
         Self::new(state, LIST, width - LIST.cells_left - MARK_ROOM)
     }
@@ -213,7 +213,7 @@ impl<'a> ConditionRows<'a> {
         }
     }
 
-    /// Draws the column headings; a right-click selects the mapped cost.
+    /// Draws the column headings; a right-click opens the menu that selects the mapped cost.
     pub(super) fn heads_ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let (row, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::CLICK);
         for (end, words) in [
@@ -308,7 +308,8 @@ impl<'a> ConditionRows<'a> {
         });
     }
 
-    /// Draws a condition's cells; a click on a cell shows the condition and the response.
+    /// Draws a condition's cells; a click on a cell shows the condition and the cell's response, of
+    /// several the one with the greatest J.
     fn cells_ui(
         &self,
         ui: &mut Ui,
@@ -384,7 +385,7 @@ fn cost_words(
     format!("{name} in condition {condition}: magnitude J {magnitude}, phase J {phase}")
 }
 
-/// Returns a row's accessible name: "Condition 10: 60 kt, low altitude, high weight".
+/// Returns a row's accessible name, such as "Condition 10: 60 kt, low altitude, high weight".
 pub(super) fn condition_name(condition: &Condition, marks: &Marks) -> String {
     format!(
         "Condition {}: {}{}",
@@ -394,7 +395,7 @@ pub(super) fn condition_name(condition: &Condition, marks: &Marks) -> String {
     )
 }
 
-/// Formats "60 kt, low altitude, high weight".
+/// Describes a condition, for example "60 kt, low altitude, high weight".
 fn flight_state_words(state: &FlightState) -> String {
     let mut words = format!("{} kt", state.airspeed_kt);
     if let Some(altitude) = &state.altitude {

@@ -12,8 +12,8 @@ use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{HEAT_COSTS, Palette, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Draws every condition with its airspeed and, for its constrained responses, the mapped costs; a
-/// click shows the condition.
+/// Draws every condition with its airspeed and the mapped costs (`cost_map.rs`); a click shows the
+/// condition.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Conditions, |ui| {
         let older = if state.others_are_older() {

@@ -1,6 +1,6 @@
-//! Values of the cost map: magnitude and phase part of J for every constrained response in every
-//! condition. With couplings, another column has the mean over the unconstrained responses.
-//! `condition_rows.rs` paints the values as shades.
+//! Values of the cost map: magnitude and phase part of J for every constrained response (if there
+//! are many, for every input) in every condition. With couplings, another column has the mean over
+//! the unconstrained responses. `condition_rows.rs` paints the values as shades.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};

@@ -28,21 +28,23 @@ use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 use crate::gui::widgets::panel_layout::in_line_ui;
 
-/// Maximum size \[pt\].
+/// Maximum size of the dialog \[pt\].
 const LARGEST: Vec2 = vec2(1028.0, 616.0);
 /// Minimum distance between the dialog and the window edges, on each side \[pt\].
 const MARGIN: f32 = 24.0;
-/// Heights of the title line and the button line \[pt\].
+/// Height of the title line \[pt\].
 const HEAD: f32 = 45.0;
+/// Height of the button line \[pt\].
 const FOOT: f32 = 52.0;
 /// Height of an error line \[pt\].
 const ERROR: f32 = 30.0;
 /// Column padding \[pt\].
 const PADDING: f32 = 20.0;
-/// Widths for formats and options in wide windows, and for their common column in narrow windows
-/// \[pt\].
+/// Width of the column with the formats in a wide dialog \[pt\].
 const FORMATS: f32 = 232.0;
+/// Width of the column with the options in a wide dialog \[pt\].
 const OPTIONS: f32 = 306.0;
+/// Width of the common column with formats and options in a narrow dialog \[pt\].
 const SHARED: f32 = 330.0;
 
 /// Draws the dialog in front of the window.
@@ -193,7 +195,7 @@ fn error_ui(
     }
 }
 
-/// Draws the equivalent command line and the buttons.
+/// Draws the buttons: copying the equivalent command line, cancelling, exporting.
 fn foot_ui(
     ui: &mut Ui,
     place: Rect,

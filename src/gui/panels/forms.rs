@@ -24,8 +24,8 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws the requested form, if any. Its field has the focus when it opens; Enter submits the form;
-/// Escape and a click outside close it.
+/// Draws the requested form, if any. Its text field, or else its first button, has the focus when
+/// it opens; Enter submits the form; Escape and a click outside close it.
 pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(kind) = state.forms.shown else {
         state.forms.drawn = None;

@@ -35,7 +35,6 @@ pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         });
 }
 
-/// Keys and their meaning.
 struct KeyRow {
     keys: String,
     meaning: String,
@@ -97,7 +96,7 @@ fn rows_ui<'a>(
         });
 }
 
-/// Pointer gestures, except clicks on named controls.
+/// Pointer gestures, and keys in plots and tables.
 const GESTURES: &[(&str, &str)] = &[
     ("click on a curve", "reject or restore its model"),
     ("Alt+click on a curve", "show it alone; again: show all"),

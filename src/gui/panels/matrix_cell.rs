@@ -94,7 +94,8 @@ impl<'a> Cell<'a> {
     }
 
     /// Draws the cell and its box. A click on the box, a double click or the space bar constrains
-    /// or releases the response, unless it is undefined; any other click brings it into focus.
+    /// or releases the response (an undefined response can only be released); any other click
+    /// brings it into focus.
     pub(super) fn ui(
         &self,
         ui: &mut Ui,
@@ -365,7 +366,7 @@ struct CellValue {
     half: Rect,
     text: String,
     font: FontId,
-    /// Error bar's half-width: "±12".
+    /// Error bar's half-width, such as "±12": for G relative \[%\], for D \[ms\].
     bar: Option<String>,
     bar_color: Color32,
     underline: Option<CostParts>,

@@ -42,9 +42,9 @@ pub struct MatrixSpace {
     pub has_card: bool,
 }
 
-/// Draws every response as a cell within `space`. A click on the cell shows the
-/// response in the large plot; a click on its box, a double click or the space bar constrains or
-/// releases it; a right-click opens a menu.
+/// Draws every response as a cell within `space`. A click on the cell shows the response in the
+/// large plot; a click on its box, a double click or the space bar constrains or releases it; a
+/// right-click opens a menu.
 pub fn matrix_ui(
     ui: &mut Ui,
     state: &State,

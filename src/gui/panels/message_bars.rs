@@ -72,7 +72,8 @@ fn line_with_name(ui: &Ui, name: &str, rest: &str, room: f32) -> String {
     format!("{}{rest}", elided(ui, name, room, BODY_SIZE))
 }
 
-/// Continues the name of a reloaded file: " reloaded: 3 differences, 1 decision lost".
+/// Continues the name of a reloaded file, for example with " reloaded: 3 differences, 1 decision
+/// lost".
 fn difference_count(differences: &[Difference]) -> String {
     let count = counted(differences.len(), "difference");
     let lost = differences
@@ -100,7 +101,7 @@ fn fault_sentence(report: &FaultReport) -> String {
     )
 }
 
-/// Formats "Unsaved decisions of 14:32 on 21 Nov 2026 for data.json.gz (study
+/// Formats, for example, "Unsaved decisions of 14:32 on 21 Nov 2026 for data.json.gz (study
 /// mine.gdcm-study.json)".
 fn recovery_sentence(offer: &RecoveryOffer) -> String {
     let study = match &offer.study {

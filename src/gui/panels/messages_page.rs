@@ -43,7 +43,7 @@ pub(super) fn messages_ui(form: &mut Form<'_, '_>, notices: &Notices) {
     });
 }
 
-/// Returns "14:32  saved example.json".
+/// Returns, for example, "14:32  saved example.json".
 fn message_line(notice: &Notice) -> String {
     format!("{}  {}", notice.at, notice.text)
 }

@@ -130,7 +130,7 @@ impl<'a> ModelRow<'a> {
     ) {
         let width = ui.available_width();
         // `Sense::CLICK` is not reachable by Tab: the actions are on the box, on the star, and in
-        // the palette.
+        // the command palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
         let response = named(
             response,
@@ -142,7 +142,7 @@ impl<'a> ModelRow<'a> {
         }
         self.keep_ui(ui, rect, commands);
         self.star_ui(ui, rect, palette, commands);
-        // A bundle may contain a thousand models, so hidden rows are not painted.
+        // A bundle may contain a thousand models, so rows out of view are not painted.
         if ui.is_rect_visible(rect) {
             let value_width = self.paint_value(ui, rect, palette);
             match trims.and_then(|trims| trims.offsets(self.model)) {
@@ -213,9 +213,9 @@ impl<'a> ModelRow<'a> {
         });
     }
 
-    /// Draws the star, visible at the representative and under the pointer: a click makes the model
-    /// the representative, or returns to the medoid. A dot marks a representative chosen by the
-    /// engineer.
+    /// Draws the star, visible at the representative, and while it has the pointer or the focus: a
+    /// click makes the model the representative, or returns to the medoid. A dot marks a
+    /// representative chosen by the engineer.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(
             pos2(rect.left() + 24.0, rect.top()),
@@ -379,7 +379,7 @@ impl<'a> ModelRow<'a> {
 
     /// Draws the name above at most five aligned rows. The submenu
     /// [`QUESTION`](crate::gui::plot::derivation_menu::QUESTION) in the row's menu leads to the
-    /// derivation of every value.
+    /// derivations of the discontinuity ratio and the mean distance.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")

@@ -22,7 +22,6 @@ struct PathWords {
     hint: &'static str,
     /// Text below the field; may be empty.
     explanation: &'static str,
-    /// Button text.
     submit: &'static str,
 }
 
@@ -144,7 +143,7 @@ pub(super) fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State
     *forms.typed_in(kind) = path;
 }
 
-/// Returns the title, which names the table or view to be saved.
+/// Returns the title, with the name of the table or view if one is to be saved.
 fn title(words: &PathWords, forms: &Forms) -> String {
     match (words.kind, &forms.table, forms.figure) {
         (FormKind::SaveTable, Some(table), _) => {

@@ -39,14 +39,17 @@ pub(super) fn phase_sketch_ui(
 
 struct PhaseSketch {
     plot: Rect,
-    /// Band ends \[rad/s\].
+    /// Lower band end \[rad/s\].
     min: f64,
+    /// Upper band end \[rad/s\].
     max: f64,
-    /// Minimum and maximum phase \[deg\].
+    /// Minimum phase \[deg\].
     least: f64,
+    /// Maximum phase \[deg\].
     most: f64,
-    /// Phases of the corrected and the identified model at each step \[deg\].
+    /// Phases of the corrected model at each step \[deg\].
     corrected: Vec<f64>,
+    /// Phases of the identified model at each step \[deg\].
     flight: Vec<f64>,
 }
 

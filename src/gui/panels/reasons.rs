@@ -282,7 +282,7 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
 }
 
 /// Draws the off-axis benefit from worthwhile couplings, and the buttons that use and show them;
-/// nothing if none are offered.
+/// nothing if no couplings are worthwhile.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((assessment, _)) = offered_couplings(state) else {
         return;

@@ -25,8 +25,9 @@ struct Columns {
     /// Centre of the flight-state mark; `None` in the rail.
     mark_center: Option<f32>,
     airspeed_end: f32,
-    /// Right edges of the record counts and of χ²/dof for fitted records; `None` in the rail.
+    /// Right edge of the record counts; `None` in the rail.
     records_end: Option<f32>,
+    /// Right edge of χ²/dof for fitted records; `None` in the rail.
     cost_end: Option<f32>,
     held_out_end: f32,
     /// Left edge of the fit state.
@@ -56,7 +57,8 @@ const RAIL: Columns = Columns {
     height: 24.0,
 };
 
-/// Draws every condition with its record counts and its fit state; a click shows the condition.
+/// Draws every condition with its record counts, fit costs and fit state; a click shows the
+/// condition.
 pub fn record_conditions_ui(
     ui: &mut Ui,
     state: &State,

@@ -83,7 +83,7 @@ fn wide_field_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str) -> bool
     is_entered(ui, &field)
 }
 
-/// Formats "columns: time, gyro_x, gyro_y, and 12 more".
+/// Lists the record columns, for example "columns: time, gyro_x, gyro_y, and 12 more".
 fn column_words(columns: &[String]) -> String {
     let shown = &columns[..columns.len().min(MOST_COLUMNS)];
     let mut words = format!("columns: {}", shown.join(", "));

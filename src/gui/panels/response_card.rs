@@ -27,7 +27,7 @@ pub struct CardRow {
     pub wants: String,
     /// Gain error, delay error or J that remains after the correction.
     pub left: String,
-    /// Error bar's half-width, with its unit.
+    /// Error bar's half-width with its unit; empty without an error bar, as for J.
     pub half: String,
     /// Whether the correction has hardly reduced the value: a delay of which more than 0.5 ms and
     /// at least 99 % remain, a part of J as in `is_not_reduced`; always false for the gain.
@@ -82,7 +82,7 @@ fn cost_row(name: &'static str, before: f64, after: f64) -> CardRow {
     }
 }
 
-/// Formats "56.3 ms".
+/// Formats a time \[ms\] with its unit, such as "56.3 ms".
 fn milliseconds(value: f64) -> String {
     format!("{} ms", decimals(value, 1))
 }

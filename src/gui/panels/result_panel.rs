@@ -31,8 +31,8 @@ const ROW: f32 = 18.0;
 const GAIN_END: f32 = 0.5;
 /// Right edge of the delays, as a share of the side's width.
 const DELAY_END: f32 = 0.85;
-/// Least gap between a channel name and its gain, and between the error bar of a gain and the delay
-/// beside it \[pt\].
+/// Minimum gap between a channel name and its gain, and between the error bar of a gain and the
+/// delay beside it \[pt\].
 const LEAST_GAP: f32 = 5.0;
 /// Gap between a value and its error bar, or its earlier value \[pt\].
 const BESIDE_GAP: f32 = 3.0;
@@ -41,7 +41,7 @@ const BESIDE_GAP: f32 = 3.0;
 pub(super) const OLDER: f32 = 0.5;
 
 /// Draws every channel's gain and delay; in a low window (`is_folded`) only the smallest and the
-/// largest gain; without a result the reason, with the same height.
+/// largest gain; without a result, at the same height, "none" or why there is none yet.
 pub fn result_ui(
     ui: &mut Ui,
     state: &State,
@@ -107,7 +107,7 @@ fn rows_height(state: &State) -> f32 {
     ROW * (rows + 1) as f32
 }
 
-/// Draws whether the gains are proven optimal, in small text because they usually are; a click
+/// Draws, in small text, whether the gains are proven optimal, which they usually are; a click
 /// opens the proof.
 fn proof_ui(
     ui: &mut Ui,
@@ -168,7 +168,7 @@ struct ChannelValue {
     text: String,
     font: FontId,
     color: Color32,
-    /// Error bar's half-width: "±12".
+    /// Error bar's half-width, such as "±12": for a gain relative \[%\], for a delay \[ms\].
     half: Option<String>,
     /// Value when the settings were opened, if its text has changed since.
     was: Option<String>,

@@ -30,7 +30,7 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, chevron, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 use crate::gui::widgets::window_regions::{Region, region_ui};
 
-/// Space around everything \[pt\].
+/// Padding at the left and at the right of the panel \[pt\].
 const PADDING: f32 = 12.0;
 /// Settings line height \[pt\].
 const LINE: f32 = 36.0;

@@ -11,7 +11,7 @@ use crate::gui::widgets::escape_key::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 
 /// Draws a sheet over `centre`; returns whether the engineer has closed it: with its button, with
-/// Escape, or by a press outside.
+/// Escape, or, unless a popup is open, by a press outside.
 pub fn sheet_ui(
     ui: &Ui,
     centre: Rect,

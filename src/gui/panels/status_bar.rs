@@ -211,8 +211,8 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
 }
 
-/// Formats "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged until the fits
-/// are used".
+/// Formats, for example, "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged
+/// until the fits are used".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
     let mut words = match records.under_way() {
         Some(job) => format!("identifying condition {}, {percent} %", job.condition),

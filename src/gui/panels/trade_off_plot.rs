@@ -16,8 +16,9 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
 /// Plot height, with caption and tick labels \[pt\].
 pub const TRADE_OFF_HEIGHT: f32 = 88.0;
-/// Heights of caption and tick labels \[pt\].
+/// Caption height \[pt\].
 const CAPTION: f32 = 16.0;
+/// Tick label height \[pt\].
 const TICKS: f32 = 14.0;
 /// Values of α with a tick label.
 const TICK_ALPHAS: [f64; 5] = [1e-2, 0.1, 1.0, 10.0, 100.0];
@@ -173,7 +174,8 @@ impl TradeOffPlot<'_> {
     }
 }
 
-/// Returns a value rounded up to 1, 2 or 5 times a power of ten.
+/// Returns a value rounded up to 1, 2 or 5 times a power of ten; 1 unless it is positive and
+/// finite.
 fn rounded_up(value: f64) -> f64 {
     if value <= 0.0 || !value.is_finite() {
         return 1.0;
@@ -187,7 +189,8 @@ fn rounded_up(value: f64) -> f64 {
     10.0 * decade
 }
 
-/// Returns the point at α, interpolated linearly in `log α`; `None` without points.
+/// Returns the point at α, interpolated linearly in `log α`, beyond the outer points with their
+/// values; `None` without points.
 fn point_at(trade_off: &TradeOff, alpha: f64) -> Option<TradeOffPoint> {
     let points = &trade_off.points;
     let after = points.partition_point(|point| point.alpha < alpha);

@@ -33,7 +33,7 @@ impl TrimColumns {
         Some(Self { keys, heads })
     }
 
-    /// Returns a model's offsets, "·" for zero; `None` if all are zero.
+    /// Returns a model's offsets, "·" for zero; `None` if all are zero or the model has no trim.
     pub(super) fn offsets(&self, model: &Model) -> Option<Vec<String>> {
         let trim = model.perturbation()?;
         if trim.values().all(|offset| *offset == 0.0) {
@@ -68,7 +68,8 @@ fn trim_head(key: &str) -> String {
     }
 }
 
-/// Formats "airspeed_kt +5, roll_deg −3".
+/// Formats the offsets other than zero, such as "airspeed_kt +5, roll_deg −3"; "no perturbation" if
+/// there are none.
 pub(super) fn trim_words(trim: &BTreeMap<String, f64>) -> String {
     let offsets = trim.iter().filter(|(_, offset)| **offset != 0.0);
     let offsets: Vec<String> = offsets
@@ -81,7 +82,7 @@ pub(super) fn trim_words(trim: &BTreeMap<String, f64>) -> String {
     }
 }
 
-/// Formats "+5", "−3".
+/// Formats with a sign, such as "+5" or "−3".
 fn signed_compact(value: f64) -> String {
     let sign = if value > 0.0 { "+" } else { "" };
     format!("{sign}{}", compact(value))

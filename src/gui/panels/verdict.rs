@@ -30,7 +30,7 @@ pub struct Verdict {
     pub steps: Vec<Step>,
     /// Note beside the steps.
     pub note: String,
-    /// Caution to read before the result is used: "Leads: +21 dB above 12 rad/s".
+    /// Caution to read before the result is used, such as "Leads: +21 dB above 12 rad/s".
     pub caution: Option<Message>,
     /// Number of poles within the band that the couplings in use make unstable, over all kept
     /// physics models in all conditions.
@@ -49,7 +49,7 @@ pub struct VerdictRow {
     pub here: Option<MatchCount>,
     /// Count over all conditions with a result; `None` if `here` is, and without an analysis.
     pub everywhere: Option<MatchCount>,
-    /// Result in words: "matched", "lags by ≈ 66 ms".
+    /// Result in words, such as "matched" or "lags by ≈ 66 ms".
     pub message: Message,
     /// Whether all constrained responses are matched.
     pub is_met: bool,
@@ -66,7 +66,7 @@ impl VerdictRow {
         }
     }
 
-    /// Returns "5 of 5", or "–" without a result.
+    /// Returns the count, such as "5 of 5", or "–" without a result.
     pub fn count_text(count: Option<MatchCount>) -> String {
         match count {
             Some(count) => match_count_text(count),
@@ -74,7 +74,7 @@ impl VerdictRow {
         }
     }
 
-    /// Returns the verdict as a sentence for screen readers.
+    /// Returns the row as a sentence for screen readers.
     pub fn sentence(&self) -> String {
         let here = Self::count_text(self.here);
         let everywhere = Self::count_text(self.everywhere);

@@ -16,7 +16,7 @@ use crate::message::Message;
 ///
 /// 1. couplings are requested but missing, or make poles unstable within the band;
 /// 2. physics parameters are requested but not applied;
-/// 3. the leads have a price;
+/// 3. the leads amplify a constrained response above the band by more than 0.05 dB;
 /// 4. there are other cautions about the couplings;
 /// 5. the schedule costs more than the condition's own correction.
 pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {

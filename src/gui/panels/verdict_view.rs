@@ -22,16 +22,18 @@ use crate::gui::widgets::palette::{
     BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Verdict height in wide and in narrow windows \[pt\], reserved whatever the verdict contains, so
-/// that nothing below moves when a step is taken.
+/// Verdict height in wide windows \[pt\], reserved whatever the verdict contains, so that nothing
+/// below moves when a step is taken.
 const HEIGHT_WIDE: f32 = 128.0;
+/// Verdict height in narrow windows \[pt\], reserved likewise.
 const HEIGHT_NARROW: f32 = 112.0;
 /// Height of the heading line \[pt\].
 const HEADS: f32 = 16.0;
 /// Height of the step line \[pt\].
 const STEPS: f32 = 28.0;
-/// Padding at the left, where the edge is coloured, and at the right \[pt\].
+/// Padding at the left, where the edge is coloured \[pt\].
 const PAD_LEFT: f32 = 16.0;
+/// Padding at the right \[pt\].
 const PAD_RIGHT: f32 = 12.0;
 /// Gap between two steps \[pt\].
 const GAP: f32 = 8.0;
@@ -217,7 +219,7 @@ fn row_ui(ui: &Ui, rect: Rect, row: &VerdictRow, is_all_met: bool, palette: &Pal
 }
 
 /// Line with the steps, from left to right: the primary step, its alternatives, the caution or the
-/// note, and at the right end the link to the reasons. Each has the same place in every verdict.
+/// note, and at the right end the link to the reasons.
 struct StepsLine<'a> {
     primary: Option<&'a Step>,
     alternatives: Vec<&'a Step>,
@@ -338,7 +340,7 @@ impl<'a> StepsLine<'a> {
     }
 }
 
-/// Returns "⚠ +21 dB above 12 rad/s": a caution without the words before its colon.
+/// Returns a caution without the words before its colon, such as "⚠ +21 dB above 12 rad/s".
 fn short_caution(caution: &str) -> String {
     let short = match caution.split_once(": ") {
         Some((_, short)) => short,

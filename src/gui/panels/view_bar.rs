@@ -173,7 +173,7 @@ fn tab_ui(
     hint_above(response, view.facts().purpose).asks(LayoutCommand::ShowView(view), commands);
 }
 
-/// Draws the button that shows a second view beside the view in front, or hides it.
+/// Draws the button whose menu shows a second view beside the view in front, or hides it.
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let arrangement = &state.display.layout.arrangement;
     // The spaces make room for the symbol, which is painted over the button.

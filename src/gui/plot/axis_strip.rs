@@ -84,8 +84,8 @@ impl AxisStrip<'_> {
     }
 
     /// Draws the limits form beside the axis, if it is open for this axis, and carries out its
-    /// answer: refused limits leave it open with the reason, everything else closes it. A click
-    /// outside closes it too.
+    /// answer. Refused limits leave the form open with the reason; accepted limits, a fit and a
+    /// click outside close it.
     fn limits_ui(&self, ui: &Ui, strip: &Response, view: &mut BodeView) {
         let PaneScene {
             pane,
@@ -96,7 +96,7 @@ impl AxisStrip<'_> {
         let Some(mut form) = view.limits.take_if(|form| form.is_for(self.axis, pane)) else {
             return;
         };
-        // The form is out of the view while it is drawn, and goes back if it stays open.
+        // The form is taken out of the view while it is drawn, and put back if it stays open.
         let mut is_open = true;
         let popup = Popup::from_response(strip)
             .open_bool(&mut is_open)

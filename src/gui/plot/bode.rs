@@ -33,8 +33,8 @@ const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
 ///
 /// 1. nothing if the space is too small; only the message if no curve has a point to draw;
 /// 2. leave out the hidden curves;
-/// 3. move the axes: request a fit if the frequency range has changed, carry out requested fits,
-///    and let the values follow new curves;
+/// 3. move the axes: request a fit if the curves' frequency range has changed, carry out requested
+///    fits, and let the value axes follow new curves;
 /// 4. draw chips, panes and headings (`BodePlot::ui`), with the events on them.
 pub fn bode_ui(
     ui: &mut Ui,
@@ -90,7 +90,7 @@ pub fn bode_ui(
     events
 }
 
-/// Plot with data.
+/// Plot in which at least one curve has data.
 struct BodePlot<'a> {
     /// Scene with all curves, including hidden curves, which still have chips.
     scene: &'a BodeScene<'a>,
@@ -163,7 +163,7 @@ fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> 
     }
 }
 
-/// Returns whether a curve has a point that can be drawn.
+/// Returns whether a curve has a finite magnitude to draw.
 fn has_data(curves: &[BodeCurve]) -> bool {
     curves
         .iter()
@@ -191,7 +191,7 @@ impl Panes<'_> {
     /// 2. draw each pane, then handle clicks, its band ends, and the context menu on it;
     /// 3. report the curves in a finished selection box.
     ///
-    /// The cursor is the frequency under the pointer, or else that of another plot.
+    /// The cursor is at the frequency under the pointer, or else where another plot has set it.
     fn ui(&self, ui: &mut Ui, view: &mut BodeView) -> PanesResponse {
         let scene = self.scene;
         let mut events = Vec::new();

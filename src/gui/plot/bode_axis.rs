@@ -11,7 +11,6 @@ use crate::message::Message;
 /// Message about typed limits that do not increase.
 pub(super) const NOT_INCREASING: &str = "the lower limit must be below the upper limit";
 
-/// An axis in a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BodeAxis {
     /// Frequency axis, shared by both panes.
@@ -21,7 +20,7 @@ pub(super) enum BodeAxis {
 }
 
 impl BodeAxis {
-    /// Returns the accessible name: "Frequency axis, magnitude plot".
+    /// Returns the accessible name, such as "Frequency axis, magnitude plot".
     pub(super) fn name(self, scene: &BodeScene<'_>, pane: Pane) -> String {
         let kind = match self {
             Self::Frequency => "Frequency",

@@ -3,7 +3,6 @@
 use super::curve_command::CurveCommand;
 use super::drawn_curves::CurveId;
 
-/// Event in a Bode plot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodeEvent {
     /// Another curve, or none, is under the pointer.
@@ -28,11 +27,10 @@ pub enum BodeEvent {
     ActionChosen(CurveId, CurveAction),
     /// A box was drawn over these curves.
     Boxed(Vec<CurveId>),
-    /// A chip was clicked; the argument is its index.
+    /// A restriction's chip was clicked; the argument is its index in `BodeScene::chips`.
     ChipClicked(usize),
 }
 
-/// Action on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveAction {
     /// Rejects the curve's model, or restores it.

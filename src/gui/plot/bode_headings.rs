@@ -47,8 +47,9 @@ pub(super) struct BodeHeadings<'a> {
 }
 
 impl BodeHeadings<'_> {
-    /// Draws the texts. While the curves are older than the settings, the scene's message or
-    /// "updating…" is above the magnitudes, unless a note is there.
+    /// Draws the texts, the read-out and the coherence strip. While the curves are older than the
+    /// settings, the scene's message or "updating…" is above the magnitudes, unless a note is
+    /// there.
     pub(super) fn ui(&self, ui: &Ui, layout: &BodeLayout) {
         let scene = self.scene;
         for pane in PANES {
@@ -202,7 +203,8 @@ impl BodeHeadings<'_> {
 }
 
 /// Returns the magnitude added by the leads as text for the heading above the magnitudes; `None`
-/// without leads, or if the margin has room for it.
+/// above the phases, without leads, or if the right margin names the curves and the price
+/// (`pane_labels`).
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     if pane != Pane::Magnitude || scene.names_curves {
         return None;
@@ -222,7 +224,7 @@ fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &P
 }
 
 /// Returns the last visible point on the first curve in a role; `None` without such a curve, or
-/// without a value there.
+/// without a value at its end.
 fn curve_end(scene: &BodeScene<'_>, role: Role, pane: Pane, last_omega: f64) -> Option<PlotPoint> {
     let curve = scene.curves.iter().find(|curve| curve.role == role)?;
     let omega = curve.omega.last()?.min(last_omega);

@@ -11,11 +11,11 @@ use crate::gui::widgets::palette::Palette;
 
 /// Pan step for an arrow key, as a share of the visible range.
 const STEP: f32 = 0.1;
-/// Zoom factor for the + key.
+/// Zoom factor for a press of the + key; its inverse for the − key.
 const CLOSER: f64 = 1.25;
 
 /// Handles the keys if the pane has the focus: arrows pan, + and − zoom (with Shift only the
-/// frequencies), Home fits, Escape leaves the plot.
+/// frequencies), Home fits both panes. Escape leaves the plot, by egui itself.
 pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     if !response.has_focus() {
         return;

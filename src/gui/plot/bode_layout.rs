@@ -10,9 +10,10 @@ use super::readout_strip::STRIP_HEIGHT;
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
 /// Magnitude pane's share of the panes' total height.
 const MAGNITUDE_PART: f32 = 0.52;
-/// Line height above a pane \[pt\].
+/// Height of the heading above a pane \[pt\].
 const HEADING: f32 = 20.0;
-/// Space above and below the read-out, and above the coherence strip \[pt\].
+/// Space above and below the read-out (without it, between the panes), and above the coherence
+/// strip \[pt\].
 const GAP: f32 = 6.0;
 /// Margin at the right for the frequency unit \[pt\].
 const UNIT_MARGIN: f32 = 36.0;
@@ -60,8 +61,8 @@ impl BodeLayout {
             inner = inner.with_max_y(strip.top() - GAP);
             coherence = Some(strip);
         }
-        // The strip keeps its room when it is empty, so that nothing moves when the pointer
-        // arrives.
+        // A reserved read-out has its room even without values, so that nothing moves when the
+        // pointer arrives.
         let has_readout = (scene.readout.is_some() || scene.reserves_readout)
             && inner.height() >= LEAST_WITH_STRIP;
         let between = if has_readout {

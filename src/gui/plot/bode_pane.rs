@@ -31,15 +31,17 @@ const TOLERANCE: f64 = 0.1;
 const LEAST_LABELS: usize = 5;
 /// Height of the strips that mark frequency ranges along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
-/// Opacity of the comparison band's shade, in the dark and in the light theme.
+/// Opacity of the comparison band's shade in the dark theme.
 const SHADE_DARK: f32 = 0.055;
+/// Opacity of the comparison band's shade in the light theme.
 const SHADE_LIGHT: f32 = 0.075;
 /// Opacity of the veil outside the comparison band.
 const VEIL: f32 = 0.4;
 /// Opacity of uncertainty bands and of the other areas between two curves.
 const BAND_FILL: f32 = 0.22;
-/// Opacity of the lines at marked frequencies and at the frequency under the pointer.
+/// Opacity of the lines at marked frequencies.
 const MARKED: f32 = 0.7;
+/// Opacity of the line at the frequency under the pointer.
 const POINTED: f32 = 0.55;
 
 /// Draws a pane, and pans and zooms it with the pointer and the keys:
@@ -156,7 +158,7 @@ impl<'a> PaneScene<'a> {
     ///    conditions' optima;
     /// 3. curves, if many partly as an image;
     /// 4. veil outside the comparison band;
-    /// 5. lines at the marked frequencies and at the cursor.
+    /// 5. lines at the marked frequencies, at those of the bandwidth, and at the cursor.
     fn add_layers(self, plot: &mut PlotUi<'a>, bounds: PlotBounds, drawn: &'a mut DrawnPane) {
         let scene = self.scene;
         plot.set_plot_bounds(bounds);
@@ -252,7 +254,8 @@ impl<'a> PaneScene<'a> {
         }
     }
 
-    /// Draws lines at the marked frequencies, and a dotted line at the cursor.
+    /// Draws lines at the marked frequencies and at those of the bandwidth, and a dotted line at
+    /// the cursor.
     fn add_cursors(self, plot: &mut PlotUi<'_>) {
         let scene = self.scene;
         let marked = Stroke::new(1.0, self.palette.text.gamma_multiply(MARKED));
@@ -268,7 +271,7 @@ impl<'a> PaneScene<'a> {
 }
 
 /// Returns whether any part of the band between two points `[log10 omega, lower, upper]` is
-/// visible.
+/// visible; false if a value is not finite.
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
     let [min_x, min_y] = view.min();
     let [max_x, max_y] = view.max();

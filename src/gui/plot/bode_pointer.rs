@@ -49,8 +49,8 @@ impl Pointing {
     }
 }
 
-/// Returns the curve under the pointer: the nearest curve; `None` if a reference line is as near or
-/// within [`ON_LINE`], because reference lines are drawn on top.
+/// Returns the curve nearest to the pointer; `None` if no curve is near, or if a reference line is
+/// as near or within [`ON_LINE`], because reference lines are drawn on top.
 fn curve_at(
     scene: &BodeScene<'_>,
     pane: Pane,
@@ -123,7 +123,8 @@ fn clicked_curve(
     }
 }
 
-/// Opens the menu for the curve, or for the empty ground, on a secondary click.
+/// Sets the context menu's subject on a secondary click: the curve under the pointer, or the empty
+/// ground. `menu_ui` shows the menu.
 pub(super) fn open_menu(
     response: &Response,
     scene: &BodeScene<'_>,

@@ -14,7 +14,6 @@ use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::BodeQuantity;
 use super::readout_strip::Readout;
 
-/// Content for a Bode plot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodeScene<'a> {
     /// Responses, or ratio and phase difference.
@@ -41,7 +40,7 @@ pub struct BodeScene<'a> {
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\].
     pub pinned: &'a [f64],
-    /// Names and frequencies \[rad/s\] at which a bandwidth is read.
+    /// Names and frequencies \[rad/s\] of the points from which a bandwidth is computed.
     pub crossings: &'a [(&'static str, f64)],
     /// Every role's values at the cursor.
     pub readout: Option<&'a Readout>,

@@ -64,7 +64,7 @@ pub struct BodeView {
     pub(super) drawn: [DrawnPane; 2],
 }
 
-/// Curve or empty ground for which a menu is open, and the frequency there \[rad/s\].
+/// Curve or empty ground for which a menu is open, and the frequency at the click \[rad/s\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MenuSubject {
     pub(super) curve: Option<CurveId>,
@@ -138,13 +138,14 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Requests that the values be fitted to other curves in the next frame, unless the engineer
-    /// chose their ranges; the frequencies stay.
+    /// Requests that the values be fitted to the next frame's curves, unless the engineer chose
+    /// their ranges; the frequencies stay.
     pub fn request_refit(&mut self) {
         self.must_fit_values = true;
     }
 
-    /// Requests that a pane's values be fitted in the next frame, because their unit changes.
+    /// Requests that the values be fitted in the next frame, those in `pane` even if the engineer
+    /// chose their range, because their unit changes.
     pub fn release_values(&mut self, pane: Pane) {
         self.values[pane as usize].release();
         self.must_fit_values = true;
@@ -169,8 +170,8 @@ impl BodeView {
     ///
     /// While results are pending, nothing changes. Otherwise, for each pane:
     ///
-    /// 1. compute the values fitted to the curves in `whole`, which includes hidden curves; if they
-    ///    are those last followed, the axis stays;
+    /// 1. compute the values fitted to the curves in `whole`, which includes hidden curves; if
+    ///    there are none, or they are those last followed, the axis stays;
     /// 2. remember them as followed; not while something is dragged, because the release may then
     ///    shrink the axis;
     /// 3. the first time, the axis stays: [`Self::fit_if_requested`] has fitted it;
@@ -208,7 +209,7 @@ impl BodeView {
         }
     }
 
-    /// Adopts another plot's frequency range.
+    /// Adopts another plot's frequency range, with a pending request to fit it.
     pub fn share_frequencies(&mut self, other: &Self) {
         self.log_omega = other.log_omega;
         self.must_fit_frequencies = other.must_fit_frequencies;
@@ -302,7 +303,8 @@ impl BodeView {
         }
     }
 
-    /// Requests that an axis be fitted to all curves in the next frame.
+    /// Requests that an axis be fitted in the next frame, even if the engineer chose its range. For
+    /// a value axis, the other pane's values are fitted too, unless they were chosen.
     pub(super) fn fit_axis(&mut self, axis: BodeAxis) {
         self.axis_mut(axis).release();
         match axis {
@@ -364,8 +366,8 @@ impl BodeView {
     }
 }
 
-/// Returns the frequencies whose values are fitted: the band, and the frequencies beyond up to which
-/// leads are drawn.
+/// Returns the frequencies at which values are fitted: the band, with leads extended up to the end
+/// of the drawn curves ([`BodeScene::invalid`]).
 fn fitted_band(scene: &BodeScene<'_>) -> Range {
     let max = match scene.invalid {
         Some(invalid) => invalid.up_to,

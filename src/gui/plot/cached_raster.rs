@@ -9,8 +9,8 @@ use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
 use super::curve_style::CurveStyle;
 
-/// Minimum number of curves for which an image is worth its memory: filling their lines takes
-/// longer than all other work in a frame.
+/// Minimum number of curves for which an image as large as a pane is worth its memory: filling
+/// their lines takes longer than all other work in a frame.
 pub(super) const MANY: usize = 200;
 /// Maximum deviation between a drawn circle and a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;

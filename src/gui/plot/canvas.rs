@@ -9,7 +9,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Screen points per paper point; printed lines are thinner by this factor.
 pub(super) const SCALE: f32 = 1.8;
-/// Font size \[pt on paper\].
+/// Font size in figures \[pt on paper\]: 10.5 pt on the screen.
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
 
 /// Number of points up to which a filled path is known to be convex.

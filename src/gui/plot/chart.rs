@@ -29,7 +29,6 @@ impl ChartAxis {
     }
 }
 
-/// A line in a chart.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
     /// Points in ascending order along the horizontal axis; on a linear axis, details finer than a
@@ -121,7 +120,7 @@ pub struct Chart<'a> {
     pub marks: Vec<ChartMarks>,
     /// Dotted vertical lines.
     pub verticals: Vec<f64>,
-    /// Ends of a band, drawn as solid lines in the accent colour.
+    /// Ends of a horizontal band, drawn as solid vertical lines in the accent colour.
     pub band: Option<[f64; 2]>,
     /// Dashed horizontal lines.
     pub levels: Vec<f64>,

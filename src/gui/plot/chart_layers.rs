@@ -15,7 +15,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Maximum deviation between a drawn line and its data \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Screen width before the first drawing, larger than any \[pixels\].
+/// Screen width assumed before the first drawing, larger than any screen's \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;
 const MARK_RADIUS: f32 = 3.0;
 

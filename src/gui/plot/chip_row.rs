@@ -15,6 +15,7 @@ const CHIP_HEIGHT: f32 = 22.0;
 pub(super) const LINE_HEIGHT: f32 = 28.0;
 /// Gap between two chips \[pt\].
 pub const GAP: f32 = 5.0;
+/// Gap between a sample and the chip's text \[pt\].
 pub const SAMPLE_GAP: f32 = 6.0;
 /// Padding at both ends of a chip \[pt\].
 const PAD: f32 = 6.0;
@@ -30,7 +31,6 @@ pub struct ChipFace<'a> {
     pub is_lit: bool,
 }
 
-/// Curve sample on a chip.
 #[derive(Clone, Copy)]
 pub struct Sample {
     pub style: CurveStyle,
@@ -39,7 +39,7 @@ pub struct Sample {
 }
 
 impl ChipFace<'_> {
-    /// Returns whether the chip's curves are hidden.
+    /// Returns whether the chip switches curves that are hidden.
     fn is_hidden(&self) -> bool {
         self.sample.is_some_and(|sample| !sample.is_shown)
     }
@@ -134,13 +134,13 @@ impl ChipRow {
     }
 }
 
-/// Lays out a chip's text.
 fn chip_text(ui: &Ui, text: &str, color: Color32) -> Arc<Galley> {
     let font = FontId::proportional(SMALL_SIZE);
     ui.painter().layout_no_wrap(text.to_owned(), font, color)
 }
 
-/// Paints a chip's ground and outline; the outline has the accent colour if `is_lit`.
+/// Paints a chip's ground and outline, or only a dashed outline if its curves are hidden. The
+/// outline has the accent colour if `is_lit`.
 fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palette: &Palette) {
     let color = if is_lit { palette.accent } else { palette.line };
     let outline = Stroke::new(1.0, color);

@@ -103,7 +103,7 @@ fn shortened(label: &str) -> String {
 /// A restriction that currently applies to a plot, and what a click on it does.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chip {
-    /// Text: "Only V+10kt ×".
+    /// Text, such as "Only V+10kt ×".
     pub text: String,
     /// Tooltip that says what a click does.
     pub hint: String,
@@ -111,7 +111,7 @@ pub struct Chip {
 
 /// A plot's chips, in a line from the upper left corner.
 pub(super) struct Chips<'a> {
-    /// Suffix that distinguishes these chips from those in other plots.
+    /// Suffix to accessible names that distinguishes these chips from those in other plots.
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
     /// Whether uncertainty bands are drawn; `None` if there are none.
@@ -339,7 +339,7 @@ impl Switch<'_> {
         }
     }
 
-    /// Returns the event for a click, which depends on the keys held.
+    /// Returns the event for a click; for a role it depends on the pressed modifier keys.
     fn event(&self, ui: &Ui) -> BodeEvent {
         let modifiers = ui.input(|input| input.modifiers);
         BodeEvent::Display(match self.subject {

@@ -7,7 +7,6 @@ use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use super::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::{CurveId, Role};
 
-/// Request that changes how curves are displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveCommand {
     /// Changes the magnitude unit.

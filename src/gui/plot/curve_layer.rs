@@ -10,7 +10,7 @@ use crate::gui::widgets::palette::Palette;
 /// Opacity while curves are being recomputed.
 pub(super) const STALE: f32 = 0.5;
 
-/// Emphasis of a pane's curves, and whether their lines are narrow.
+/// Emphasis, dimming and line width for a pane's curves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CurveLooks<'a> {
     /// Curve under the pointer.

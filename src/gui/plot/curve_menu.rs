@@ -141,8 +141,8 @@ fn curve_actions_ui(
     chosen
 }
 
-/// Draws the actions on a curve's model, in any plot; nothing if the curve has no model. Returns
-/// the chosen action.
+/// Draws the actions that every plot offers for a curve's model; nothing if the curve has no model.
+/// Returns the chosen action.
 pub(super) fn model_actions_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveAction> {
     if !matches!(curve.id, CurveId::Model(_)) {
         return None;
@@ -183,7 +183,8 @@ pub(super) fn model_actions_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveAc
     chosen
 }
 
-/// Draws the menu on empty ground at `omega` \[rad/s\]; returns the chosen action.
+/// Draws the menu on empty ground at `omega` \[rad/s\]; returns the chosen action, except a fit,
+/// which is requested from `view` at once.
 fn ground_menu_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,

@@ -16,8 +16,9 @@ const GAP_AT_DOT: f32 = 0.6;
 const DOT_LENGTH: f32 = 1.8;
 /// Width added to an emphasized line \[pt\].
 const EMPHASIZED_WIDER: f32 = 1.6;
-/// Width added to emphasized dots \[pt\], and factor by which their spacing grows.
+/// Width added to emphasized dots \[pt\].
 const EMPHASIZED_DOTS_WIDER: f32 = 0.7;
+/// Factor by which the spacing between emphasized dots grows.
 const EMPHASIZED_DOTS_APART: f32 = 1.5;
 
 /// Colour, width and pattern with which a curve is drawn.
@@ -99,8 +100,8 @@ impl CurveStyle {
 }
 
 impl Palette {
-    /// Returns the colour that this theme uses for a figure's colour, which is given by its
-    /// meaning.
+    /// Returns this theme's colour for a figure's colour, which is given by its meaning and
+    /// opacity.
     pub fn color(&self, color: Color) -> Color32 {
         let of_hue = match color.hue {
             Hue::Background => self.background,
@@ -170,7 +171,7 @@ mod tests {
     #[test]
     fn every_pattern_looks_different_along_a_line() {
         assert_eq!(shapes(Dash::Solid, 0.0), 1);
-        // A line of 100 points is drawn with dashes of 8 and gaps of 4.9; dashes of 8, dots of 1.8
+        // A line 100 pt long is drawn with dashes of 8 and gaps of 4.9; dashes of 8, dots of 1.8
         // and gaps of 3.0; dots at a distance of 5.
         assert_eq!(shapes(Dash::Long, 8.0), 8);
         assert_eq!(shapes(Dash::DashDot, 8.0), 13);

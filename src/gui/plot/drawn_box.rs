@@ -7,8 +7,8 @@ use crate::gui::widgets::palette::Palette;
 /// Minimum side of a box; a smaller box is accidental \[pt\].
 const LEAST_SIDE: f32 = 5.0;
 
-/// Draws the selection box while it is dragged over `frame` with `button`; returns the finished
-/// box.
+/// Draws the selection box while it is dragged over `frame` with `button`; returns its part within
+/// `frame` when the button is released, `None` if it is too small.
 pub(super) fn drawn_box_ui(
     ui: &Ui,
     plot: &Response,

@@ -17,12 +17,12 @@ const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
 
 /// Line height in the legend \[pt\].
 const LINE: f32 = 18.0;
-/// Gap between a sample and its name, and between two entries \[pt\].
+/// Gap between a sample and its name \[pt\].
 const NAME_GAP: f32 = 5.0;
+/// Gap between two entries \[pt\].
 const ENTRY_GAP: f32 = 14.0;
 
-/// Draws a sample and a name for each key among the figure's marks, as in the printed legend. Lines
-/// break between entries.
+/// Draws a sample and a name for each entry of the printed legend. Lines break between entries.
 pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(ENTRY_GAP, 0.0);

@@ -48,7 +48,8 @@ impl DrawnMarks {
         Some(&self.drawn.as_ref()?.panel)
     }
 
-    /// Returns the panel's shapes for these ranges, recomputed only after a change.
+    /// Returns the panel's shapes for these ranges, recomputed only if panel, area or ranges have
+    /// changed.
     fn shapes(&mut self, panel: &Panel, area: Area, ranges: [Range; 2]) -> &[Shape] {
         let is_same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
@@ -189,7 +190,6 @@ fn is_bar(mark: &Mark) -> bool {
     )
 }
 
-/// Returns whether a panel has error bars.
 pub(super) fn has_bars(panel: &Panel) -> bool {
     panel.marks.iter().any(is_bar)
 }

@@ -46,7 +46,7 @@ const TICK_GAP: f64 = 26.0;
 /// Minimum distance between ticks in a compact figure, which has as many tick labels as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
 
-/// Returns the height above a plot's first panel: little without a title.
+/// Returns the height above a plot's first panel: without a title, only the gap between panels.
 pub(super) fn title_height(title: &str) -> f32 {
     if title.is_empty() {
         PANEL_GAP
@@ -109,7 +109,7 @@ impl PlacedPanel<'_> {
     /// 2. axes: horizontal, then vertical in the remaining height;
     /// 3. paint the frame with its grid, and above the first panel the title;
     /// 4. point: find the dot or column under the pointer, as the frame is now;
-    /// 5. paint the marks, which depend on it;
+    /// 5. paint the marks, emphasized where the pointer is;
     /// 6. zoom and pan: the ranges for the next frame; a double click beside all marks shows the
     ///    whole ranges again.
     pub(super) fn ui(&self, ui: &mut Ui, view: &mut PanelView) -> PlacedResponse {

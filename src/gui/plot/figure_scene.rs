@@ -36,8 +36,8 @@ impl FigureWords for Figure {
     }
 }
 
-/// Figure with its interaction on the screen. Panels are stacked; only the first panel has
-/// interactive marks.
+/// Figure with its interaction on the screen. In each plot the panels are below one another; only
+/// the first has interactive marks.
 pub struct FigureScene<'a> {
     /// Distinguishes the widgets from those in other figures.
     pub name: &'static str,
@@ -93,7 +93,6 @@ impl<'a> FigureScene<'a> {
     }
 }
 
-/// Event in a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureEvent {
     /// This mark is under the pointer.

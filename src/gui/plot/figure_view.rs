@@ -308,8 +308,8 @@ impl FigurePainter<'_> {
     /// Draws a plot's panels below one another into `rect`; returns the first panel's response,
     /// since only its marks are interactive.
     ///
-    /// All have the same horizontal range: each lower panel adopts that of the first before it is
-    /// drawn, and the first adopts it back, because the lower panel may have been zoomed.
+    /// All panels have the same horizontal range: each lower panel adopts the first panel's range
+    /// before it is drawn, and the first then adopts the lower panel's, which may have been zoomed.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
         let title = title_height(&self.scene.figure.plots[plot].title);

@@ -31,7 +31,8 @@ pub(super) fn navigated_ranges(
         let fixed = transform.value_from_position(gesture.pointer);
         for (axis, fixed) in [fixed.x, fixed.y].into_iter().enumerate() {
             let limit = limits[axis].range(whole[axis]);
-            // The axis was dragged beyond the limit if there is no range: it is not zoomed then.
+            // If there is no zoomed range, the axis was dragged beyond the limit; it then keeps its
+            // range.
             if let Some(zoomed) = zoomed_within(shown[axis], factor, fixed, limit) {
                 shown[axis] = zoomed;
             }

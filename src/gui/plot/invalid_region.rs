@@ -66,7 +66,8 @@ pub(super) struct InvalidStrip<'a> {
 }
 
 impl InvalidStrip<'_> {
-    /// Paints the strip with its text, and the magnitude added by the leads.
+    /// Paints the strip with its text, and a bracket for the magnitude added by the leads; nothing
+    /// if the strip is too narrow.
     pub(super) fn paint(&self, ui: &Ui, palette: &Palette) {
         let Self {
             band_end,

@@ -68,8 +68,8 @@ fn vertical(place: f64, stroke: Stroke) -> VLine {
 
 type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Layer that draws shapes in screen coordinates, which egui_plot ignores when it fits ranges and
-/// finds the item under the pointer.
+/// Layer that draws shapes in screen coordinates; egui_plot ignores it when fitting ranges and when
+/// finding the item under the pointer.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,
     draw: Drawing<'a>,

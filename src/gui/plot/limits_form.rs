@@ -50,7 +50,6 @@ impl LimitsForm {
         self.axis == axis && self.pane == pane
     }
 
-    /// Returns the limits as typed.
     pub(super) fn texts(&self) -> &[String; 2] {
         &self.texts
     }
@@ -92,7 +91,7 @@ impl LimitsForm {
         answer
     }
 
-    /// Draws the field; returns whether Enter was pressed in it.
+    /// Draws a limit's field; returns whether Enter was pressed in it.
     fn limit_ui(&mut self, ui: &mut Ui, index: usize, name: &str, unit: &str) -> bool {
         let mut is_entered = false;
         ui.horizontal(|ui| {

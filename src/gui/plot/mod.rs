@@ -3,7 +3,7 @@
 //!
 //! Every panel with axes is drawn by `panel_painter`, which also paints the frames for plots
 //! without axes in the overview. A scene (`bode_scene`, `figure_scene`, `chart`, `overview_scene`)
-//! describes what a plot shows; the parts below serve all plots:
+//! describes what a plot shows; the parts below serve several plots:
 //!
 //! ```text
 //! panel_painter               frame, axes, grid and gestures; each scene adds its layers
@@ -12,7 +12,7 @@
 //! zoom_gesture, drawn_box     wheel and pinching; boxes drawn by dragging
 //! nearest_curve, nearest_dot  curve or dot under the pointer
 //! pointed_curve_text          status text for the curve under the pointer
-//! derivation_menu             menu of the values under the pointer that can be derived
+//! derivation_menu             menu of the values under the pointer, to show their derivations
 //! thinning                    visible points, no finer than the pixels; drawn_curves keeps them
 //! curve_layer                 order and styles of curves; cached_raster holds the image of many
 //! layers, canvas              areas, lines across a panel; shapes from printed figures

@@ -81,7 +81,7 @@ fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
     Range::spanning(ends)
 }
 
-/// Returns the accessible name of a cell: "LON → Q: J 75", or "LON → Q" without a note.
+/// Returns the accessible name of a cell, such as "LON → Q: J 75", or "LON → Q" without a note.
 fn cell_name(scene: &OverviewScene<'_>, cell: &OverviewCell<'_>) -> String {
     let input = &scene.inputs[cell.pair.input];
     let output = &scene.outputs[cell.pair.output];
@@ -171,7 +171,6 @@ impl Table {
     }
 }
 
-/// Returns the units of the values.
 fn values_unit(show_phase: bool) -> &'static str {
     if show_phase { "dB, deg" } else { "dB" }
 }

@@ -11,12 +11,13 @@ use super::panel_axis::tick_font;
 use super::ticks::{TickLabel, Ticks};
 use crate::gui::widgets::palette::Palette;
 
-/// Half the height of a label \[pt\]: labels at the end of an axis are moved inwards by as much.
+/// Half the height of a label \[pt\]: labels at the ends of a value axis are moved inwards by as
+/// much.
 const HALF_LABEL: f32 = 6.0;
 /// Distance between the labels and the cells \[pt\].
 const GAP: f32 = 4.0;
 
-/// Range of an axis along one side of a pane.
+/// Range and ticks of an axis along one side of a pane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisRange {
     pub(super) ticks: Ticks,

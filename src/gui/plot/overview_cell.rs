@@ -19,7 +19,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 const MAGNITUDE_PART: f32 = 0.58;
 /// Minimum size for a cell with texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
-/// Line height above a cell's curves \[pt\].
+/// Height of the text line above a cell's curves \[pt\].
 const CELL_HEAD: f32 = 16.0;
 /// Opacity of the line at the frequency under the pointer.
 const POINTED: f32 = 0.55;
@@ -39,7 +39,6 @@ pub(super) struct PlacedCell<'a> {
     pub(super) palette: &'a Palette,
 }
 
-/// Parts of a cell.
 pub(super) struct CellLayout {
     /// Line above the curves; empty in a small cell.
     head: Rect,
@@ -89,7 +88,7 @@ impl PlacedCell<'_> {
         paint_frame(ui, self.place, fill, outline);
     }
 
-    /// Draws the curves, and the note above them if there is room.
+    /// Draws the panes, and the note above them if there is room.
     fn paint_content(&self, ui: &Ui, view: &mut OverviewView) {
         let layout = CellLayout::new(self.place, view.show_phase);
         for (pane, rect) in layout.panes {

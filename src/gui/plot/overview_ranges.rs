@@ -28,7 +28,7 @@ pub(super) struct SharedRanges {
     fitted: BTreeMap<(Pair, Pane), FittedCell>,
 }
 
-/// Range that fits the curves of a cell, with the curves for which it was computed.
+/// Range that fits the curves of a cell, with the curves and the band for which it was computed.
 #[derive(Clone, Debug)]
 struct FittedCell {
     values: Vec<Arc<[f64]>>,
@@ -115,7 +115,6 @@ impl SharedRanges {
     }
 }
 
-/// Returns the unit of the values in a pane.
 pub(super) fn value_unit(pane: Pane) -> ValueUnit {
     match pane {
         Pane::Magnitude => ValueUnit::Decibel,

@@ -4,12 +4,12 @@ use gdcm_model::dataset::Pair;
 
 use super::drawn_curves::BodeCurve;
 
-/// Response in an overview cell.
 #[derive(Clone, Debug)]
 pub struct OverviewCell<'a> {
     pub pair: Pair,
     pub curves: &'a [BodeCurve],
-    /// Whether the response is held: the correction must match it exactly.
+    /// Whether the response is constrained: its gain is matched exactly, its delay as far as
+    /// possible.
     pub constrained: bool,
     /// Whether the pair is in focus.
     pub selected: bool,

@@ -18,7 +18,6 @@ use super::overview_response::OverviewCell;
 use super::steady_range::AxisUpdate;
 use super::viewed_range::ranges_of;
 
-/// Contents of the overview.
 #[derive(Clone, Copy, Debug)]
 pub struct OverviewScene<'a> {
     /// Input names: the columns.
@@ -39,7 +38,6 @@ pub struct OverviewScene<'a> {
     pub message: Option<&'a str>,
 }
 
-/// Event in the overview.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OverviewEvent {
     PairClicked(Pair),

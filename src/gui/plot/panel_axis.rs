@@ -15,7 +15,6 @@ pub(super) const TICKS_HEIGHT: f32 = 15.0;
 /// Height of an axis with tick labels and an axis label \[pt\].
 pub(super) const LABELLED_HEIGHT: f32 = 33.0;
 
-/// Returns the font of tick labels.
 pub(super) fn tick_font() -> FontId {
     FontId::proportional(TICK_SIZE)
 }
@@ -67,7 +66,6 @@ impl PanelAxis {
         }
     }
 
-    /// Returns whether the axis has grid lines.
     pub(super) fn has_grid(&self) -> bool {
         !matches!(self.spacing, TickSpacing::Names { .. })
     }

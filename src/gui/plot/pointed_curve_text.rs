@@ -32,7 +32,8 @@ pub fn pointed_curve_text(
     Some(words)
 }
 
-/// Formats "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
+/// Formats, for example, "nominal · 2.9 dB · −99°" at `omega` \[rad/s\], with the branch of a
+/// response's phase ([`branch_text`]).
 fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> String {
     let mut text = curve.label.clone();
     for pane in [Pane::Magnitude, Pane::Phase] {

@@ -30,7 +30,7 @@ pub enum ResponseSubject {
     /// The displayed condition.
     #[default]
     Condition,
-    /// Plot across conditions.
+    /// Every condition, in the plot across conditions.
     EveryCondition,
     /// A model found in a file.
     FoundModel,
@@ -141,12 +141,12 @@ impl BodeQuantity<'_> {
         )
     }
 
-    /// Returns a pane's name: "Magnitude".
+    /// Returns a pane's name, such as "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
         format!("{pane:?}{}", self.names().pane_suffix)
     }
 
-    /// Returns a pane's name within a sentence: "magnitude plot".
+    /// Returns a pane's name within a sentence, such as "magnitude plot".
     pub(super) fn name_in_sentence(self, pane: Pane) -> String {
         let pane = format!("{pane:?}").to_lowercase();
         format!("{pane}{}", self.names().sentence_suffix)
@@ -182,7 +182,6 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns a pane's axis label.
     pub(super) fn axis_label(self, pane: Pane) -> String {
         match (self, pane) {
             (

@@ -19,9 +19,9 @@ const LEAST_NAME: f32 = 40.0;
 const WIDE_COLUMN: f32 = 1.25;
 /// Padding at the left and at the right of a column \[pt\].
 const PAD: f32 = 8.0;
-/// Length of a sample, which shows the curve's pattern in the panes, and width of the gap beside it
-/// \[pt\].
+/// Length of a sample, which shows the curve's pattern in the panes \[pt\].
 const SAMPLE: f32 = 22.0;
+/// Gap between a sample and the name beside it \[pt\].
 const SAMPLE_GAP: f32 = 6.0;
 
 /// A role's values, or the differences between two roles.
@@ -38,7 +38,7 @@ pub struct ReadoutCell {
 }
 
 impl ReadoutCell {
-    /// Returns the values within a sentence.
+    /// Returns name and values, as a part of the read-out's sentence.
     fn sentence(&self) -> String {
         format!("{}: {}, {}", self.name, self.values[0], self.values[1])
     }
@@ -110,14 +110,14 @@ impl ReadoutCell {
 pub struct Readout {
     /// Column heading above the frequency, such as "ω at the pointer".
     pub heading: String,
-    /// Formatted frequency: "6.00 rad/s".
+    /// Formatted frequency, such as "6.00 rad/s".
     pub frequency: String,
     /// Roles in the same order as their chips, the difference last.
     pub cells: Vec<ReadoutCell>,
 }
 
 impl Readout {
-    /// Returns the values as a sentence.
+    /// Returns the read-out as a sentence, which is its accessible name.
     fn sentence(&self) -> String {
         let cells: Vec<String> = self.cells.iter().map(ReadoutCell::sentence).collect();
         format!("{} {}: {}", self.heading, self.frequency, cells.join("; "))
@@ -220,7 +220,6 @@ fn width_before(place: usize, cells: usize) -> f32 {
     (0..place).map(width).sum::<f32>() / (0..=cells).map(width).sum::<f32>()
 }
 
-/// Returns the upper and the lower half.
 fn halves(column: Rect) -> [Rect; 2] {
     let middle = column.center().y;
     [column.with_max_y(middle), column.with_min_y(middle)]

@@ -18,7 +18,7 @@ const BELOW: f32 = 0.1;
 /// A pane's reference lines.
 #[derive(Clone, Copy)]
 pub(super) struct PaneLines<'a> {
-    /// Lines in both panes.
+    /// Lines for both panes; only those for `pane` are used.
     pub(super) lines: &'a [ReferenceLine],
     pub(super) pane: Pane,
     pub(super) transform: &'a PlotTransform,
@@ -57,7 +57,7 @@ impl<'a> PaneLines<'a> {
     }
 
     /// Returns the labels, each at the height at which its line leaves the plot, with any note
-    /// below.
+    /// below; none for lines outside the frame.
     pub(super) fn labels(self, palette: &Palette) -> Vec<EndLabel> {
         let frame = *self.transform.frame();
         let mut labels = Vec::new();

@@ -9,9 +9,9 @@ use gdcm_plot::figure::axis::{Scale, step_above};
 const OVERSHOOT: f64 = 0.02;
 /// Share of an axis below which data make it shrink.
 const LEAST_USE: f64 = 0.6;
-/// Minimum number of steps on an axis; the ends are multiples of the step, which is 1, 2 or 5 times
-/// a power of ten.
-const LEAST_STEPS: f64 = 20.0;
+/// Maximum number of steps on an axis before its ends are moved outwards to multiples of the step,
+/// which is 1, 2 or 5 times a power of ten.
+const MOST_STEPS: f64 = 20.0;
 
 /// Minimum number of labels on a value axis in a Bode plot or in the overview.
 const LEAST_LABELS: f64 = 5.0;
@@ -33,8 +33,8 @@ pub enum AxisUpdate {
     Pending,
 }
 
-/// Returns the range of an axis after an update, with round ends: `shown` while it fits the data,
-/// whose fitted range is `wanted`.
+/// Returns the range of an axis after an update: `shown` while it fits the data, whose fitted range
+/// is `wanted`; otherwise a range with round ends.
 pub(super) fn steady_range(shown: Range, wanted: Range, update: AxisUpdate) -> Range {
     match changed_range(shown, wanted, update) {
         Some(changed) => rounded_out(changed),
@@ -130,7 +130,7 @@ fn decimal_step_below(step: f64) -> f64 {
 
 /// Returns the range with its ends moved outwards to multiples of a round step.
 pub(super) fn rounded_out(range: Range) -> Range {
-    let step = step_above(range.width() / LEAST_STEPS);
+    let step = step_above(range.width() / MOST_STEPS);
     // The slack keeps an end that is a multiple of the step up to a rounding error.
     let slack = 1e-9 * step;
     Range::new(

@@ -38,7 +38,7 @@ pub(super) const LABEL_SPACING: Rangef = Rangef {
 const DECADE_LABEL_GAP: f64 = 34.0;
 /// Minimum distance between two grid lines within a decade \[pt\].
 const DECADE_LINE_GAP: f64 = 5.0;
-/// Number of labels without which an axis does not show its scale.
+/// Minimum number of labels with which the scale of an axis can be read.
 const USUAL_LEAST_LABELS: usize = 2;
 /// Minimum distance between labels that move together until there are two \[pt\]; letters are 11 pt
 /// high.
@@ -55,10 +55,10 @@ const LABEL_SPACE: f64 = 0.6;
 /// Minimum gap between two names along an axis \[pt\].
 const NAME_GAP: f64 = 6.0;
 
-/// Kind of ticks on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ticks {
-    /// Plain values with labels at least this far apart \[pt\]: decibels, knots, gains.
+    /// Plain values, such as decibels, knots and gains, with labels usually at least this far apart
+    /// \[pt\].
     Decimal(f64),
     /// Degrees, labelled at fractions of a turn.
     Degrees,
@@ -68,7 +68,6 @@ pub(super) enum Ticks {
     Ratio,
 }
 
-/// Label of a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TickLabel {
     /// Axis coordinate.

@@ -18,7 +18,7 @@ pub enum ValueUnit {
 }
 
 impl ValueUnit {
-    /// Returns the suffix after a value: " dB", "°".
+    /// Returns the suffix after a value, such as " dB" or "°"; empty for a ratio.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Decibel => " dB",
@@ -28,7 +28,7 @@ impl ValueUnit {
         }
     }
 
-    /// Formats a drawn value for display: "2.9 dB", "−99°".
+    /// Formats a drawn value for display, such as "2.9 dB" or "−99°".
     pub fn readout(self, value: f64) -> String {
         match self {
             Self::Decibel | Self::Millisecond => format!("{}{}", decimals(value, 1), self.suffix()),
@@ -51,7 +51,7 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the scale whose steps separate the tick labels.
+    /// Returns the scale that determines the steps between tick labels.
     pub(super) fn scale(self) -> Scale {
         match self {
             Self::Decibel | Self::Millisecond => Scale::Linear,
@@ -60,7 +60,6 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the kind of tick labels.
     pub(super) fn ticks(self) -> Ticks {
         match self {
             Self::Decibel | Self::Millisecond => Ticks::Decimal(VERTICAL_TICK_GAP),
@@ -70,7 +69,6 @@ impl ValueUnit {
     }
 }
 
-/// Rounds `value` to three significant digits.
 fn three_significant(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;

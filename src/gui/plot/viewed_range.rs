@@ -55,7 +55,6 @@ pub(super) fn ranges_of(bounds: &PlotBounds) -> [Range; 2] {
     [0, 1].map(|axis| Range::new(min[axis], max[axis]))
 }
 
-/// Returns plot bounds with these ranges.
 pub(super) fn bounds_of([x, y]: [Range; 2]) -> PlotBounds {
     PlotBounds::from_min_max([x.min, y.min], [x.max, y.max])
 }
@@ -83,8 +82,8 @@ impl ViewedRange {
         }
     }
 
-    /// Limits the view to a decade on either side of `computed`, the range of `log10 omega` in the
-    /// computed curves.
+    /// Limits later visible ranges to a decade on either side of `computed`, the range of `log10
+    /// omega` in the computed curves.
     pub(super) fn reach(&mut self, computed: Range) {
         self.ends = ZoomLimit::Decade.range(computed);
     }
@@ -100,13 +99,13 @@ impl ViewedRange {
         self.range
     }
 
-    /// Returns whether the engineer chose the visible range.
     pub(super) fn is_chosen(&self) -> bool {
         self.is_chosen
     }
 
     /// Sets the range chosen by the engineer, with the nearest permitted width. Returns whether all
-    /// of it is permitted; otherwise the visible range stays.
+    /// of it is permitted; otherwise the visible range stays. The visible range itself does not
+    /// count as chosen.
     pub(super) fn choose(&mut self, range: Range) -> bool {
         let Some(range) = self.allowed(range) else {
             return false;

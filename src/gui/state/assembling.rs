@@ -91,7 +91,7 @@ impl AssemblyState {
             .min(self.assembly.parts().len().saturating_sub(1));
     }
 
-    /// Removes all models and the messages about their files; the rules remain.
+    /// Removes all models, and the messages and tables of their files; the rules remain.
     pub fn forget_models(&mut self) {
         self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
         self.faults.clear();

@@ -18,15 +18,12 @@ pub enum AssessedPairs {
     All,
 }
 
-/// Part of J in the assessment table.
+/// Part of J whose change the assessment table shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CostPart {
-    /// `Delta J`.
     #[default]
     Total,
-    /// `Delta J_mag`.
     Magnitude,
-    /// `Delta J_phase`.
     Phase,
 }
 
@@ -50,7 +47,6 @@ impl CostPart {
     }
 }
 
-/// Options for displaying the assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AssessmentDisplay {
     pub model: AssessedModel,
@@ -61,6 +57,6 @@ pub struct AssessmentDisplay {
     pub pairs: AssessedPairs,
     /// Whether a table is shown; otherwise bars.
     pub as_table: bool,
-    /// Part of J in the table.
+    /// Part of J whose change the table shows.
     pub part: CostPart,
 }

@@ -34,9 +34,9 @@ pub struct Background {
     pub error_bars: Option<Steps>,
     /// Simulated responses to the held-out records.
     pub time_histories: Option<Steps>,
-    /// Couplings.
+    /// Assessment of the couplings.
     pub couplings: Option<Steps>,
-    /// Physics parameters.
+    /// Fit of the physics parameters.
     pub physics: Option<Steps>,
     /// Number of running and waiting jobs of the visible views, apart from those with a field of
     /// their own.

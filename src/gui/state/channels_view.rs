@@ -2,7 +2,6 @@
 
 use crate::gui::plot::FigureView;
 
-/// State that the channel plots keep between frames.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelsView {
     pub inputs: FigureView,

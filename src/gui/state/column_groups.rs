@@ -20,7 +20,7 @@ pub struct ColumnGroup {
     pub records: usize,
     /// Conditions to which these records belong; records without a condition add none.
     pub conditions: BTreeSet<ConditionId>,
-    /// The first record to show: the first with a problem or an assumed unit, otherwise the first.
+    /// Record to show first: the first with a problem or an assumed unit, otherwise the first.
     /// `None` if no record in the group has a condition.
     pub first: Option<RecordPlace>,
     /// Whether `first` has a problem or an assumed unit.
@@ -31,7 +31,7 @@ pub struct ColumnGroup {
     pub assumed: Vec<String>,
 }
 
-/// Position in the record lists: the condition, and the row there.
+/// Position in the record lists: the condition, and the row in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordPlace {
     pub condition: ConditionId,
@@ -43,9 +43,9 @@ pub struct RecordPlace {
 pub struct AssumedUnits {
     /// Channel names.
     pub channels: Vec<String>,
-    /// Affected records.
+    /// Number of affected records, without parts.
     pub records: usize,
-    /// Affected conditions.
+    /// Number of affected conditions.
     pub conditions: usize,
     /// The first affected record.
     pub first: Option<RecordPlace>,
@@ -76,8 +76,8 @@ impl ColumnGroup {
             && self.layout == record.layout.without_remedies()
     }
 
-    /// Counts a record to the group; `place` is `None` for a record without a condition, which
-    /// cannot be shown.
+    /// Adds a record to the group; `place` is `None` for a record without a condition, which cannot
+    /// be shown.
     fn add(&mut self, row: &LaidOutRecord, place: Option<RecordPlace>) {
         self.records += 1;
         if self.problems.is_empty() {

@@ -127,7 +127,7 @@ impl Results {
     }
 
     /// Returns the message that explains missing error bars: their progress, once the analysis is
-    /// there; else that they were stopped; else that the analysis is missing.
+    /// up to date; else that they were stopped; else that the analysis is missing.
     pub fn absence_of_error_bars(&self) -> String {
         match self.background.error_bars {
             Some(steps) if !self.is_behind() => error_bar_progress(steps),
@@ -143,8 +143,8 @@ impl Results {
         self.requested > self.received
     }
 
-    /// Returns whether the displayed condition's result has newer settings than the analysis of all
-    /// conditions.
+    /// Returns whether the displayed condition's result belongs to newer settings than the analysis
+    /// of all conditions.
     pub fn first_is_ahead(&self) -> bool {
         match &self.first {
             Some(first) => self.analysis.is_some() && first.request > self.received,

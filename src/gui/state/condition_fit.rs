@@ -30,7 +30,6 @@ pub enum FitStatus {
     Running {
         percent: usize,
     },
-    /// The identification failed.
     Failed,
     /// Records or settings have changed since.
     Outdated,
@@ -160,9 +159,9 @@ impl State {
         }
     }
 
-    /// Returns the conditions that *Identify* runs, the displayed one first: those with used
-    /// records, except where the fit is current or an identification waits or runs; if none remain,
-    /// all with used records.
+    /// Returns the conditions that `RecordsCommand::IdentifyAll` identifies, the displayed one
+    /// first: those with used records, except where the fit is current or an identification waits
+    /// or runs; if none remain, all with used records.
     pub fn conditions_to_identify(&self) -> Vec<ConditionId> {
         let mut in_use = self.records.conditions_in_use();
         let shown = self.condition().id();

@@ -32,8 +32,8 @@ pub enum AddedRecord {
     KnownAlready,
 }
 
-/// Input and record count for which the displayed record was found (`excited_input.rs`); another
-/// input or a further record makes the search necessary again.
+/// Input and row count in the latest search for the row to display (`excited_input.rs`); another
+/// input or count makes the search necessary again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opening {
     pub input: usize,
@@ -49,7 +49,7 @@ pub struct ConditionRecords {
     pub chosen: usize,
     /// Whether the engineer has chosen the displayed row; otherwise it follows the input in focus.
     pub is_chosen: bool,
-    /// Input for which the displayed row was found, while the engineer has not chosen one.
+    /// Latest search for the row to display; `None` before the first.
     pub opening: Option<Opening>,
     /// Delay and hold for each input.
     pub inputs: Vec<ChannelPreparation>,
@@ -77,7 +77,7 @@ pub struct ConditionRecords {
 }
 
 impl ConditionRecords {
-    /// Creates a condition's records in `dataset`.
+    /// Creates a condition's records, with a preparation for each channel in `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let (inputs, outputs) = dataset.input_and_output_names();
         Self {
@@ -110,8 +110,9 @@ impl ConditionRecords {
         true
     }
 
-    /// Adds a part behind its record, and displays it. The whole record is no longer used, so that
-    /// no sample counts twice. A part cut from a part belongs to the whole record.
+    /// Adds a part after its record and the earlier parts, and displays it. The whole record is no
+    /// longer used, so that no sample counts twice. A part cut from a part belongs to the whole
+    /// record.
     ///
     /// # Errors
     /// A message, if there is no such record, or if it has fewer than two samples in this time
@@ -194,7 +195,6 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns whether the record has parts.
     fn has_parts(&self, source: &RecordSource) -> bool {
         self.rows
             .iter()
@@ -355,7 +355,7 @@ fn part_of(
     Ok(part)
 }
 
-/// Returns the message for a part \[s\] without samples.
+/// Returns the message for a part \[s\] with fewer than two samples.
 fn no_samples(whole: &LaidOutRecord, part_s: [f64; 2]) -> String {
     let [from, to] = part_s.map(number);
     let mut message = format!("{}: no samples from {from} to {to} s", whole.table.name);

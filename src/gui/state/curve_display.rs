@@ -11,7 +11,6 @@ use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Options for displaying plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
     /// Unit on the frequency axes.

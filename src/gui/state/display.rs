@@ -14,7 +14,6 @@ use super::view::View;
 use super::view_pages::ViewPages;
 use crate::gui::plot::FigureView;
 
-/// Display state; no result depends on it.
 #[derive(Debug, Default)]
 pub struct Display {
     pub selection: Selection,

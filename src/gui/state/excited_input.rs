@@ -47,7 +47,7 @@ impl Excitation {
         excitations
     }
 
-    /// Returns whether the record excites an input.
+    /// Returns whether an input's share is at least `EXCITED`.
     pub fn excites(&self, input: usize) -> bool {
         self.share(input) >= EXCITED
     }

@@ -157,7 +157,6 @@ impl ExportForm {
         }
     }
 
-    /// Adds or removes a condition.
     pub fn switch_condition(&mut self, id: ConditionId, dataset: &Dataset) {
         let mut chosen = self.chosen(dataset);
         if !chosen.remove(&id) {
@@ -166,7 +165,7 @@ impl ExportForm {
         self.choose(chosen, dataset);
     }
 
-    /// Chooses these conditions.
+    /// Chooses these conditions; every condition is stored as `None`.
     pub fn choose(&mut self, chosen: BTreeSet<ConditionId>, dataset: &Dataset) {
         self.choices.conditions = if chosen.len() == dataset.conditions().len() {
             None
@@ -175,7 +174,6 @@ impl ExportForm {
         };
     }
 
-    /// Adds or removes a format.
     pub fn switch_format(&mut self, name: &str) {
         if !self.choices.formats.remove(name) {
             self.choices.formats.insert(name.to_owned());
@@ -236,7 +234,7 @@ impl ExportForm {
         true
     }
 
-    /// Returns the folder as a path.
+    /// Returns the folder as a path, with `~` replaced by the home directory.
     pub fn folder_path(&self) -> PathBuf {
         at_home(Path::new(self.folder.trim()), self.home.as_deref())
     }
@@ -341,7 +339,7 @@ impl ExportForm {
     }
 }
 
-/// Formats airspeeds \[kt\] for the field: "45 60 90".
+/// Formats airspeeds \[kt\] for the text field, for example "45 60 90".
 pub fn airspeeds_words(airspeeds_kt: &[f64]) -> String {
     let words: Vec<String> = airspeeds_kt.iter().map(|kt| six_digits(*kt)).collect();
     words.join(" ")

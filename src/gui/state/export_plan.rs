@@ -79,7 +79,8 @@ impl State {
         airspeeds_kt
     }
 
-    /// Returns the names of the physics models that every condition chosen for the export has.
+    /// Returns the names of the physics models, other than the nominal one, that every condition
+    /// chosen for the export has.
     pub fn exported_model_names(&self) -> Vec<String> {
         let chosen = self.forms.export.chosen(self.dataset());
         let mut conditions = self

@@ -70,7 +70,6 @@ pub struct PaletteForm {
     pub chosen: usize,
 }
 
-/// Contents of the forms.
 #[derive(Debug, Default)]
 pub struct Forms {
     /// The open form.

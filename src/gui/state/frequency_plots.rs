@@ -59,8 +59,8 @@ impl FrequencyPlots {
         self.across_error.request_fit();
     }
 
-    /// Requests that the value axes in the Bode and error plots be fitted to other curves, except
-    /// axes that have been zoomed.
+    /// Requests that the value axes in the Bode and error plots be fitted to the curves in the next
+    /// frame, except axes that have been zoomed.
     pub fn refit(&mut self) {
         self.bode.request_refit();
         self.error.request_refit();

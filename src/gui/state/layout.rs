@@ -4,7 +4,6 @@ use super::opens_with::OpensWith;
 use super::sheet::Sheet;
 use super::view_arrangement::Arrangement;
 
-/// Visible views, panels and sheets.
 #[derive(Debug, Default)]
 pub struct Layout {
     pub arrangement: Arrangement,
@@ -14,7 +13,7 @@ pub struct Layout {
     pub opens_with: OpensWith,
     /// Whether the left panel is shown in full; `None` follows the window width.
     pub left_open: Option<bool>,
-    /// Open sheet, which covers part of the views; `None` if it is closed.
+    /// Open sheet; `None` if all are closed.
     pub sheet: Option<Sheet>,
     /// Whether the settings are open; they then replace the models.
     pub settings_open: bool,

@@ -1,6 +1,5 @@
 //! Correction whose costs are shown in the condition map.
 
-/// Correction whose costs are shown in the condition map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MappedCost {
     /// The uncorrected physics representative.

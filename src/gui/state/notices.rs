@@ -279,7 +279,7 @@ impl Notices {
         numbered.into_iter().map(|(_, message)| message).collect()
     }
 
-    /// Returns the newest message, whether or not it is still shown.
+    /// Returns the newest notice, whether or not it is still shown.
     pub fn newest(&self) -> Option<&Notice> {
         self.messages.last()
     }

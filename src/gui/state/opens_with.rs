@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Content shown when the program is started without a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OpensWith {
     /// The embedded example.

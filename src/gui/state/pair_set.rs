@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Responses shown in the net-gain plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PairSet {
     /// Responses constrained now or at any time since the dataset was opened: releasing a response

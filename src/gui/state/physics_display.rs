@@ -26,7 +26,6 @@ impl PhysicsPage {
     ];
 }
 
-/// Options for displaying the physics parameters.
 #[derive(Clone, Debug, Default)]
 pub struct PhysicsDisplay {
     /// Name of the selected parameter; `None` selects the first in the ranking.

@@ -58,7 +58,8 @@ impl Preferences {
         }
     }
 
-    /// Applies these preferences to a window.
+    /// Applies these preferences to a window; an invalid arrangement or line width is replaced by a
+    /// valid one.
     pub fn apply(&self, display: &mut Display) {
         display.layout.arrangement = self
             .arrangement

@@ -69,7 +69,7 @@ pub enum ConditionRecordChange {
 }
 
 impl RecordChange {
-    /// Returns the change's name in the menu: "leave run_2 out (condition 10)".
+    /// Returns the change's name in the menu, such as "leave run_2 out (condition 10)".
     pub fn name(&self) -> String {
         match self {
             Self::InCondition { condition, change } => {

@@ -68,7 +68,7 @@ pub struct RecordsState {
     pub faults: Vec<String>,
     /// Running and waiting identification jobs, ordered as requested.
     pub running: Vec<IdentifyJob>,
-    /// Conditions requested since the queue was last empty.
+    /// Number of conditions requested since the queue was last empty.
     pub requested_count: usize,
 }
 
@@ -106,7 +106,7 @@ impl RecordsState {
         now
     }
 
-    /// Adds a record without a condition; returns false if it is already there.
+    /// Adds a record without a condition; returns false if the same record was added before.
     pub fn add_unassigned(&mut self, row: LaidOutRecord) -> bool {
         let is_known = self
             .unassigned

@@ -10,7 +10,8 @@ use super::settings_session::SettingsSession;
 use super::window_state::State;
 
 impl State {
-    /// Begins a session with the present settings and, if they are up to date, the present results.
+    /// Begins a session with the present settings, and with the present analysis if it belongs to
+    /// them.
     pub fn begin_settings_session(&mut self) {
         let analysis = if self.results.is_behind() {
             None
@@ -74,7 +75,9 @@ impl State {
         edits
     }
 
-    /// Returns the analysis from when the panel was opened, once a setting has changed.
+    /// Returns the analysis with the settings at the time the settings panel was opened; `None` if
+    /// the panel is closed, if no setting has changed since, if this analysis was never completed,
+    /// or if the dataset has been replaced.
     pub fn previous_analysis(&self) -> Option<&Analysis> {
         let analysis = self.settings_session.as_ref()?.analysis.as_deref()?;
         let is_of_dataset = Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset);
@@ -84,8 +87,9 @@ impl State {
         Some(analysis)
     }
 
-    /// Returns the displayed condition's result from when the panel was opened, once a setting has
-    /// changed.
+    /// Returns the displayed condition's result with the settings at the time the settings panel
+    /// was opened; `None` in the same cases as [`Self::previous_analysis`], or without a result for
+    /// the condition.
     pub fn previous_result(&self) -> Option<&ConditionAnalysis> {
         self.previous_analysis()?.condition(self.condition().id())
     }

@@ -1,4 +1,4 @@
-//! Sheets, which cover part of the views.
+//! Sheets: the reasons are below the verdict, the others cover part of the views.
 
 use crate::gui::plot::derivation_menu::QUESTION;
 
@@ -29,8 +29,8 @@ impl Sheet {
         }
     }
 
-    /// Returns whether the sheet covers the right side of the views, beside the values that it
-    /// explains; otherwise it covers the left side.
+    /// Returns whether the sheet is at the right, beside the values that it explains; otherwise it
+    /// covers the left side of the views.
     pub fn is_on_right(self) -> bool {
         match self {
             Self::Reasons | Self::Derivation => true,

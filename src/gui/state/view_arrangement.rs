@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use super::view::{View, ViewGroup};
 
-/// Arrangement of the views between the side panels.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Arrangement {
@@ -41,17 +40,14 @@ impl Default for Arrangement {
 }
 
 impl Arrangement {
-    /// Returns the group in front.
     pub fn group(&self) -> ViewGroup {
         self.group
     }
 
-    /// Returns the view in front.
     pub fn view(&self) -> View {
         self.of_groups[self.group as usize]
     }
 
-    /// Returns the view beside the view in front.
     pub fn beside(&self) -> Option<View> {
         self.beside.filter(|beside| *beside != self.view())
     }
@@ -74,7 +70,6 @@ impl Arrangement {
         self.dock_open = Some(is_open);
     }
 
-    /// Returns whether the dock has twice its usual height.
     pub fn is_dock_enlarged(&self) -> bool {
         self.is_dock_enlarged
     }

@@ -2,7 +2,6 @@
 
 use crate::gui::widgets::choices::PageWords;
 
-/// Page in the pole view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PolesPage {
     /// Poles in the s-plane; in a high window, also the modes.
@@ -12,7 +11,6 @@ pub enum PolesPage {
     Modes,
 }
 
-/// Page in the coupling view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CouplingsPage {
     /// J with and without the couplings, and remarks.
@@ -24,7 +22,6 @@ pub enum CouplingsPage {
     Loop,
 }
 
-/// Page in the evidence view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EvidencePage {
     /// Significant differences, and sources of the scatter.
@@ -46,7 +43,6 @@ pub enum ComparePage {
     Effects,
 }
 
-/// A view's page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewPage {
     /// Overview with (`true`) or without phases.
@@ -111,7 +107,6 @@ impl ViewPage {
     }
 }
 
-/// For each view with pages, the page in front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewPages {
     pub poles: PolesPage,

@@ -113,8 +113,8 @@ fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
     }
 }
 
-/// Formats "topic.column \[unit\]". A topic that is not joined to others yet is a record of its
-/// own; its name is the record's variable.
+/// Formats "topic.column \[unit\]". A topic not yet joined to others is a record by itself, and the
+/// record's variable names it.
 fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
     let mut description = String::new();
     if let Some(variable) = &table.source.variable {

@@ -36,7 +36,6 @@ pub struct RecentFile {
 /// Undo history for the study and the flight records.
 pub type UndoHistory = History<RecordsSnapshot, RecordChange>;
 
-/// Step in the undo history.
 pub type UndoStep = Step<RecordsSnapshot, RecordChange>;
 
 /// Everything that the window keeps.
@@ -50,7 +49,6 @@ pub struct State {
     pub on_start_page: bool,
     /// Dataset to which [`Self::follow_dataset`] last adapted the displayed selection.
     followed: Arc<Dataset>,
-    /// Undo history.
     pub history: UndoHistory,
     /// Settings session, while the panel is open.
     pub settings_session: Option<SettingsSession>,
@@ -70,13 +68,12 @@ pub struct State {
     pub recent: Vec<RecentFile>,
     /// Name of the file being read.
     pub opening: Option<String>,
-    /// Forms in front of the window.
     pub forms: Forms,
     /// Current step in the guided tour, from 0; `None` while no tour is shown.
     pub tour: Option<usize>,
     /// Flight records, and models identified from them.
     pub records: RecordsState,
-    /// Models being imported, shown in place of the study.
+    /// Models being imported, shown instead of the study.
     pub assembling: Option<AssemblyState>,
 }
 
@@ -172,7 +169,7 @@ impl State {
         self.display.frequency.fit();
     }
 
-    /// Says how many models in a bundle are kept: "14 of 19".
+    /// Says how many models in a bundle are kept, such as "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
         let choice = self.study.choice(self.condition().id());

@@ -144,7 +144,6 @@ impl DropDown<'_> {
 
 /// On/off button.
 pub struct Toggle<'a> {
-    /// Button text.
     pub text: &'a str,
     /// Accessible name.
     pub name: &'a str,

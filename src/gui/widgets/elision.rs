@@ -1,4 +1,4 @@
-//! Texts that are too long for their place: the middle is replaced by "…".
+//! Texts that are too long for their place: a part, usually the middle, is replaced by "…".
 
 use egui::{Color32, FontId, Ui};
 

@@ -17,7 +17,7 @@ pub struct PageTab {
 
 /// Control height \[pt\].
 const HEIGHT: f32 = 24.0;
-/// Space on both sides of a segment's text \[pt\].
+/// Space on each side of a segment's text \[pt\].
 const SEGMENT_PADDING: f32 = 11.0;
 /// Distance between the frame and the selected segment \[pt\].
 const INSET: f32 = 2.0;

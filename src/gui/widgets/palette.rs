@@ -100,7 +100,6 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// Returns the dark theme.
     pub const fn dark() -> Self {
         Self {
             is_dark: true,
@@ -142,7 +141,6 @@ impl Palette {
         }
     }
 
-    /// Returns the light theme.
     pub const fn light() -> Self {
         Self {
             is_dark: false,
@@ -184,7 +182,7 @@ impl Palette {
         }
     }
 
-    /// Returns the palette that matches `visuals`.
+    /// Returns the standard palette for the theme of `visuals`.
     pub fn from_visuals(visuals: &Visuals) -> Self {
         if visuals.dark_mode {
             Self::dark()
@@ -305,7 +303,8 @@ mod tests {
                     );
                 }
             }
-            // Names of excluded items and links also appear on selections, and warnings on panels.
+            // Names of excluded items and links also appear on selections; errors, in the nominal
+            // colour, on panels.
             for (text, surfaces) in [
                 (palette.quiet_text, [background, panel, raised, selected]),
                 (palette.accent, [background, panel, raised, selected]),

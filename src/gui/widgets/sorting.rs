@@ -78,7 +78,7 @@ impl Sorting {
         }
     }
 
-    /// Returns the sort mark in a column's heading.
+    /// Returns the sort mark in a column's heading; empty if the table is not sorted by it.
     pub fn mark(self, column: usize) -> &'static str {
         match self.direction(column) {
             Some(SortDirection::Descending) => " ▼",
@@ -88,7 +88,6 @@ impl Sorting {
     }
 }
 
-/// Direction in which a column is sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SortDirection {
     Ascending,
@@ -130,7 +129,7 @@ impl SortedCell {
     }
 }
 
-/// Returns whether a cell holds no value.
+/// Returns whether a cell is empty or holds only a dash.
 pub(super) fn is_missing(cell: &str) -> bool {
     matches!(cell.trim(), "" | "-" | NO_VALUE | "—")
 }

@@ -25,9 +25,10 @@ pub struct TableClick {
 
 /// Cell colours, and the rows in focus.
 pub struct TableLook<'a> {
-    /// Text colour for a cell, by row and column; `None` for the default colour.
+    /// Text colour for a cell, by row in the original order and column; `None` for the default
+    /// colour.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
-    /// Whether a row is in focus.
+    /// Whether a row, counted in the original order, is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,
 }
 
@@ -120,7 +121,7 @@ pub fn table_block_ui<C: From<TableRequest>>(
     palette: &Palette,
     commands: &mut Vec<C>,
 ) -> Option<TableClick> {
-    // The title may name a condition, the columns do not change with it.
+    // The title may name a condition; the columns are the same for every condition.
     let id = ui.scope_id().with(("order", &table.columns));
     let mut sorting: Sorting = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let before = sorting;

@@ -356,7 +356,7 @@ fn short_name(plan: &ExportPlan, index: usize) -> Option<String> {
     }
 }
 
-/// Formats a size: "863 kB".
+/// Formats a size in bytes, such as "863 kB".
 fn size_words(bytes: usize) -> String {
     let kilobytes = bytes as f64 / 1e3;
     if bytes < 1000 {

@@ -9,7 +9,7 @@ use super::super::bode_axis::NOT_INCREASING;
 use super::bode::{Model, harness, three_curves};
 use super::*;
 
-/// Visible frequencies and values.
+/// Returns the visible frequencies \[rad/s\], magnitudes and phases.
 fn ranges(harness: &Harness<'_, Model>) -> ((f64, f64), Range, Range) {
     let view = &harness.state().view;
     (

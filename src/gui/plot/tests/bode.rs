@@ -96,7 +96,7 @@ fn a_click_names_the_nearest_curve() {
     let mut harness = harness(three_curves());
     for (index, id) in [(0, 1), (1, 2), (2, 3)] {
         let at = point_on(&harness, index, 60) + vec2(0.0, 2.0);
-        // Without a pause, clicks in the same place would count as a double click.
+        // Without a pause, clicks close together would count as a double click.
         harness.run_steps(30);
         click(&mut harness, at);
         assert_eq!(

@@ -30,7 +30,6 @@ pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
     curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
 }
 
-/// Sends a press or a release of a button.
 fn send_button<State>(
     harness: &mut Harness<'_, State>,
     pos: Pos2,
@@ -47,7 +46,6 @@ fn send_button<State>(
     harness.step();
 }
 
-/// Presses and releases a button at `at`.
 fn press<State>(
     harness: &mut Harness<'_, State>,
     at: Pos2,
@@ -88,7 +86,6 @@ fn wheel(delta: Vec2) -> Event {
     }
 }
 
-/// Drags with a button along `path`.
 fn drag<State>(harness: &mut Harness<'_, State>, path: &[Pos2], button: PointerButton) {
     let (Some(first), Some(last)) = (path.first(), path.last()) else {
         return;

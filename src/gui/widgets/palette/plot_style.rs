@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Palette, hex};
 
-/// Curve style chosen by the engineer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PlotStyle {
@@ -18,8 +17,8 @@ impl PlotStyle {
     /// Selectable width factors.
     pub const LINE_WIDTHS: [f32; 6] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 
-    /// Clamps the width factor to the permitted range; the stored preference may come from another
-    /// version.
+    /// Clamps the width factor to the permitted range, 1 if it is not finite; the stored preference
+    /// may come from another version.
     pub fn within_limits(self) -> Self {
         let line_width = if self.line_width.is_finite() {
             self.line_width.clamp(0.5, 3.0)

@@ -86,14 +86,16 @@ pub enum IdentificationError {
         "every input is given as a reference, but the model needs at least one input: remove a reference"
     )]
     OnlyReferences,
-    #[error("record {} is to be held out, but there are only {records} records", record + 1)]
+    #[error("record {} is to be held out, but the number of records is {records}", record + 1)]
     HeldOutMissing {
         /// Record index, from 0.
         record: usize,
         records: usize,
     },
     /// All records are held out or unusable.
-    #[error("no record remains for fitting a model: hold out fewer records")]
+    #[error(
+        "no record remains for fitting a model: all are held out, or have no usable part; hold out fewer records, or add others"
+    )]
     NothingToFit,
     /// Some inputs depend linearly on each other.
     #[error("{} move together in every record: leave out all but one, or move them independently", names(.0))]

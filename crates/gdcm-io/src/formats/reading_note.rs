@@ -19,11 +19,11 @@ pub enum ReadingNote {
     // Tables.
     #[error("line {line} repeats a heading: the rows after it continue the table")]
     RepeatedHeading { line: usize },
-    #[error("line {line} is skipped: it holds one number, but the table has {columns} columns")]
+    #[error("line {line} is skipped: one number, but the table has {columns} columns")]
     SingleNumber { line: usize, columns: usize },
     #[error(
         "each line has one comma, which is read as the separator of two columns; decimal commas \
-        would look the same"
+        would look the same; if these are, write decimal points"
     )]
     CommaSeparates,
     #[error(
@@ -57,7 +57,7 @@ pub enum ReadingNote {
     OneOfTables { count: usize, line: usize },
 
     // Frequency responses in columns.
-    #[error("{place} is read as {reading}: {quantity}{unit}")]
+    #[error("{place} is read as {reading}: {}", reason_words(quantity, unit))]
     ReadAs {
         place: ColumnPlace,
         reading: ColumnReading,
@@ -84,7 +84,7 @@ pub enum ReadingNote {
     },
     #[error(
         "magnitude and phase in columns {magnitude} and {phase} differ from the real and imaginary \
-        parts, which are used (line {line})"
+        parts, first in line {line}; the real and imaginary parts are used"
     )]
     FormsDiffer {
         /// Magnitude column, from 1.
@@ -142,7 +142,7 @@ pub enum ReadingNote {
         /// Total duration \[s\].
         lost_s: f64,
     },
-    #[error("{} omitted: no topic is subscribed for them, or they are shorter than their topic's format", counted(*count, "data message"))]
+    #[error("{} omitted, without a subscribed topic or shorter than the format of the topic", counted(*count, "data message"))]
     MessagesOmitted { count: usize },
     #[error("the file is truncated: it was read up to the last complete message")]
     Truncated,
@@ -154,10 +154,12 @@ pub enum ReadingNote {
         count: usize,
         fewest: usize,
     },
-    #[error("gyro_scale is not 1: the unit of gyroADC is unknown, so no channels are proposed")]
+    #[error(
+        "gyro_scale in the log is not 1: the unit of gyroADC is unknown, so no channels are proposed; choose columns and units"
+    )]
     GyroScale,
     #[error(
-        "{}: the frames up to the next intra frame are omitted",
+        "{}: the frames up to the next frame with complete values (intra frame) are omitted",
         counted(*count, "damaged frame")
     )]
     DamagedFrames { count: usize },
@@ -172,13 +174,13 @@ pub enum ReadingNote {
     OtherLengths { names: Vec<String> },
 
     // Models among variables.
-    #[error("the file has no D: it is assumed to be zero")]
+    #[error("the file has no matrix D: D = 0 is assumed")]
     NoD,
-    #[error("transfer functions, each realised separately")]
+    #[error("transfer functions, each converted to a state-space model of its own")]
     TransferFunctions,
-    #[error("frequencies in Hz")]
+    #[error("the frequencies are in Hz")]
     FrequenciesInHertz,
-    #[error("coherence interpreted as magnitude-squared (γ²)")]
+    #[error("the coherence is read as magnitude-squared (γ²)")]
     CoherenceSquared,
     #[error("{name} is counted in samples, as in MATLAB for discrete time")]
     DelayInSamples { name: String },
@@ -219,6 +221,16 @@ pub enum NamedColumn {
     /// Number, from 1.
     #[error("column {0}")]
     Number(usize),
+}
+
+/// Joins the reasons for a quantity and its unit; a unit that gives both is named once.
+fn reason_words(quantity: &QuantityReason, unit: &UnitReason) -> String {
+    match (quantity, unit) {
+        (QuantityReason::Unit(_) | QuantityReason::UnitOfAngle, UnitReason::Unit(name)) => {
+            format!("its unit is {name}")
+        }
+        _ => format!("{quantity}{unit}"),
+    }
 }
 
 /// Reason why a statement was skipped.

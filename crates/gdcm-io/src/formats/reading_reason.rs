@@ -37,6 +37,6 @@ pub enum UnitReason {
     NegativeNumbers,
     #[error(", some of its numbers are above 1")]
     NumbersAboveOne,
-    #[error(", its unit is γ, so it is squared")]
+    #[error(", its unit is γ, so the values are squared")]
     NotSquared,
 }

@@ -89,7 +89,7 @@ impl ArchiveReading {
             "an unsupported format"
         };
         self.ignored
-            .push(format!("{}: not read: {reason}", file.path));
+            .push(format!("{}: not read ({reason})", file.path));
         Ok(())
     }
 

@@ -65,7 +65,7 @@ pub enum Damage {
     CompressedDataEnd,
     #[error("the compressed data are corrupt")]
     CompressedData,
-    #[error("more compressed data than announced")]
+    #[error("more compressed data than the file announces")]
     CompressedDataLength,
     #[error("{packed} compressed bytes that claim to expand to {length} bytes")]
     Expansion { packed: usize, length: u64 },
@@ -159,7 +159,7 @@ pub enum Damage {
     // Zip archives.
     #[error("a file name is not UTF-8")]
     FileNameNotUtf8,
-    #[error("it claims to expand to more bytes than is possible")]
+    #[error("a file in the archive claims to expand to more bytes than is possible")]
     ArchiveExpansion,
     // Autopilot logs.
     #[error("the log has no message with a time stamp and numbers")]

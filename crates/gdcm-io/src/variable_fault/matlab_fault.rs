@@ -27,7 +27,7 @@ pub enum MatlabFault {
     FunctionCall { function: String },
     #[error("{function}(…) is supported only with numbers of rows and columns; {REMEDY}")]
     FunctionDimensions { function: String },
-    #[error("{function}(…) needs numbers for {}", names.join(", "))]
+    #[error("{function}(…) needs numbers for {}; write them as numbers", names.join(", "))]
     FunctionArguments {
         function: String,
         /// Names of the required arguments.
@@ -68,12 +68,12 @@ pub enum MatlabFault {
     #[error("{path} itself could not be read; write the value here")]
     CopyOfUnread { path: String },
     #[error(
-        "it is set inside an if, switch or loop, which is not executed; assign its value outside"
+        "the variable is set inside an if, switch or loop, which is not executed; set it outside"
     )]
     InBlock,
     #[error("only a part of the variable is set here; write the whole value in one statement")]
     PartSet,
-    #[error("it is the result of a function, which is not executed; write its value")]
+    #[error("the value is the result of a function, which is not executed; write the value")]
     FunctionResult,
 }
 

@@ -69,7 +69,7 @@ pub enum VariableFault {
     },
     /// Reading the file would take more work steps than the limit.
     #[error(
-        "{}reading would take more than {most_millions} million steps of work, the limit for a \
+        "{}reading would take more than {most_millions} million steps of computation, the limit for a \
         file; split the file",
         at(variable)
     )]

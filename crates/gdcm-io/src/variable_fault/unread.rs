@@ -33,8 +33,8 @@ pub enum Unread {
     },
     /// An object of another class system, such as Java.
     #[error(
-        "objects of other than MATLAB classes cannot be read; in MATLAB, save their data as numbers \
-        or text"
+        "objects of classes other than MATLAB's cannot be read; in MATLAB, save their data as \
+        numbers or text"
     )]
     ClassSystem,
     /// The file's object part, to which all objects refer, cannot be read.
@@ -42,7 +42,7 @@ pub enum Unread {
     ObjectPart(VariableFault),
     #[error("the data of this object are missing from the file; in MATLAB, save them as matrices")]
     NoObjectPart,
-    #[error("its reference to data in the file is damaged; save the file again")]
+    #[error("the reference to the data in the file is damaged; save the file again")]
     DamagedReference,
     #[error("enumerations are not supported; in MATLAB, save them as text or numbers")]
     Enumeration,
@@ -50,21 +50,21 @@ pub enum Unread {
     Function,
     #[error("empty objects cannot be read; in MATLAB, save their data as numbers or text")]
     Empty,
-    #[error("expected an HDF5 dataset or group; save its values as a dataset")]
+    #[error("expected an HDF5 dataset or group; save the values as a dataset")]
     NeitherDatasetNorGroup,
-    #[error("expected numbers or strings in an HDF5 dataset; save its values as one of these")]
+    #[error("expected numbers or strings in an HDF5 dataset; save the values as one of these")]
     NeitherNumbersNorStrings,
     /// A field in the records of an HDF5 dataset that is neither a number nor a string of fixed
     /// length.
-    #[error("expected a number or a string of fixed length; save it as one of these")]
+    #[error("expected a number or a string of fixed length; save the field as one of these")]
     RecordField,
-    #[error("{}", .0.remedy())]
+    #[error("cannot be read; {}", .0.remedy())]
     Unsupported(UnsupportedContent),
     /// The length of an unsupported value is unknown, so that later values cannot be found.
     #[error("this value and all later values cannot be read; {}", .0.remedy())]
     UnsupportedEnd(UnsupportedContent),
     /// A value of an unsupported type in an HDF5 file of GNU Octave.
-    #[error("save it with -v7")]
+    #[error("cannot be read; save the file in Octave with -v7")]
     OctaveType,
 }
 
@@ -73,19 +73,19 @@ pub enum Unread {
 pub enum ObjectFault {
     #[error("values of this class are not supported")]
     Class,
-    #[error("it contains itself")]
+    #[error("the object contains itself")]
     Cycle,
-    #[error("its values are nested too deeply")]
+    #[error("the values of the object are nested too deeply")]
     TooDeep,
-    #[error("it is nested inside another object, which is not supported")]
+    #[error("the object is nested inside another object, which is not supported")]
     Nested,
-    #[error("its strings are stored in an unknown form")]
+    #[error("the strings are stored in an unknown form")]
     Strings,
     #[error("the members of the enumeration cannot be decoded")]
     Enumeration,
-    #[error("its reference is damaged")]
+    #[error("the reference to the object is damaged")]
     DamagedReference,
-    #[error("its reference points to no object")]
+    #[error("the reference points to no object")]
     NoTarget,
     #[error("{0}")]
     Damaged(Damage),

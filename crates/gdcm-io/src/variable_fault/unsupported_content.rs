@@ -15,9 +15,9 @@ pub enum UnsupportedContent {
     OctaveType { type_name: String },
     #[error("a character array with more than two dimensions")]
     OctavePages,
-    #[error("an encrypted entry")]
+    #[error("an encrypted file in the archive")]
     EncryptedEntry,
-    #[error("an entry compressed with method {method}")]
+    #[error("a file in the archive, compressed with method {method},")]
     CompressionMethod {
         /// Number of the compression method in the zip format specification.
         method: u16,
@@ -26,7 +26,9 @@ pub enum UnsupportedContent {
     UlogVersion,
     #[error("a blackbox log of data version \"{version}\" (expected 2)")]
     BlackboxVersion { version: String },
-    #[error("a blackbox log whose intra frames are not described, or have an unknown encoding,")]
+    #[error(
+        "a blackbox log whose complete frames (intra frames) are not described, or have an unknown encoding,"
+    )]
     BlackboxFields,
     #[error("a dataset with several unlimited dimensions")]
     UnlimitedDimensions,

@@ -71,7 +71,7 @@ pub enum CorrectedModelError {
     /// A lead filter is too fast for the sample time.
     #[error(
         "the sample time of {} s is too long for the lead filters; the maximum is {} s, half of \
-        their lag time constant",
+        their lag time constant; use a continuous-time model",
         number(*sample_time_s),
         number(*longest_s)
     )]

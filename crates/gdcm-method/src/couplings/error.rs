@@ -14,7 +14,7 @@ pub enum CouplingError {
     )]
     NothingToFit { conditions: usize },
     /// Fewer conditions than error bars need.
-    #[error("error bars need at least {needed} conditions, found {found}")]
+    #[error("error bars of the couplings need at least {needed} conditions, found {found}")]
     TooFewConditions { needed: usize, found: usize },
     /// A condition's table does not have the expected shape.
     #[error(
@@ -43,7 +43,9 @@ pub enum CouplingError {
         omega_rad_s: f64,
     },
     /// The normal matrix has no Cholesky factors.
-    #[error("the responses do not determine the {unknowns} entries of the mixing and the feedback")]
+    #[error(
+        "the responses do not determine the {unknowns} entries of the couplings (mixing, and feedback if chosen); use more conditions"
+    )]
     SingularNormalMatrix { unknowns: usize },
     /// The mixing removes an input or reverses its sign.
     #[error(

@@ -220,12 +220,14 @@ pub enum DiscontinuityError {
         found: usize,
     },
     /// A model has no perturbation data.
-    #[error("outliers cannot be suggested: model \"{model}\" has no perturbation data")]
+    #[error(
+        "outliers cannot be suggested: the trim offsets (\"perturbation\") of model \"{model}\" are not given"
+    )]
     NoPerturbation { model: String },
     /// Every perturbation coordinate is zero: all models were linearised at the same trim.
     #[error(
-        "outliers cannot be suggested: every perturbation is zero, so all models have the \
-        same trim"
+        "outliers cannot be suggested: every trim offset (\"perturbation\") is zero, so all models \
+        have the same trim"
     )]
     AllZero,
     #[error("outliers cannot be suggested: {0}")]

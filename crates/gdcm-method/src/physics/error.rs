@@ -7,7 +7,7 @@ use gdcm_model::progress::Cancelled;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PhysicsError {
     /// No parameter is switched on.
-    #[error("no fit of physics parameters: none is switched on")]
+    #[error("no fit of physics parameters: no parameter is switched on")]
     NoParameters,
     /// No response in any condition has a weight, usually because none is available in both
     /// representatives.

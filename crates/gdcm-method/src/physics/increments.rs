@@ -150,10 +150,12 @@ pub enum IncrementError {
         parameter: usize,
     },
     /// A model has other states than the base, or another number of inputs or outputs.
-    #[error("expected the same states as in the model from which the runs differ, found others")]
+    #[error(
+        "expected the states, inputs and outputs of the model from which the runs differ, found others"
+    )]
     States,
     /// A model is a measured response.
-    #[error("expected matrices, found a measured response")]
+    #[error("expected a model with matrices, found a measured response")]
     Measured,
     /// There are more or fewer values than parameters.
     #[error("expected {expected} parameter values, found {found}")]

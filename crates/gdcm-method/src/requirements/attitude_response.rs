@@ -52,7 +52,7 @@ pub enum AttitudeResponseError {
     )]
     NotAnAttitude { output: String, unit: String },
     /// The longest run of finite nonzero values without a gap has fewer than two.
-    #[error("the response has no values between {} and {} rad/s", number(*from), number(*to))]
+    #[error("the response has no two neighbouring values other than zero between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
         /// Lowest requested frequency \[rad/s\].
         from: f64,

@@ -67,8 +67,8 @@ pub enum NoMetric {
         needed: f64,
     },
     /// The value depends on lead filters above the band.
-    #[error("the value depends on lead filters above the band: it needs {needed:.3} rad/s, and \
-        the band ends at {} rad/s", number(*top))]
+    #[error("the value depends on lead filters above the band: the response is needed up to {needed:.3} rad/s, \
+        and the band ends at {} rad/s", number(*top))]
     AboveBand {
         /// Highest frequency that the value needs \[rad/s\].
         needed: f64,

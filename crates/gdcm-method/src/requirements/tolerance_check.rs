@@ -36,7 +36,7 @@ pub enum ToleranceCheckError {
         origin: &'static str,
         time_s: f64,
     },
-    #[error("the record has no output {}", output + 1)]
+    #[error("the record has no output number {}", output + 1)]
     NoOutput { output: usize },
 }
 

@@ -339,7 +339,7 @@ pub enum ToleranceError {
         found: f64,
     },
     #[error(
-        "{} is not compared: there is no output {}",
+        "{} is not compared: the dataset has no output {}; if the output has another name, set it in the tolerance table",
         quoted(quantity),
         quoted(channel)
     )]
@@ -350,7 +350,7 @@ pub enum ToleranceError {
     },
     /// An output to be integrated is not a rate.
     #[error(
-        "{} is not compared: it is the integral of a rate in deg/s or rad/s, but the unit of {} \
+        "{} is not compared: expected a rate in deg/s or rad/s to be integrated, but the unit of {} \
         is {}",
         quoted(quantity),
         quoted(channel),
@@ -363,11 +363,12 @@ pub enum ToleranceError {
     },
     /// The tolerance's unit cannot be converted to the output's unit.
     #[error(
-        "{} is not compared: the tolerance is in {}, but {} is in {}",
+        "{} is not compared: its tolerance in {} cannot be converted to {}, the unit in which {} is \
+        compared; correct the unit in the tolerance table",
         quoted(quantity),
         quoted(unit),
-        quoted(channel),
-        quoted(compared_unit)
+        quoted(compared_unit),
+        quoted(channel)
     )]
     Unit {
         quantity: String,

@@ -6,15 +6,17 @@ use super::second_variable::SecondVariable;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScheduleError {
     /// No condition was chosen, or no chosen condition has a correction.
-    #[error("no schedule: none of the conditions chosen for it has a correction")]
+    #[error("no schedule: none of the conditions in the schedule has a correction")]
     NoCondition,
-    #[error("no schedule with {0}: a condition chosen for it has no {0}")]
+    #[error(
+        "no schedule with {0}: the {0} of a condition in the schedule is not given; enter the {0}, or schedule without it"
+    )]
     NoSecondValue(SecondVariable),
     /// In these conditions the second variable is constant, or a linear combination of the
     /// schedule's airspeed columns.
     #[error(
-        "no schedule with {0}: its effect cannot be separated from the effect of airspeed in \
-        these conditions"
+        "no schedule with {0}: the effect of {0} cannot be separated from the effect of airspeed in \
+        these conditions; schedule without {0}, or add conditions"
     )]
     NotToldApart(SecondVariable),
 }

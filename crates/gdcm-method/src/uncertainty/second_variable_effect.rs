@@ -120,14 +120,16 @@ impl SecondVariableEffect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SecondVariableError {
     /// A condition lacks the variable, or all values are equal.
-    #[error("the conditions must have at least two different values")]
+    #[error("at least two different values of the variable are needed in the conditions")]
     NotVaried,
     /// In these conditions the variable depends linearly on the columns for airspeed, or these
     /// columns alone determine no fit.
-    #[error("its effect cannot be separated from the effect of airspeed")]
+    #[error("the effect of the variable cannot be separated from the effect of airspeed")]
     NotToldApart,
     /// The schedule's fit has fewer than two degrees of freedom.
-    #[error("there are too few conditions to separate its effect from the effect of airspeed")]
+    #[error(
+        "there are too few conditions to separate the effect of the variable from the effect of airspeed"
+    )]
     TooFewConditions,
 }
 

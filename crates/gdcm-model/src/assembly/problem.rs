@@ -16,10 +16,10 @@ pub enum ProblemKind {
     #[error("no model is included; add files with models, or include a model that is left out")]
     NoModels,
     /// The dataset has no inputs, or no outputs.
-    #[error("the dataset has no {0}; define them")]
+    #[error("the dataset has no {0}; name them and their units (\"{0}\" in the rules)")]
     NoChannels(&'static str),
     /// Dataset channel without a unit.
-    #[error("{0}: the unit is missing; choose one")]
+    #[error("{0}: the unit of the dataset is missing; choose one (\"unit\" of {0} in the rules)")]
     NoUnit(String),
     /// Dataset channel whose unit in a file is given neither by the file nor by the rules.
     #[error("the file gives no unit for {0}; choose the unit of its values")]
@@ -35,7 +35,7 @@ pub enum ProblemKind {
     },
     /// Dataset channel that the model lacks.
     #[error(
-        "the model has no {side} {channel}; its {side}s are {found}; choose one of them, or leave the model out"
+        "the model has no {side} {channel}; its {side}s are {found}; choose one of them (\"{side}s\" under \"models\" in the rules), or leave the model out"
     )]
     NoChannel {
         side: ChannelSide,
@@ -62,12 +62,14 @@ pub enum ProblemKind {
     NoSampleTime { near: usize, poles: usize },
     /// Part of the file name that looks like a trim offset but matches no pattern.
     #[error(
-        "\"{0}\" in its name looks like a trim offset but matches no pattern; enter the trim \
-        offset"
+        "\"{0}\" in the name of the model looks like a trim offset but matches no pattern; enter the \
+        trim offset (\"perturbation\" under \"models\" in the rules)"
     )]
     TrimPart(String),
     /// Several model channels match the same dataset channel.
-    #[error("several {side}s of the model match {channel}: {found}; choose one of them")]
+    #[error(
+        "several {side}s of the model match {channel}: {found}; choose one of them (\"{side}s\" under \"models\" in the rules)"
+    )]
     AmbiguousChannel {
         side: ChannelSide,
         channel: String,
@@ -76,8 +78,8 @@ pub enum ProblemKind {
     },
     /// Channels without names whose count differs from the dataset's.
     #[error(
-        "the model has {} without names, but the dataset has {expected}; name them under \
-        \"models\" in the rules",
+        "the model has {} without names, but the dataset has {expected}; name those of the model \
+        (\"{side}s\" under \"models\" in the rules)",
         counted(*found, &side.to_string())
     )]
     Unnamed {
@@ -133,11 +135,15 @@ pub enum ProblemKind {
         /// The model's channel count.
         found: usize,
     },
-    #[error("choose its condition")]
+    #[error("the condition is not given; enter it (\"condition\" under \"models\" in the rules)")]
     NoCondition,
-    #[error("choose its role: nominal, perturbed or identified")]
+    #[error(
+        "the role is not given; choose nominal, perturbed or identified (\"role\" under \"models\" in the rules)"
+    )]
     NoRole,
-    #[error("enter the airspeed of its condition")]
+    #[error(
+        "no model of the condition gives its airspeed; enter it (\"airspeed_kt\" under \"models\" in the rules)"
+    )]
     NoAirspeed,
     /// Models in a condition contradict one another.
     #[error("condition {condition}: {field} is both {first} and {second}; correct one")]
@@ -149,7 +155,7 @@ pub enum ProblemKind {
     },
     /// The values in a file contradict its name or its folders' names.
     #[error(
-        "its {field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{field}\" \
+        "{field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{field}\" \
          under \"models\" in the rules)", number(*of_file), number(*of_name)
     )]
     NameContradiction {
@@ -213,7 +219,7 @@ impl GridSpan {
 }
 
 impl fmt::Display for GridSpan {
-    /// Formats the count and the range: "40 from 0.3 to 12.3 rad/s".
+    /// Formats the count and the range: "40 frequencies from 0.3 to 12.3 rad/s".
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             count,
@@ -222,7 +228,7 @@ impl fmt::Display for GridSpan {
         } = self;
         write!(
             formatter,
-            "{count} from {lowest_rad_s:.1} to {highest_rad_s:.1} rad/s"
+            "{count} frequencies from {lowest_rad_s:.1} to {highest_rad_s:.1} rad/s"
         )
     }
 }

@@ -32,7 +32,7 @@ pub enum DraftFault {
     #[error("neither matrices A, B, C, D nor a measured response is given; add one of them")]
     NoDynamics,
     #[error(
-        "a measured response includes its delays: remove sample_time_s, input_delays_s and output_delays_s, which belong to matrices \
+        "a measured response already includes all delays: remove sample_time_s, input_delays_s and output_delays_s, which belong to matrices \
          A, B, C, D"
     )]
     TimedResponse,

@@ -82,7 +82,7 @@ pub enum ParameterError {
     /// A rerun without any change.
     #[error("parameters: expected at least one change, found none; add one")]
     NoChange,
-    #[error("both parameter and parameters are given; keep one of them")]
+    #[error("both \"parameter\" and \"parameters\" are given; keep one of them")]
     RunAndRerun,
 }
 

@@ -20,14 +20,14 @@ pub struct ResponseName {
 /// Error for a text that does not name one output and one input unambiguously.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResponseNameError {
-    #[error("it names several {side}s: {found}")]
+    #[error("it names several {side}s ({found})")]
     Several {
         /// "output" or "input".
         side: &'static str,
         /// Channels as spelt in the text, separated by commas.
         found: String,
     },
-    #[error("the word \"{word}\" next to {channel} may change its meaning")]
+    #[error("the word \"{word}\" next to {channel} may change the meaning of {channel}")]
     OtherChannel {
         word: String,
         /// Channel as spelt in the text.

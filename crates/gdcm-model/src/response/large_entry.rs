@@ -12,8 +12,8 @@ pub const LARGEST_ENTRY: f64 = 1e75;
 /// An entry in a model's matrices beyond [`LARGEST_ENTRY`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "its matrix {matrix} has {value:e} in row {row}, column {column}; the limit for computations \
-    is {LARGEST_ENTRY:e}"
+    "matrix {matrix} of the model has {value:e} in row {row}, column {column}; the limit for \
+    computations is {LARGEST_ENTRY:e}"
 )]
 pub struct LargeEntry {
     /// `A`, `B`, `C` or `D`.

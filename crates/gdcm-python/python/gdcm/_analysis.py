@@ -42,7 +42,7 @@ class ChannelTable(Mapping[str, T], Generic[T]):
 
     def __getitem__(self, channel: str) -> T:
         if channel in self.inputs and channel in self.outputs:
-            raise KeyError(f"{channel} is an input and an output: use .inputs or .outputs")
+            raise KeyError(f"{channel} is an input and an output; use .inputs or .outputs")
         if channel in self.inputs:
             return self.inputs[channel]
         return self.outputs[channel]
@@ -149,7 +149,7 @@ class Schedule:
 
     @property
     def cautions(self) -> List[Message]:
-        """Points to check in the schedule."""
+        """Cautions about the schedule, to be checked."""
         found = []
         for note in self.contents.get("caution_notes", []):
             condition = note.get("condition")
@@ -185,7 +185,7 @@ class Schedule:
         name = None if variable is None else variable["variable"]
         for other, value in given.items():
             if value is not None and other != name:
-                raise ValueError(f"the schedule does not depend on {other}; leave it out")
+                raise ValueError(f"the schedule does not depend on {other}; omit this argument")
         return None if name is None else given[name]
 
     def to_frame(self) -> Any:
@@ -298,7 +298,8 @@ class ConditionResult:
 
     @property
     def gain_intervals(self) -> ChannelTable[Tuple[float, float]]:
-        """Confidence interval of the gain of each channel."""
+        """Confidence interval of the gain of each channel, (low, high), at the confidence level of
+        the analysis (`level`)."""
         return _intervals(self.contents["bars"]["gains"])
 
     @property
@@ -326,7 +327,8 @@ class ConditionResult:
 
     @property
     def net_gain_interval(self) -> PairTable[Tuple[float, float]]:
-        """Confidence interval of each net gain, (low, high), at the level of `error_bars`."""
+        """Confidence interval of each net gain, (low, high), at the confidence level of the analysis
+        (`level`)."""
         return self._pairs(
             {
                 _pair(row): (row["interval"][0], row["interval"][1])
@@ -530,7 +532,7 @@ class Analysis:
 
     @property
     def cautions(self) -> List[Message]:
-        """Points to check, each with its conditions."""
+        """Cautions about the results, to be checked, each with its conditions."""
         before = messages_of(self._analysis.messages).cautions
         return before + messages_of(self._analysis.summary_messages).cautions
 
@@ -704,7 +706,8 @@ def analyze(
     delay_from : {"median", "band"}
         Delays from the median of the phase, or from a line over the band.
     lead_order, lead_n, lead_r_max
-        Order (1, 2), lag 1/(n omega_B) and greatest gain of the lead filters.
+        Lead filters: order (1 or 2); n in the lag 1/(n omega_B), with omega_B the upper end of the
+        band; greatest gain.
     couplings : {"none", "mixing", "feedback"}
         Correction of couplings.
     physics : {"off", "named", "all", "by-hand"}
@@ -713,13 +716,13 @@ def analyze(
     parameter : dict
         Changes of parameters set by hand, in their units: ``{"Ixx": "+4%"}``.
     quantile : float
-        Quantile of the bounds, 0 to 0.5.
+        Quantile of the delta gains and delays from which the bounds follow, 0 to 0.5.
     gain_bounds : (float, float) or "auto"
         Least and greatest gain of a channel.
     delay_bound : float or "auto"
         Greatest delay of a channel [s].
     agreement : float
-        Mismatch [dB] up to which a loop of held gains counts as consistent.
+        Mismatch [dB] up to which the gains of a loop of held responses count as consistent.
     cost_average : {"median", "mean"}
         Average of squared errors over frequency.
     gain_objective : {"ratio", "dB"}
@@ -753,8 +756,8 @@ def analyze(
     hold_out : sequence of int
         Conditions left out of the schedule and used to judge it.
     sign : dict
-        Channels with the opposite sign: ``{"NZ": -1}`` (identified models), ``{"NZ":
-        "-1:physics"}``, ``{"NZ": "-1:all"}``; 1 restores.
+        Channels whose sign is reversed: ``{"NZ": -1}`` (in the identified models), ``{"NZ":
+        "-1:physics"}``, ``{"NZ": "-1:all"}``; 1 restores the sign.
     attitude_command : sequence of str
         Outputs whose attitude the stick commands.
     levels

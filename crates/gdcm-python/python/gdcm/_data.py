@@ -48,7 +48,7 @@ class Condition:
     nominal
         Physics model at the trim of the condition.
     perturbed : dict
-        Further physics models by name, linearised about neighbouring trims.
+        Further physics models by name, linearised at neighbouring trims.
     identified : dict
         Models identified from flight, by name; the reference of the correction. A condition without
         identified models has no result.
@@ -59,7 +59,8 @@ class Condition:
     altitude_ft, mass_kg : float or None
         Altitude [ft] and mass [kg].
     perturbations : dict
-        Trim of physics models by name: ``{"V+5kt": {"airspeed_kt": 5}}``.
+        Trim offsets of physics models from the trim of the condition, by model and coordinate:
+        ``{"V+5kt": {"airspeed_kt": 5}}``.
     nominal_name : str
         Name of the nominal model.
     """
@@ -273,7 +274,7 @@ class Dataset:
 
     @property
     def cautions(self) -> List[Message]:
-        """Points to check in the files."""
+        """Cautions about the files, to be checked."""
         return messages_of(self._data.messages).cautions
 
     @property

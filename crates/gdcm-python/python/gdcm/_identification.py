@@ -35,13 +35,14 @@ class IdentificationCaution:
     text : str
         The text, which may change.
     channel : str or None
-        Channel that it concerns.
+        Affected channel.
     pair : (str, str) or None
-        Response, output first, that it concerns.
+        Affected response, output first.
     records : tuple of str
-        Records that it concerns; empty for all.
+        Affected records; empty for all.
     band_rad_s : (float, float) or None
-        Frequencies that it concerns [rad/s].
+        Affected frequencies [rad/s]; for "band-narrowed" and "order-limit", the narrower band that
+        is suggested.
     """
 
     code: str
@@ -90,12 +91,12 @@ class Identification:
 
     @property
     def chi2_dof(self) -> float:
-        """Cost of the fit per degree of freedom; 1 if the residuals agree with the noise."""
+        """chi2/dof of the fit, its cost per degree of freedom; 1 if only noise remains."""
         return float(self.contents["validation"]["fit_per_dof"])
 
     @property
     def held_out_chi2_dof(self) -> Optional[float]:
-        """The same for the held-out records; None without held-out records."""
+        """chi2/dof of the held-out records for the model as it is; None without such records."""
         value = self.contents["validation"]["held_out_per_dof"]
         return None if value is None else float(value)
 
@@ -230,7 +231,7 @@ class Identification:
 
     def __repr__(self) -> str:
         return (
-            f"<gdcm.Identification: order {self.order}, J per degree of freedom "
+            f"<gdcm.Identification: order {self.order}, chi2/dof "
             f"{self.chi2_dof:.2f}, {len(self.cautions)} cautions>"
         )
 
@@ -272,11 +273,12 @@ def identify(
     time, sample_rate
         Time column, or samples per second of records without one.
     resample : float
-        Sample rate [Hz] for all records.
+        Sample rate [Hz] of all records, with the same low-pass filter for every channel; by default
+        only topics with their own time stamps are resampled.
     topic : dict
         Location of channels in logs: ``{"Q": "vehicle_angular_velocity.xyz[1]"}``.
     held : sequence of str
-        Inputs that keep their value until the next sample.
+        Inputs that keep their logged value until the next sample (sample and hold).
     part : sequence of str
         Parts of the records to use, in seconds: ``["29:58"]``, ``["+5:+34"]``.
     hold_out

@@ -37,7 +37,8 @@ pub enum IdentificationCaution {
     /// An input was not moved, or was moved only together with others.
     #[error(
         "{signal} was not swept, or only together with another input (partial coherence \
-        {partial_coherence:.2}): the responses to this input are not identified"
+        {partial_coherence:.2}): the responses to this input are not identified. \
+        Sweep each input in a record of its own"
     )]
     NotSwept {
         signal: Signal,
@@ -80,8 +81,8 @@ pub enum IdentificationCaution {
     },
     /// The cost per degree of freedom over the fitted records exceeds 1.5.
     #[error(
-        "the residual is {cost:.1} times the noise, largest in {record} and in {signal}. Possible \
-        causes: a non-linear response, wrong time alignment, a missing input"
+        "the residual is larger than the noise (χ²/dof {cost:.1}; 1: only noise remains), most in \
+        {record} and in {signal}. Possible causes: a non-linear response, wrong time alignment, a missing input"
     )]
     Inadequate {
         /// Cost per degree of freedom; 1 is adequate.
@@ -94,8 +95,8 @@ pub enum IdentificationCaution {
     /// A record's cost per degree of freedom exceeds 1.5, and 1.5 times that over all fitted
     /// records.
     #[error(
-        "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: \
-        another trim, a large amplitude, a gust. Consider leaving the record out"
+        "{name} is unlike the other records: its residual is larger than the noise (χ²/dof {cost:.1}; \
+        1: only noise remains). Possible causes: another trim, a large amplitude, a gust. Consider leaving the record out"
     )]
     UnlikeRecord {
         /// Record index, from 0.
@@ -141,8 +142,8 @@ pub enum IdentificationCaution {
     },
     /// The criterion (BIC) still falls at the highest order tried.
     #[error(
-        "an order above {order} would fit better: the dynamics in the band have more states. \
-        Narrow the band, for example to {:.1} rad/s",
+        "the fit still improves at {order}, the highest order tried: the dynamics in the band have \
+        more states. Try higher orders, or narrow the band, for example to {:.1} rad/s",
         narrower[1]
     )]
     OrderLimit {
@@ -153,8 +154,8 @@ pub enum IdentificationCaution {
     },
     /// The model does not predict the held-out records.
     #[error(
-        "the held-out records are not predicted: the residual is {normalised:.1} times the noise \
-        if the model may vary within its uncertainty, and {raw:.1} times the noise otherwise. \
+        "the held-out records are not predicted: χ²/dof is {raw:.1} for the model as it is, and \
+        {normalised:.1} if the model may vary within its uncertainty (1: only noise remains). \
         Possible causes: the aircraft was flown differently, or the records contain too little \
         excitation"
     )]
@@ -168,17 +169,18 @@ pub enum IdentificationCaution {
     /// The records were weighted by their own noise; the value is the ratio between the largest and
     /// the smallest cost per degree of freedom before this weighting.
     #[error(
-        "the noise of the records differs by a factor of {0:.1}: the records were weighted \
-        accordingly"
+        "the noise variance of the records differs by a factor of up to {0:.1}: each record was \
+        weighted by its own noise"
     )]
     Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
-    #[error("the model was not compared with the held-out records in time: {0}")]
+    #[error("the model was not compared with the time histories of the held-out records: {0}")]
     NotValidated(ValidationError),
     /// The model has an unstable pole above the highest spectral line used.
     #[error(
         "the model has an unstable pole of {:.0} rad/s, above the highest spectral line used \
-        ({highest:.0} rad/s): the pole is an artefact, and the model was not simulated in time",
+        ({highest:.0} rad/s): the pole is an artefact, and no time histories were simulated. \
+        Try another order",
         pole.norm()
     )]
     Unstable {

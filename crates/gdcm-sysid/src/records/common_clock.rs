@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::resampling_error::ResamplingError;
+use super::resampling_error::{RESAMPLED_RECORD, ResamplingError};
 use super::stamped_channel::StampedChannel;
 
 /// Ratio of the highest spectral line used to the upper end of the band (M14.9).
@@ -73,7 +73,7 @@ impl CommonClock {
                 .min(MOST_ON_CLOCK * highest_hz)
                 .max(LEAST_ON_CLOCK * highest_hz),
         };
-        check_rate("the resampled record", rate, band_end)?;
+        check_rate(RESAMPLED_RECORD, rate, band_end)?;
         let [start_s, end_s] = common_span_s(channels)?;
         let samples = ((end_s - start_s) * rate + ROUNDING).floor() + 1.0;
         if samples > MOST_SAMPLES {

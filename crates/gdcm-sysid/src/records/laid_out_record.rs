@@ -103,10 +103,15 @@ impl LaidOutRecord {
         for (name, stored) in &entry.remedies {
             let remedy = remaining_remedy(*stored, name, &channels);
             if remedy != ChannelRemedy::NONE {
-                notes.push(format!(
-                    "{name}: multiplied by {}, delay of {} s removed, as stored in the dataset",
-                    remedy.factor, remedy.delay_s
-                ));
+                let mut changes = Vec::new();
+                if remedy.factor != 1.0 {
+                    changes.push(format!("multiplied by {}", remedy.factor));
+                }
+                if remedy.delay_s != 0.0 {
+                    changes.push(format!("delay of {} s removed", remedy.delay_s));
+                }
+                let changes = changes.join(", ");
+                notes.push(format!("{name}: {changes}, as stored in the dataset"));
                 remedies.insert(name.clone(), remedy);
             }
         }

@@ -63,7 +63,7 @@ pub enum LayoutNote {
         logged: Vec<LoggedRate>,
     },
     #[error(
-        "{}: treated as held between samples, and therefore moved half a sample later",
+        "{}: treated as held between samples, and therefore moved later by half a sample time",
         channels.join(", ")
     )]
     Held { channels: Vec<String> },
@@ -79,11 +79,11 @@ pub enum TimeUnitReason {
     #[error("")]
     NoPlausibleUnit,
     /// Seconds, because the file does not state another unit.
-    #[error(" (the file does not state the unit)")]
+    #[error(" (assumed: the file gives no unit)")]
     NotStated,
     /// The steps would be implausible in seconds.
     #[error(
-        " (its steps are {}: seconds would be too {})",
+        " (because steps of {} s would be too {})",
         telling(*step, 3),
         if *step > 1.0 { "long" } else { "short" }
     )]

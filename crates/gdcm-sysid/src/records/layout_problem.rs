@@ -12,12 +12,16 @@ use super::resampling_error::ResamplingError;
 pub enum LayoutProblem {
     /// The layout has no time; lists the available columns.
     #[error(
-        "no time column; choose a column or give the sample rate (columns: {})",
+        "no time column; choose one with --time or on the Columns page, or give the sample rate with \
+        --sample-rate (columns: {})",
         shortened_list(.0)
     )]
     NoTime(Vec<String>),
     /// A requested column does not exist.
-    #[error("there is no column \"{name}\" (columns: {})", shortened_list(found))]
+    #[error(
+        "there is no column \"{name}\"; choose one of these: {}",
+        shortened_list(found)
+    )]
     NoSuchColumn {
         name: String,
         /// The available columns.
@@ -45,7 +49,7 @@ pub enum LayoutProblem {
     /// Time steps are too long for a manoeuvre.
     #[error(
         "the time in column {column} has steps of {} s: its unit is wrong, or it is not a time; \
-        correct the unit, or choose another column",
+        correct the unit in the file or on the Columns page, or choose another column",
         telling(*step_s, 3)
     )]
     TimeStep {
@@ -55,11 +59,12 @@ pub enum LayoutProblem {
         step_s: f64,
     },
     /// The sample time is not positive.
-    #[error("the sample time is {} s; it must be a positive number of seconds", number(*.0))]
+    #[error("sample time: expected a positive number of seconds, found {}; give the sample rate (--sample-rate)", number(*.0))]
     SampleTime(f64),
     /// No column matches this channel.
     #[error(
-        "no column for the {side} {channel}; choose a column (columns: {})",
+        "no column for the {side} {channel}; choose one with --topic \
+        {channel}=COLUMN or on the Columns page (columns: {})",
         shortened_list(found)
     )]
     NoColumn {
@@ -69,7 +74,7 @@ pub enum LayoutProblem {
         found: Vec<String>,
     },
     /// Several columns match this channel.
-    #[error("several columns match the {side} {channel}: {}; choose one", found.join(", "))]
+    #[error("several columns match the {side} {channel}: {}; choose one with --topic {channel}=COLUMN or on the Columns page", found.join(", "))]
     SeveralColumns {
         side: ChannelSide,
         channel: String,
@@ -116,7 +121,8 @@ pub enum LayoutProblem {
     /// The unit from the file, the user or the channel's rule cannot be converted to the channel's
     /// unit.
     #[error(
-        "{channel}: the unit \"{from}\" of column {column} cannot be converted to \"{to}\"; give a factor"
+        "{channel}: the unit \"{from}\" of column {column} cannot be converted to \"{to}\"; \
+         give a factor with --factor {channel}=X or on the Columns page"
     )]
     Conversion {
         channel: String,
@@ -153,11 +159,12 @@ pub enum LayoutProblem {
         factor: f64,
     },
     /// The delay is not plausible for a sensor or a bus.
-    #[error("{channel}: expected a delay of at most 10 s, found {} s", number(*delay_s))]
+    #[error("{channel}: expected a delay from -10 to 10 s, found {} s", number(*delay_s))]
     Delay { channel: String, delay_s: f64 },
     /// Samples exceed the plausible range for a helicopter in this unit.
     #[error(
-        "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{}",
+        "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{}; \
+         choose another column, or set the unit with --unit \"{channel}=UNIT\" or on the Columns page",
         telling(*value, 0), number(*most), likely_unit_words(*likely_unit)
     )]
     Magnitude {
@@ -219,7 +226,7 @@ fn alternatives(units: &[String]) -> String {
 
 fn likely_unit_words(unit: Option<&str>) -> String {
     match unit {
-        Some(unit) => format!("; its samples look like {unit}"),
+        Some(unit) => format!(" (the samples look like {unit})"),
         None => String::new(),
     }
 }
@@ -235,7 +242,9 @@ pub enum LayoutCaution {
         column: String,
     },
     /// Two channels have the same samples.
-    #[error("{first} and {second} have the same samples")]
+    #[error(
+        "{first} and {second} have the same samples; choose another column for one of them, or leave one out"
+    )]
     Same { first: String, second: String },
     /// The record has the same samples as an earlier record.
     #[error("same samples as {first}: left out, so that no measurement counts twice")]
@@ -245,8 +254,8 @@ pub enum LayoutCaution {
     },
     /// Neither file nor samples determine the unit, so the channel's unit was assumed.
     #[error(
-        "the file does not give the unit of {channel} (column {column}); {unit} was assumed, and \
-        its samples can be in {}",
+        "the file does not give the unit of {channel} (column {column}); the samples \
+        can be in {}; {unit} was assumed: confirm it on the Columns page, or choose another there",
         alternatives(units)
     )]
     UnitAssumed {
@@ -259,7 +268,7 @@ pub enum LayoutCaution {
         units: Vec<String>,
     },
     /// Samples are missing.
-    #[error("{channel} (column {column}): {count} of {samples} samples are missing")]
+    #[error("{channel} (column {column}): {count} of {samples} samples missing")]
     Missing {
         channel: String,
         /// Column name in quotation marks.
@@ -269,7 +278,7 @@ pub enum LayoutCaution {
         samples: usize,
     },
     /// Stamps are missing.
-    #[error("{count} of {samples} time stamps are missing")]
+    #[error("{count} of {samples} time stamps missing")]
     MissingTime {
         /// Number of missing stamps.
         count: usize,

@@ -3,13 +3,16 @@
 /// Why channels cannot be resampled to a common clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResamplingError {
-    #[error("{topic} has {samples} samples with a time stamp, but at least 3 are needed")]
+    #[error(
+        "samples of {topic} with a time stamp: expected at least 3, found {samples}; choose another column, or leave the record out"
+    )]
     TooFew { topic: String, samples: usize },
     /// A channel, or the requested rate, has fewer than 2.5 samples in a period of the highest
     /// line.
     #[error(
-        "{topic} is sampled at {rate_hz:.1} Hz, but a band up to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
-         the band at {possible:.2} rad/s"
+        "{topic} is sampled at {rate_hz:.1} Hz, but a band up to {band_end:.3} rad/s needs {needed_hz:.1} Hz: {}, or end \
+         the band at {possible:.2} rad/s",
+        rate_remedy(topic)
     )]
     TooSlow {
         topic: String,
@@ -22,8 +25,8 @@ pub enum ResamplingError {
         possible: f64,
     },
     #[error(
-        "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: they come from different flights, or their \
-         clocks differ"
+        "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: the two come from different flights, or their \
+         clocks differ; choose columns with a common time"
     )]
     NoCommonTime {
         /// The channel that ends first.
@@ -34,9 +37,21 @@ pub enum ResamplingError {
         second_start_s: f64,
     },
     #[error(
-        "the joined record would have {0:.0} samples: a time stamp is wrong, or the requested rate is too high"
+        "the resampled record would have {0:.0} samples, more than 10 million: a time stamp is wrong, or the requested rate (--resample) is too high"
     )]
     TooMany(f64),
+}
+
+/// Name of the record on the common clock, if the requested rate is too low.
+pub(super) const RESAMPLED_RECORD: &str = "the resampled record";
+
+/// Returns the remedy for a rate that is too low.
+fn rate_remedy(name: &str) -> &'static str {
+    if name == RESAMPLED_RECORD {
+        "raise the requested rate (--resample)"
+    } else {
+        "log it faster"
+    }
 }
 
 impl ResamplingError {

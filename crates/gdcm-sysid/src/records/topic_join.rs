@@ -6,6 +6,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use gdcm_model::number_format::counted;
+
 use super::record_table::{RecordColumn, RecordSource, RecordTable, TopicClock, shortened_list};
 use super::sample_step::median_step;
 use super::time_base::TimeBase;
@@ -79,8 +81,8 @@ pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
         joined.modes.extend(table.modes.iter().cloned());
     }
     joined.notes.push(format!(
-        "one record from {} topics: {}",
-        taken.len(),
+        "one record from {}: {}",
+        counted(taken.len(), "topic"),
         shortened_list(&taken)
     ));
     if !left_out.is_empty() {

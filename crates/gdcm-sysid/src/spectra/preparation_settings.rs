@@ -200,11 +200,11 @@ pub enum PreparationError {
     },
     /// A delay or a hold is not finite or too long.
     #[error(
-        "{signal}: a delay or hold of {seconds} s is not possible; the maximum is \
-        {LONGEST_SHIFT_S} s"
+        "{signal}: expected a delay or hold from -{LONGEST_SHIFT_S} to {LONGEST_SHIFT_S} s, found \
+        {seconds} s"
     )]
     Shift { signal: Signal, seconds: f64 },
-    #[error("minimum length of a piece: expected more than 0 s, found {0} s")]
+    #[error("minimum length of a part without gaps: expected more than 0 s, found {0} s")]
     LeastSegment(f64),
     #[error("gaps of {0} samples are too long to be bridged; the maximum is {LONGEST_BRIDGE}")]
     Bridge(usize),
@@ -220,7 +220,7 @@ pub enum PreparationError {
         time_s: f64,
     },
     #[error(
-        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. If the stamps are right, give a rate to interpolate to (--resample)"
+        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. If the stamps are right, give the rate to which the record is interpolated (--resample)"
     )]
     UnevenSampling {
         record: String,
@@ -229,7 +229,7 @@ pub enum PreparationError {
     },
     /// No segment is long enough.
     #[error(
-        "no usable piece: the longest piece without a gap lasts {longest_s:.1} s, less than {least_s:.1} s. \
+        "no usable part of the records: the longest part without a gap lasts {longest_s:.1} s, less than {least_s:.1} s. \
          Log longer records, fill the gaps, or leave out the channel with gaps"
     )]
     NothingLeft { longest_s: f64, least_s: f64 },

@@ -38,15 +38,15 @@ pub enum RecordCaution {
     },
     /// A part without gaps was left out because it is shorter than the minimum segment.
     #[error(
-        "{record}: the part between two gaps at {start_s:.2} s was left out, because it lasts only \
-        {length_s:.1} s"
+        "{record}: the part without gaps that begins at {start_s:.2} s was left out, because it lasts \
+        only {length_s:.1} s"
     )]
     SegmentDropped {
         record: String,
         start_s: f64,
         length_s: f64,
     },
-    #[error("{0}: no part of the record could be used")]
+    #[error("{0}: the record was not used, because no part without gaps is long enough")]
     RecordUnused(String),
     /// More than half the consecutive samples are equal while the channel moves.
     #[error(
@@ -62,7 +62,9 @@ pub enum RecordCaution {
         hold_s: f64,
     },
     /// A value that is implausible in the channel's unit.
-    #[error("{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check its unit")]
+    #[error(
+        "{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check the unit of its column"
+    )]
     UnlikelyUnit {
         signal: Signal,
         /// Largest modulus among the samples that are used and are in no spike.
@@ -71,7 +73,7 @@ pub enum RecordCaution {
         limit: f64,
     },
     #[error(
-        "{} always moved together (correlation {correlation:.3}): their effects cannot be separated",
+        "{} always moved together (correlation {correlation:.3}): their effects cannot be separated. Move them independently, or leave one out",
         names(signals)
     )]
     MovedTogether {
@@ -145,7 +147,7 @@ pub enum RecordCaution {
     },
     /// An output copies another channel.
     #[error(
-        "{copy} is a copy of the {} {of}: leave it out", of.role
+        "{copy} is a copy of the {} {of}, apart from a factor: leave {copy} out", of.role
     )]
     Copy {
         copy: Signal,

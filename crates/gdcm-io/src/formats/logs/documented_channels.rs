@@ -107,8 +107,8 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
         documented("gyroADC[1]", "Q", "deg/s"),
         documented("gyroADC[2]", "R", "deg/s"),
     ],
-    signs: "signs follow the flight controller's convention: check the sign of one channel before \
-        using signs of derivatives",
+    signs: "signs follow the flight controller's convention: check the sign of each channel in a \
+        manoeuvre of known direction",
 };
 
 /// Assigns the documented channels and units to columns: the unit to every documented column that

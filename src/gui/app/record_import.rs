@@ -259,10 +259,15 @@ impl GdcmApp {
             let has_this_clock =
                 records.rows.is_empty() || records.clock_band_end == start.clock_band_end;
             let mut is_changed = false;
+            let mut has_new = false;
             for row in rows {
                 let outcome = records.add_row(row, &read_from, &channels);
                 is_changed |= outcome != AddedRecord::KnownAlready;
+                has_new |= outcome == AddedRecord::New;
                 counts.count(outcome);
+            }
+            if has_new {
+                counts.conditions += 1;
             }
             if !is_changed {
                 before.conditions.remove(&id);
@@ -276,7 +281,6 @@ impl GdcmApp {
             leave_out_copies(&mut records.rows);
             records.choose(records.chosen);
             records.changed = true;
-            counts.conditions += 1;
         }
         let unassigned_before = self.state.records.unassigned.clone();
         for row in unassigned {
@@ -293,7 +297,7 @@ impl GdcmApp {
     }
 }
 
-/// Counts added records by outcome, and conditions with new or changed records.
+/// Counts added records by outcome, and conditions with new records.
 #[derive(Default)]
 struct AddedCounts {
     new: usize,

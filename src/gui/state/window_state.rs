@@ -145,9 +145,9 @@ impl State {
     }
 
     /// Adapts the displayed selection to a replaced dataset, and drops the display options that
-    /// concern single models; does nothing if the dataset is the same. Keeps the response in focus
-    /// if the dataset contains it; otherwise selects the first on-axis response, or the first
-    /// response if none is on-axis.
+    /// concern single models and the results that do not name their dataset; does nothing if the
+    /// dataset is the same. Keeps the response in focus if the dataset contains it; otherwise
+    /// selects the first on-axis response, or the first response if none is on-axis.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         if Arc::ptr_eq(dataset, &self.followed) {
@@ -162,6 +162,10 @@ impl State {
                 .next()
                 .unwrap_or_default();
         }
+        // These results do not name their dataset; their condition may exist in the new one too.
+        self.results.trade_off = None;
+        self.results.record_history = None;
+        self.results.time_histories = None;
         self.display.selection.hovered = None;
         self.display.selection.isolated = None;
         self.display.curves.forget_models();

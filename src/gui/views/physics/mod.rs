@@ -121,7 +121,11 @@ pub fn physics_view_ui(
     let assessment = match state.physics().cloned() {
         Some(Some(Ok(assessment))) => assessment,
         Some(Some(Err(failure))) => return failure_ui(ui, &failure, palette),
-        Some(None) | None => {
+        Some(None) => {
+            ui.label(palette.dim("No physics parameter is chosen"));
+            return;
+        }
+        None => {
             ui.label(palette.dim(state.results.absence()));
             return;
         }

@@ -17,7 +17,7 @@ use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::Table;
-use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
+use gdcm_words::missing_results::{missing_finding_text, missing_reason_text, reversed_phase_text};
 use gdcm_words::requirement_grid::{
     OUTSIDE_MARK, RequirementNames, count_details_text, grid_table, met_text,
 };
@@ -159,8 +159,7 @@ fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     }
     missing.sort_by_key(|finding| finding.condition.is_some());
     let messages = missing.into_iter().map(|finding| {
-        let why = missing_reason_text(&finding.why);
-        let words = format!("no {}: {why}", finding.what);
+        let words = missing_finding_text(finding);
         ConditionMessage::new(finding.condition, finding.why.code(), words)
     });
     for shared in shared_messages(messages) {

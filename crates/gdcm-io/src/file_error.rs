@@ -64,7 +64,7 @@ pub enum FileError {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", sanitized_path(path), place.before())]
+    #[error("{}: {}this is not JSON (line {line}, column {column}: {reason}); correct it", sanitized_path(path), place.before())]
     NotJson {
         path: PathBuf,
         /// Place in the content that the reader had reached.
@@ -77,7 +77,7 @@ pub enum FileError {
     },
     /// The file states a format other than expected.
     #[error(
-        "{}: expected \"format\": \"{expected}\", found {found}",
+        "{}: expected \"format\": \"{expected}\", found {found}; give a file of this format",
         sanitized_path(path)
     )]
     Format {
@@ -89,8 +89,9 @@ pub enum FileError {
     },
     /// The file states a version that this program does not read.
     #[error(
-        "{}: expected version {newest} of {format}, found {found}; a newer gdcm may be able to read it",
-        sanitized_path(path)
+        "{}: expected version {newest} of {format}, found {found}; {}",
+        sanitized_path(path),
+        version_remedy(*newest, found)
     )]
     Version {
         path: PathBuf,
@@ -346,6 +347,15 @@ fn variables_words(path: &Path, fault: &VariableFault) -> String {
 
 fn file_name(path: &Path) -> String {
     sanitized(&path.file_name().unwrap_or_default().to_string_lossy())
+}
+
+/// Returns the remedy for a version that this program does not read: a later version needs a newer
+/// program, any other entry is wrong.
+fn version_remedy(newest: u64, found: &str) -> &'static str {
+    match found.parse::<f64>() {
+        Ok(version) if version > newest as f64 => "a newer gdcm may be able to read it",
+        _ => "correct the version",
+    }
 }
 
 fn line_words(line: Option<usize>) -> String {

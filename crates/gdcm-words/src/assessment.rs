@@ -27,7 +27,7 @@ pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64
 /// Returns why an assessment leaves a condition out.
 pub fn not_assessed_text(why: &NotAssessed, dataset: &Dataset) -> String {
     match why {
-        NotAssessed::NotAnalysed => "it was not analysed".to_owned(),
+        NotAssessed::NotAnalysed => "the condition was not analysed".to_owned(),
         NotAssessed::NominalRejected => "the nominal model is rejected".to_owned(),
         NotAssessed::NoResult(failure) => failure_text(failure, dataset),
         NotAssessed::NoSchedule(error) => error.to_string(),

@@ -1,5 +1,7 @@
 //! Sentences about cautions, and about conditions without a result.
 
+use std::collections::BTreeMap;
+
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::number_format::counted;
 use gdcm_model::units::number;
@@ -67,14 +69,16 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             left_out,
             points,
         } => format!(
-            "J, G and D of {weighed} responses are weighted by coherence; frequencies left out, of \
-            {points}: {} (coherence below {}, or outside the valid band)",
+            "weighted by coherence: J, G and D of {}; frequencies left out, of {points}: {} \
+            (coherence below {}, or outside the valid band)",
+            counted(*weighed, "response"),
             left_out_words(left_out, &pair_name),
             number(*threshold)
         ),
         Caution::CoherenceNotUsed => {
             "the identified representative is measured with coherence, but weighting by coherence \
-            is switched off: all frequencies count equally"
+            is switched off: all frequencies count equally; switch it on (--coherence on, or \
+            Coherence among the settings)"
                 .to_owned()
         }
         Caution::ChannelsByPosition { bundle, models } => format!(
@@ -87,15 +91,19 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             omission
         ),
         Caution::ModelsNotMoved(models) => {
-            let names: Vec<&str> = models.iter().map(|model| model.model.as_str()).collect();
-            let why = match models.first() {
-                Some(model) => model.why.to_string(),
-                None => String::new(),
-            };
+            let mut names_by_reason: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+            for model in models {
+                let names = names_by_reason.entry(model.why.to_string()).or_default();
+                names.push(&model.model);
+            }
+            let mut reasons = Vec::with_capacity(names_by_reason.len());
+            for (why, names) in names_by_reason {
+                reasons.push(format!("{why} ({})", names.join(", ")));
+            }
             format!(
-                "physics parameters not applied to {} ({}): {why}",
+                "physics parameters not applied to {}: {}",
                 counted(models.len(), "physics model"),
-                names.join(", ")
+                reasons.join("; ")
             )
         }
         Caution::ParametersBend(bends) => {
@@ -108,7 +116,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
         }
         Caution::UnusualGain { pair, gain } => format!(
             "{}: delta gain G = {} is outside the usual range {} to {}; if it is not physically \
-            meaningful, exclude this response from the objective (\"ignored\" in a study file)",
+            meaningful, ignore this response (in the window, or under \"ignored\" in the study file)",
             pair_name(*pair),
             gain_words(*gain),
             USUAL_GAINS.start(),
@@ -179,35 +187,35 @@ fn gains_out_of_range_text(
     )
 }
 
-/// Returns why a response has no G and no D; begins with "its response".
+/// Returns why a response has no G and no D; begins with "the response".
 pub fn undefined_text(why: Undefined) -> String {
     match why {
         Undefined::Zero(bundle) => {
-            format!("its response is zero over the whole band in the {bundle} model")
+            format!("the response is zero over the whole band in the {bundle} model")
         }
         Undefined::ZeroSomewhere(bundle) => {
-            format!("its response is zero at some frequency of the band in the {bundle} model")
+            format!("the response is zero at some frequency of the band in the {bundle} model")
         }
         Undefined::NotFinite(bundle) => {
             format!(
-                "its response is not finite at some frequency of the band in the {bundle} model"
+                "the response is not finite at some frequency of the band in the {bundle} model"
             )
         }
         Undefined::GainOutOfRange(power_of_ten) => format!(
-            "its response has a gain of about 1e{power_of_ten} between the physics and the \
+            "the response has a gain of about 1e{power_of_ten} between the physics and the \
             identified model, but {GAIN_RANGE}: check the units and the matrices of both"
         ),
         Undefined::NotCoherent => {
-            "its response was not measured reliably: no frequency of the band is coherent enough, \
+            "the response was not measured reliably: no frequency of the band is coherent enough, \
             or all lie outside the valid band"
                 .to_owned()
         }
         Undefined::NotMeasured => {
-            "its response was not measured: the identified model contains no values of it"
+            "the response was not measured: the identified model contains no values of it"
                 .to_owned()
         }
         Undefined::NumericallyZero(bundle) => {
-            format!("its response is numerically zero in the {bundle} model: {NOTHING}")
+            format!("the response is numerically zero in the {bundle} model: {NOTHING}")
         }
     }
 }

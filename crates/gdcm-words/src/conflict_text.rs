@@ -144,6 +144,9 @@ impl ConflictText<'_> {
     /// Remedies for insufficient lead, apart from changing the bounds.
     const MORE_LEAD: &'static str = "increase R_max or reduce n";
 
+    /// Remedy for a delay that would have to be a lead.
+    const PERMIT_LEAD: &'static str = "set the phase correction to delay or lead (--phase lead)";
+
     /// Composes the sentence "ENTRIES cannot be held: LIMIT; CHANGE or RELEASE." LIMIT states the
     /// limit that the bounds impose and the value that the entries require, CHANGE a bound that
     /// would suffice.
@@ -174,8 +177,9 @@ impl ConflictText<'_> {
             ConflictKind::Unclear => return format!("{entries} {cannot}; {release}."),
             ConflictKind::BelowLower { asked, .. } if conflict.is_lone_lead() => {
                 return format!(
-                    "{entries} needs {} ms of lead, which a delay cannot provide; {release}.",
-                    milliseconds(-asked)
+                    "{entries} needs {} ms of lead, which a delay cannot provide; {}, or {release}.",
+                    milliseconds(-asked),
+                    Self::PERMIT_LEAD
                 );
             }
             ConflictKind::AboveUpper {
@@ -220,7 +224,7 @@ impl ConflictText<'_> {
         if self.conflict.quantity.is_gain() {
             let (most, asked) = told_apart(bound.powi(2), asked, 3);
             return format!(
-                "with gains <= {bound:.3} the product {first} {second} is at most {most}, but \
+                "with gains ≤ {bound:.3} the product {first} {second} is at most {most}, but \
                 {asked} is required; set the upper bound to {upper} or"
             );
         }
@@ -247,14 +251,15 @@ impl ConflictText<'_> {
                 let (least, asked) = told_apart(bound.powi(2), asked, 3);
                 let lower = lower.unwrap_or(bound);
                 format!(
-                    "with gains >= {bound:.3} the product {first} {second} is at least {least}, \
+                    "with gains ≥ {bound:.3} the product {first} {second} is at least {least}, \
                     but {asked} is required; set the lower bound to {lower} or"
                 )
             }
             Quantity::Delay => format!(
                 "{first} and {second} together would have to give {} ms of lead, which a delay \
-                cannot provide;",
-                milliseconds(-asked)
+                cannot provide; {}, or",
+                milliseconds(-asked),
+                Self::PERMIT_LEAD
             ),
             Quantity::SignedDelay => {
                 let (most, asked) = limit_and_asked_ms(-2.0 * bound, -asked);
@@ -275,7 +280,7 @@ impl ConflictText<'_> {
         let high = self.conflict.bounds.upper;
         let (most, asked) = told_apart(high / low, asked, 3);
         format!(
-            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, \
+            "with {greater} ≤ {high:.3} and {lesser} ≥ {low:.3} their ratio is at most {most}, \
             but {asked} is required"
         )
     }
@@ -306,17 +311,17 @@ impl ConflictText<'_> {
         }
         let (most, asked) = limit_and_asked_ms(high, asked);
         format!(
-            "{greater} cannot exceed {lesser} by {asked} ms with delays <= {most} ms; set the \
+            "{greater} cannot exceed {lesser} by {asked} ms with delays ≤ {most} ms; set the \
             upper bound to {upper} s or"
         )
     }
 
-    /// Returns the symbol for a channel's value: "k_LON", "tau_P".
+    /// Returns the symbol for a channel's value: "k_LON", "τ_P".
     fn symbol(&self, channel: Channel) -> String {
         let symbol = if self.conflict.quantity.is_gain() {
             "k"
         } else {
-            "tau"
+            "τ"
         };
         format!("{symbol}_{}", channel.name(self.inputs, self.outputs))
     }
@@ -373,7 +378,7 @@ mod tests {
         };
         assert_eq!(
             text(&conflict(GAIN, &[Pair::new(0, 1)], above)),
-            "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, but 2.500 is required; set \
+            "LAT → P cannot be held: with gains ≤ 1.400 the product k_LAT k_P is at most 1.960, but 2.500 is required; set \
              the upper bound to 1.59 or release it."
         );
         let little = ConflictKind::AboveUpper {
@@ -395,7 +400,7 @@ mod tests {
         };
         assert_eq!(
             text(&conflict(GAIN, &[Pair::new(2, 2), Pair::new(4, 2)], apart)),
-            "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, but 2.500 is \
+            "PED → R and PED → NY cannot both be held: with k_NY ≤ 1.400 and k_R ≥ 0.700 their ratio is at most 2.000, but 2.500 is \
              required; set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
         );
     }

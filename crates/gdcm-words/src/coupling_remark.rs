@@ -75,8 +75,8 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
             poles,
         } => unstable_words(*is_representative, poles),
         CouplingRemark::CloseToRinging { condition, margin } => format!(
-            "The loop is close to ringing at {} rad/s: the minimum singular value of I − K H is \
-            {} (condition {condition}).",
+            "The loop of the feedback K and the physics model H is close to ringing at {} rad/s: \
+            the minimum singular value of I − K H is {} (condition {condition}).",
             telling(margin.omega_rad_s, 1),
             telling(margin.least, 2)
         ),
@@ -94,7 +94,7 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
         CouplingRemark::NotFedBack { outputs } => not_fed_back_words(dataset, outputs),
         CouplingRemark::EntriesUndetermined(unknowns) => undetermined_words(dataset, unknowns),
         CouplingRemark::PolesUnknown { condition, why } => format!(
-            "Condition {condition}: the poles cannot be computed: {}.",
+            "The poles of the physics representative of condition {condition} cannot be computed: {}.",
             no_poles_text(why)
         ),
         CouplingRemark::ModelRefused {
@@ -102,7 +102,7 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
             model,
             why,
         } => format!(
-            "Condition {condition}, {model}: the effect of the couplings cannot be computed: {}.",
+            "The effect of the couplings on \"{model}\" (condition {condition}) cannot be computed: {}.",
             no_poles_text(why)
         ),
         CouplingRemark::PartlyLeftOut { fits, conditions } => format!(
@@ -116,9 +116,7 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
 /// Returns why a physics model's poles are unavailable.
 pub fn no_poles_text(why: &NoPoles) -> String {
     match why {
-        NoPoles::Measured => {
-            "the physics representative is a measured response: it has no poles".to_owned()
-        }
+        NoPoles::Measured => "a measured response has no poles".to_owned(),
         NoPoles::Failed(error) => error.to_string(),
     }
 }

@@ -44,7 +44,9 @@ fn not_applied_text(why: &NotApplied) -> String {
     match why {
         NotApplied::Refused(refusal) => refusal.to_string(),
         NotApplied::KeptForAnotherDataset => {
-            "kept in the study for use with another dataset".to_owned()
+            "the dataset has no such output; the decision is kept in the study, for datasets that \
+             have it"
+                .to_owned()
         }
         NotApplied::NoResponse => "the dataset has no such response".to_owned(),
         NotApplied::NoChannel => "the dataset has no such channel".to_owned(),

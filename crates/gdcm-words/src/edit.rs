@@ -2,6 +2,7 @@
 //! made with another dataset and do not apply to the present one.
 
 use gdcm_model::dataset::{Dataset, ModelId};
+use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
 use gdcm_study::decisions::dataset_differences::CarriedDecision;
 use gdcm_study::decisions::physics_settings::ParameterDecision;
@@ -16,11 +17,13 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
         Edit::SetReason(id, _) => format!("set the reason for rejecting {}", model_name(id)),
         Edit::Restore(id) => format!("restore {}", model_name(id)),
         Edit::RestoreAll { condition } => format!("restore all models (condition {condition})"),
-        Edit::RejectEach(models) => format!("reject {} models", models.len()),
-        Edit::RestoreEach(models) => format!("restore {} models", models.len()),
+        Edit::RejectEach(models) => format!("reject {}", counted(models.len(), "model")),
+        Edit::RestoreEach(models) => format!("restore {}", counted(models.len(), "model")),
         Edit::Pin(id) => format!("use {} as representative", model_name(id)),
-        Edit::Unpin { condition, .. } => {
-            format!("use the medoid as representative (condition {condition})")
+        Edit::Unpin { condition, bundle } => {
+            format!(
+                "use the medoid of the {bundle} models as representative (condition {condition})"
+            )
         }
         Edit::SetScheduled {
             condition,
@@ -116,10 +119,10 @@ pub(crate) fn carried_decision_text(decision: &CarriedDecision) -> String {
         }
         CarriedDecision::Sign { channel } => format!("reverse the sign of {channel}"),
         CarriedDecision::Requirement(OutputRequirement::AttitudeCommand(name)) => {
-            format!("attitude command of {name}: the dataset has no such output")
+            format!("attitude command of output {name}")
         }
         CarriedDecision::Requirement(OutputRequirement::Levels(name)) => {
-            format!("levels of {name}: the dataset has no such output")
+            format!("levels of output {name}")
         }
     }
 }

@@ -42,7 +42,11 @@ pub fn file_summary_text(summary: &FileSummary) -> String {
         FileSummary::Models {
             models,
             added_states,
-        } => format!("{}, +{added_states} states each", counted(*models, "model")),
+        } => format!(
+            "{}, up to +{}",
+            counted(*models, "model"),
+            counted(*added_states, "state")
+        ),
         FileSummary::Checksums { files } => format!("SHA-256 of {}", counted(*files, "file")),
         FileSummary::Report {
             conditions,
@@ -159,7 +163,9 @@ pub fn export_note_detail(
             };
             format!("{}; {setting}", delayed_channels_text(channels, dataset))
         }
-        ExportNote::ConstantDelays { .. } => "their degree over airspeed is 0".to_owned(),
+        ExportNote::ConstantDelays { .. } => {
+            "the degree of the delays over airspeed is 0".to_owned()
+        }
         ExportNote::SignedDelaysNotScheduled {
             condition,
             channels,
@@ -193,10 +199,12 @@ pub fn export_note_detail(
         | ExportNote::ConditionsWithoutResult { conditions }
         | ExportNote::ConditionsNotDrawn { conditions } => listed(conditions),
         ExportNote::NoSchedule { why } => why.to_string(),
-        ExportNote::NoErrorBars => "still being computed, or stopped".to_owned(),
+        ExportNote::NoErrorBars => "still being computed, or stopped (choose Compute)".to_owned(),
         ExportNote::NoPhysicsParameters => "the table has only its headings".to_owned(),
         ExportNote::NoFlightRecords => "add records in the view Records".to_owned(),
-        ExportNote::ReportOfAllConditions => "including those left out of the export".to_owned(),
+        ExportNote::ReportOfAllConditions => {
+            "including conditions left out of the export".to_owned()
+        }
     }
 }
 
@@ -272,7 +280,7 @@ mod tests {
             models: 11,
             added_states: 20,
         };
-        assert_eq!(file_summary_text(&models), "11 models, +20 states each");
+        assert_eq!(file_summary_text(&models), "11 models, up to +20 states");
         let table = FileSummary::Table { airspeeds: 1 };
         assert_eq!(file_summary_text(&table), "1 airspeed, linear");
     }

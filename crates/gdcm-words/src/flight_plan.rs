@@ -269,7 +269,7 @@ fn need_line<T: Copy>(need: &Need<T>, describe: impl Fn(T) -> String) -> String 
             format!("{}: {}", describe(amount), interval_text_fine(half_db))
         }
         Need::NotWithin { most, half_db } => format!(
-            "not enough: {}: {}",
+            "not enough: {} ({})",
             describe(most),
             interval_text_fine(half_db)
         ),

@@ -45,7 +45,7 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             signal,
             partial_coherence,
         } => ShortCaution::new(
-            format!("{signal} not swept alone"),
+            format!("{signal} not swept, or not alone"),
             format!("partial coherence {partial_coherence:.2}"),
         ),
         IdentificationCaution::MovedTogether { condition } => ShortCaution::new(
@@ -94,7 +94,7 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
         ),
         IdentificationCaution::OrderLimit { order, narrower } => ShortCaution::new(
             format!("An order above {order} would fit better"),
-            format!("or narrow the band to {:.1} rad/s", narrower[1]),
+            format!("for example, narrow the band to {:.1} rad/s", narrower[1]),
         ),
         IdentificationCaution::HeldOut {
             raw, normalised, ..
@@ -209,7 +209,7 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
         ),
         RecordCaution::Copy { copy, of } => ShortCaution::new(
             format!("{copy} is a copy of {of}"),
-            "it adds no information",
+            "the copy adds no information",
         ),
     }
 }

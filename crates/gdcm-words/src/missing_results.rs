@@ -3,7 +3,9 @@
 use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::identification_jobs::SimulationFailure;
 use gdcm_study::results::analysis::NoResult;
-use gdcm_study::results::missing_finding::{MissingReason, NoModes, NoRoleModel, NotCompared};
+use gdcm_study::results::missing_finding::{
+    MissingFinding, MissingReason, NoModes, NoRoleModel, NotCompared,
+};
 use gdcm_study::results::record_history::{NoRecordHistory, NotInHistory};
 use gdcm_study::results::required_bandwidth::NoBandwidth;
 use gdcm_study::results::required_modes::NoModeValue;
@@ -15,9 +17,19 @@ use gdcm_study::results::test_input_responses::NoTestAnswer;
 /// Returns why an analysis contains no result for a condition.
 pub fn no_result_text(why: &NoResult) -> String {
     match why {
-        NoResult::NotAnalysed => "it was not analysed".to_owned(),
+        NoResult::NotAnalysed => "the condition was not analysed".to_owned(),
         NoResult::Failed(failure) => failure.to_string(),
     }
+}
+
+/// Returns what is missing among the requirements, and why.
+pub fn missing_finding_text(finding: &MissingFinding) -> String {
+    let missing = match finding.what {
+        "all" => "results",
+        "scheduled" => "values with the schedule",
+        other => other,
+    };
+    format!("no {missing}: {}", missing_reason_text(&finding.why))
 }
 
 /// Returns why a requirement has no result.
@@ -26,7 +38,9 @@ pub fn missing_reason_text(why: &MissingReason) -> String {
         MissingReason::NoSchedule(error) => error.to_string(),
         MissingReason::NoResult(why) => no_result_text(why),
         MissingReason::NoModes(why) => no_modes_text(why),
-        MissingReason::NoRecord => "no flight record was given".to_owned(),
+        MissingReason::NoRecord => {
+            "no flight record was given; add records (Records view, or --records)".to_owned()
+        }
         MissingReason::NoRecordOfCondition => {
             "no flight record of this condition was given".to_owned()
         }
@@ -44,7 +58,7 @@ pub fn missing_reason_text(why: &MissingReason) -> String {
 fn no_modes_text(why: &NoModes) -> String {
     match why {
         NoModes::Measured { model } => {
-            format!("\"{model}\" is a measured response: it has no poles")
+            format!("\"{model}\" is a measured response, which has no poles")
         }
         NoModes::NotComputed {
             model,
@@ -135,9 +149,9 @@ pub fn no_bandwidth_text(why: &NoBandwidth) -> String {
 /// Returns why a value for a mode is missing.
 pub fn no_mode_value_text(why: NoModeValue) -> &'static str {
     match why {
-        NoModeValue::NotOscillating => "it does not oscillate",
-        NoModeValue::NoDecay => "it neither decays nor grows",
-        NoModeValue::PoleAtZero => "its pole is at zero",
+        NoModeValue::NotOscillating => "the mode does not oscillate",
+        NoModeValue::NoDecay => "the mode neither decays nor grows",
+        NoModeValue::PoleAtZero => "the pole of the mode is at zero",
     }
 }
 
@@ -159,7 +173,7 @@ pub fn reversed_phase_text(phase: &ReversedPhase, dataset: &Dataset) -> String {
     format!(
         "{} ({}): the phase of the attitude at the lowest frequency of the band lies within 45 \
         deg of +90 deg, which suggests that the stick or the output has the opposite sign; the \
-        bandwidth is then wrong",
+        bandwidth is then wrong, and that sign should be reversed",
         dataset.pair_name(phase.pair),
         roles.join(", ")
     )

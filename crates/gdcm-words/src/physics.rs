@@ -313,8 +313,9 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     let mut cautions = Vec::new();
     if let Some(moving) = diagnosis.fit.still_moving {
         cautions.push(format!(
-            "the fit has not converged after {} passes: {} still changes; usually it cannot be \
-            told apart from another parameter",
+            "the fit has not converged after {} passes: {} still changes, usually because \
+            it cannot be told apart from another parameter; set a plausible value for one of \
+            the two",
             diagnosis.fit.passes.len(),
             parameter_name(findings, moving)
         ));

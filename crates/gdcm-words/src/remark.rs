@@ -2,6 +2,7 @@
 
 use gdcm_method::correction::solution::Unmatched;
 use gdcm_model::dataset::Dataset;
+use gdcm_model::number_format::counted;
 use gdcm_model::units::{number, s_to_ms, signed, telling, told_apart};
 use gdcm_study::results::lead_offer::LeadOffer;
 use gdcm_study::results::remark::{
@@ -37,7 +38,11 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
             } else {
                 "to the displayed precision"
             };
-            format!("All {held} held delays are matched {accuracy}.")
+            if *held == 1 {
+                format!("The held delay is matched {accuracy}.")
+            } else {
+                format!("All {held} held delays are matched {accuracy}.")
+            }
         }
         Remark::NeedsLead { needed, held } => needed_lead_text(needed, *held, dataset),
         Remark::DelayMissed {
@@ -76,12 +81,15 @@ pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
             agreement_text(conflict, &inputs, &outputs)
         }
         Remark::CoherenceUsed { responses } => {
-            format!("J, G and D of {responses} responses are weighted by coherence.")
+            format!(
+                "Weighted by coherence: J, G and D of {}.",
+                counted(*responses, "response")
+            )
         }
         Remark::HeldFarther(responses) => held_farther_text(responses, dataset),
         Remark::FreeFarther { farther, compared } => format!(
-            "{farther} of the {compared} responses that are not held are farther from flight \
-            than without a correction."
+            "Farther from flight than without a correction: {farther} of the {compared} responses \
+            that are not held."
         ),
         Remark::LeftOutOfSchedule => {
             "This condition is left out of the schedule: its gains do not enter the fit.".to_owned()

@@ -88,7 +88,7 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
         && (finding.gain_limited || words.is_empty())
     {
         let text = match rule {
-            BandwidthRule::Gain => "gain-limited, which the standard warns against",
+            BandwidthRule::Gain => "gain-limited, which ADS-33E-PRF warns against",
             BandwidthRule::Phase => "from the phase margin",
             BandwidthRule::PhaseGainUnknown => "from the phase margin; the gain margin is unknown",
         };
@@ -119,8 +119,8 @@ pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table 
     let deviations = if has_deviations {
         "standard deviations of the identified modes are available"
     } else {
-        "standard deviations of the identified modes are unavailable (only models identified in \
-        this session have them); modes below the band count as not determined"
+        "standard deviations of the identified modes are unavailable (the window has them for models \
+        that it has just identified); modes below the band count as not determined"
     };
     let title = format!("Modes of condition {condition}; {deviations}");
     let mut table = Table::new(title, mode_columns(is_coupled));
@@ -188,7 +188,7 @@ pub fn mode_verdict_words(verdict: ModeVerdict) -> &'static str {
     match verdict {
         ModeVerdict::Within => "within",
         ModeVerdict::Outside => "outside",
-        ModeVerdict::NotDetermined => "not determined by flight",
+        ModeVerdict::NotDetermined => "not determined by the flight data",
         ModeVerdict::NoTolerance => "no tolerance",
         ModeVerdict::NotPaired => "unpaired",
     }

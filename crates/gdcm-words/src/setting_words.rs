@@ -69,7 +69,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "delay_from",
         caption: "Delay estimate",
         label: "Delay estimate",
-        help: "Definition of the D to which delays are fitted: median of phase divided by frequency, or \
+        help: "Definition of the delta delay D to which delays are fitted: median of phase divided by frequency, or \
     straight line over the band",
         meanings: &[
             "Median of Δφ/ω over the band, eq. (9) (the paper)",
@@ -152,7 +152,8 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "quantile",
         caption: "bound quantile",
         label: "Bound quantile",
-        help: "The bounds are this quantile and its complement (1 − q) of |H_ref|/|H_sim| and of Δφ/ω",
+        help: "Quantile q; the bounds are the quantiles q and 1 − q of |H_ref|/|H_sim| and of Δφ/ω over \
+            the band (H_ref: identified response, H_sim: physics response)",
         ..NO_WORDS
     },
     SettingWords {
@@ -205,7 +206,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "gain_from",
         caption: "G from",
         label: "Source of G",
-        help: "Source of G: the two representatives, or the mean over all pairs of kept models",
+        help: "Source of the delta gain G: the two representatives, or the mean over all pairs of kept models",
         meanings: &[
             "G of the two representatives (the paper)",
             "G is the mean of ln G over all pairs of kept models",
@@ -325,8 +326,9 @@ static SETTING_WORDS: [SettingWords; 30] = [
         help: "Schedule gains with a second variable in addition to airspeed",
         meanings: &[
             "Airspeed only, as in the paper",
-            "Recommended only if the Evidence view shows that it is needed",
-            "Recommended only if the Evidence view shows that it is needed",
+            "Airspeed and altitude; recommended only if the Evidence view shows that altitude is \
+             needed",
+            "Airspeed and mass; recommended only if the Evidence view shows that mass is needed",
         ],
         ..NO_WORDS
     },

@@ -133,8 +133,8 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     }
     table.title = format!(
         "Records of condition {condition}: share of time inside, and largest excess beyond the \
-        corridor with its time; {} of {row_count} rows are omitted, because every model is always \
-        inside",
+        corridor with its time; rows omitted, because every model is always inside: {} of \
+        {row_count}",
         row_count - table.rows.len()
     );
     table

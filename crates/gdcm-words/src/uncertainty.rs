@@ -62,17 +62,17 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
         .filter(|difference| difference.is_significant(uncertainty.level))
         .count();
     match (compared, significant, uncertainty.too_many_differences) {
-        (0, _, None) => "No two conditions have equal airspeeds.".to_owned(),
+        (0, _, None) => "No two conditions with error bars have equal airspeeds.".to_owned(),
         (0, _, Some(count)) => {
-            format!("{count} differences at equal airspeed are too many to compare.")
+            format!(
+                "{count} differences between net gains at equal airspeed are too many to compare."
+            )
         }
         (_, 0, _) => format!(
-            "None of the {compared} pairs of conditions at equal airspeed has significantly \
-             different net gains."
+            "None of the {compared} differences between net gains at equal airspeed is significant."
         ),
         (_, significant, _) => format!(
-            "{significant} of {compared} pairs of conditions at equal airspeed have significantly \
-             different net gains."
+            "Significant differences between net gains at equal airspeed: {significant} of {compared}."
         ),
     }
 }

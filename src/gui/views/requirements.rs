@@ -9,7 +9,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::requirement_jobs::RequirementsJob;
 use gdcm_study::results::requirement_grid::RequirementGrid;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_words::missing_results::{missing_reason_text, reversed_phase_text};
+use gdcm_words::missing_results::{missing_finding_text, reversed_phase_text};
 use gdcm_words::requirement_grid::{count_details_text, met_text};
 
 use super::need::{Need, current_analysis};
@@ -166,8 +166,7 @@ impl RequirementsHeader<'_> {
                 Some(id) => format!("Condition {id}: "),
                 None => String::new(),
             };
-            let why = missing_reason_text(&missing.why);
-            lines.push(format!("{condition}no {}: {why}", missing.what));
+            lines.push(format!("{condition}{}", missing_finding_text(missing)));
         }
         for caution in &self.requirements.cautions {
             let text = reversed_phase_text(caution, dataset);

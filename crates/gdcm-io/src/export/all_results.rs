@@ -47,7 +47,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     name: "csv",
     extension: "csv",
     title: "One row per channel",
-    words: "Gains and delays, one row per condition and channel, as in corrections.csv",
+    words: "Gains and delays, one row per condition and channel (CSV, the format of corrections.csv)",
     export: |export| {
         let mut text = Vec::new();
         let chosen = export.request.chosen(export.analysis);
@@ -65,7 +65,7 @@ pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
     extension: "csv",
     stem: "assessment",
     title: "One row per response",
-    words: "J without and with correction, one row per condition and response, as in assessment.csv",
+    words: "J without and with correction, one row per condition and response (CSV, the format of assessment.csv)",
     export: |export| {
         let mut text = Vec::new();
         let chosen = export.request.chosen(export.analysis);
@@ -84,7 +84,7 @@ pub(super) const PHYSICS: ExportFormat = ExportFormat {
     extension: "csv",
     stem: "physics",
     title: "One row per physics parameter",
-    words: "Physics parameters, one row each, as in physics.csv",
+    words: "Physics parameters, one row each (CSV, the format of physics.csv)",
     options: &[],
     contents: |analysis, _| ExportContents::of_physics(analysis),
     export: |export| {

@@ -38,7 +38,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     stem: "models",
     group: FormatGroup::Models,
     title: "Corrected, state space",
-    words: "Corrected models in state-space form",
+    words: "Corrected models in state-space form, MATLAB data",
     options: OPTIONS,
     check_path: |path| ModelsFormat::from_path(path).map(drop),
     contents: |analysis, request| contents_of_models(analysis, request),

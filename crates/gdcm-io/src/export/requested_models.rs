@@ -251,7 +251,7 @@ fn result_of<'a>(
     let why = match analysis.conditions.get(&condition.id()) {
         Some(Ok(result)) => return Ok(result),
         Some(Err(failure)) => failure_text(failure, &analysis.study.dataset),
-        None => "it has no result".to_owned(),
+        None => "not analysed".to_owned(),
     };
     Err(ExportFault::NoResult {
         condition: condition.id(),

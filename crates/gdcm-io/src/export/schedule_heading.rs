@@ -24,7 +24,9 @@ impl ExportedSchedule<'_> {
             "Mi and Mo are diagonal matrices of the gains of inputs and outputs; tau_i and tau_o are \
             their delays, one for each channel."
                 .to_owned(),
-            "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
+            "Inputs u, outputs y: the model gets the input Mi*u(t - tau_i); its output ym gives \
+            y(t) = Mo*ym(t - tau_o)."
+                .to_owned(),
             "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
             format!(
                 "Airspeeds outside {} to {} kt are clamped to the ends of this range.",
@@ -44,7 +46,8 @@ impl ExportedSchedule<'_> {
                     "ym is its output before any correction. If the model has a feed-through D, \
                     u2 and ym depend on each other instantaneously;",
                     "the solution is u2 = u1m + F*y0, where u1m = mixing*u1, y0 = C*x + D*u1m, F \
-                    = feedback*inverse(I - D*feedback).",
+                    = feedback*inverse(I - D*feedback),",
+                    "with the state x and the output matrix C of the model.",
                 ]
                 .map(str::to_owned),
             );

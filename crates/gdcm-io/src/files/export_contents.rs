@@ -89,9 +89,9 @@ impl LeftOutPart {
             }
             Self::Leads => "the lead filters of the schedule".to_owned(),
             Self::Physics(why) => {
-                format!("the physics parameters requested by the study: {why}")
+                format!("the physics parameters requested by the study ({why})")
             }
-            Self::Couplings(why) => format!("the couplings requested by the study: {why}"),
+            Self::Couplings(why) => format!("the couplings requested by the study ({why})"),
         }
     }
 }

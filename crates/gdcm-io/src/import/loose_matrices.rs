@@ -124,7 +124,10 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
     for model in &mut found.items {
         let source = model.draft.source.get_or_insert_with(Provenance::default);
         source.file = Some(group.to_owned());
-        source.note = Some(format!("SHA-256 of its files: {}", hashes.join(", ")));
+        source.note = Some(format!(
+            "SHA-256 of the matrix files: {}",
+            hashes.join(", ")
+        ));
     }
     found
 }

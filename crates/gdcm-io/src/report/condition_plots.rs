@@ -101,9 +101,13 @@ fn drawn_pairs(source: &ConditionSource<'_>) -> Vec<Pair> {
 fn add_number_drawn(page: &mut Page, source: &ConditionSource<'_>) {
     let measuring = source.study.dataset.measuring_pairs().marked().count();
     if measuring > PAIRS_DRAWN {
-        page.paragraph(&format!(
-            "{PAIRS_DRAWN} of {measuring} responses in the objective are drawn."
-        ));
+        let has_on_axis = source.study.dataset.on_axis().marked().next().is_some();
+        let noun = if has_on_axis {
+            "on-axis responses"
+        } else {
+            "responses"
+        };
+        page.paragraph(&format!("{PAIRS_DRAWN} of {measuring} {noun} are drawn."));
     }
 }
 
@@ -122,7 +126,7 @@ fn add_error_plots(page: &mut Page, source: &ConditionSource<'_>, options: &Bode
     let id = source.curves.condition.id();
     for pairs in drawn_pairs(source).chunks(PAIRS_IN_A_FIGURE) {
         let title = format!("Condition {id}, difference between identified and physics models");
-        let caption = "Identified representative against each kept physics model, with G, D, \
+        let caption = "Identified representative against the listed physics models, with G, D, \
             bounds and quantiles.";
         let figure = without_values(error_figure(source, pairs, options));
         page.figure(&figure.columns(PLOTS_IN_A_ROW), &title, caption);

@@ -252,7 +252,7 @@ pub(super) fn model_table(study: &Study, result: &ConditionAnalysis, kind: Bundl
         };
         let ratio_words = match ratio {
             Some(ratio) if ratio > SUGGESTION_RATIO => {
-                format!("{} (suspect)", decimals(ratio, 2))
+                format!("{} (suggested outlier)", decimals(ratio, 2))
             }
             ratio => decimals_or_missing(ratio, 2),
         };

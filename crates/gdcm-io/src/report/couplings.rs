@@ -50,7 +50,7 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
         "A mixing of the inputs and, if requested, a feedback of outputs to inputs, common to all \
         conditions, precede the corrections of the channels. The representatives, G, D, gains, \
         delays, leads and J in this report are based on the physics models with these couplings. \
-        The choice of the representative of a bundle and the suspected models are determined \
+        The choice of the representative of a bundle and the suggested outliers are determined \
         without them.",
     );
     let remarks = analysis_coupling_remarks(analysis).into_iter();
@@ -65,7 +65,8 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
     }
     page.table(&pole_table(assessment));
     if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
-        let caption = "Minimum singular value of I \u{2212} K H at the sticks in each condition: \
+        let caption = "Minimum singular value of I \u{2212} K H at the sticks in each condition (K: feedback, \
+        H: physics representative): \
             1 means that there is no loop; below 0.5 the loop is close to ringing. Poles of the \
             condition with the smallest value.";
         page.figure(&figure, &figure.title, caption);

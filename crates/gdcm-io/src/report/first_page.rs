@@ -90,6 +90,34 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
     pairs
 }
 
+/// Returns the noun for the responses in the tables: those that are constrained; if there are none,
+/// those on the axis; else all.
+fn noun_of_shown(study: &Study) -> &'static str {
+    if study.settings.constrained.marked().next().is_some() {
+        "held responses"
+    } else if study.dataset.on_axis().marked().next().is_some() {
+        "on-axis responses"
+    } else {
+        "responses"
+    }
+}
+
+/// Names the responses in the tables: "6 of 12 held responses", "the held responses".
+fn shown_words(study: &Study, pairs: &[Pair]) -> String {
+    let held = study.settings.constrained.marked().count();
+    let count = if held == 0 {
+        study.dataset.measuring_pairs().marked().count()
+    } else {
+        held
+    };
+    let noun = noun_of_shown(study);
+    if count > pairs.len() {
+        format!("{} of {count} {noun}", pairs.len())
+    } else {
+        format!("the {noun}")
+    }
+}
+
 /// Tabulates verdict, net gains with their error bars, and mean J for each condition.
 fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
     let study = &analysis.study;
@@ -97,14 +125,11 @@ fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
         Some(uncertainty) => format!(" \u{b1} {:.0} % interval", 100.0 * uncertainty.level),
         None => String::new(),
     };
-    let held = study.settings.constrained.marked().count();
-    let which = match held {
-        0 => "the responses in the objective".to_owned(),
-        _ if held > pairs.len() => format!("{} of {held} held responses", pairs.len()),
-        _ => "the held responses".to_owned(),
-    };
-    let title =
-        format!("Corrections: net gains of {which}{interval}, and mean J of these responses");
+    let title = format!(
+        "Corrections: net gains of {}{interval}, and mean J of all {}",
+        shown_words(study, pairs),
+        noun_of_shown(study)
+    );
     let mut columns = vec![
         "condition".to_owned(),
         "gain".to_owned(),
@@ -183,7 +208,10 @@ fn delay_table(analysis: &Analysis, pairs: &[Pair]) -> Option<Table> {
         columns.push(study.dataset.pair_name(*pair));
     }
     let mut table = Table::new(
-        "Net delays of these responses [ms]; negative values are leads",
+        format!(
+            "Net delays of {} [ms]; negative values are leads",
+            shown_words(study, pairs)
+        ),
         columns,
     );
     let mut has_delay = false;

@@ -20,8 +20,8 @@ pub(super) fn add_models_left_out(page: &mut Page, analysis: &Analysis) {
         page.paragraph("No model is rejected.");
     } else {
         page.paragraph(&format!(
-            "Only the analyst can reject a model. A discontinuity ratio above {SUGGESTION_RATIO} \
-            makes a model suspect."
+            "Only the analyst can reject a model. A model with a discontinuity ratio above \
+            {SUGGESTION_RATIO} is suggested as an outlier."
         ));
     }
     page.table(&rejected);
@@ -124,7 +124,7 @@ fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     kept.retain(|name| !rejected.contains(name));
     if !kept.is_empty() {
         lines.push(format!(
-            "Condition {id}: models kept despite suspect discontinuity ratios: {}.",
+            "Condition {id}: models kept although they are suggested as outliers: {}.",
             names(&kept)
         ));
     }

@@ -66,8 +66,8 @@ pub(super) fn add_physics(page: &mut Page, analysis: &Analysis) {
     } else {
         page.paragraph(&format!(
             "In this report the physics models have these parameter changes: {}. Couplings, G, D, gains, \
-            delays, leads and J are based on the changed models. The choice of the representative of a bundle and the suspected \
-            models are determined without them. {}.",
+            delays, leads and J are based on the changed models. The choice of the representative of a bundle and the suggested \
+            outliers are determined without them. {}.",
             values.join(", "),
             capital(BARS_KEEP_VALUES)
         ));

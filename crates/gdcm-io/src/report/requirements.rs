@@ -14,7 +14,9 @@ use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Engine, Study};
 use gdcm_words::Table;
-use gdcm_words::missing_results::{missing_reason_text, no_bandwidth_text, reversed_phase_text};
+use gdcm_words::missing_results::{
+    missing_finding_text, missing_reason_text, no_bandwidth_text, reversed_phase_text,
+};
 use gdcm_words::requirement_grid::{GRID_HEADS, RequirementNames, grid_table};
 use gdcm_words::requirements::{bandwidth_table, mode_table, summary_table};
 use gdcm_words::time_histories::{record_table, share_table};
@@ -95,9 +97,7 @@ pub(super) fn add_requirement_details(
     }
     let mut remarks = ConditionRemarks::default();
     for missing in &requirements.missing {
-        let why = missing_reason_text(&missing.why);
-        let words = format!("no {}: {why}", missing.what);
-        remarks.add(missing.condition, words);
+        remarks.add(missing.condition, missing_finding_text(missing));
     }
     for caution in &requirements.cautions {
         let words = reversed_phase_text(caution, &study.dataset);

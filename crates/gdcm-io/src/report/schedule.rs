@@ -133,7 +133,7 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
 fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
-        ScheduleKind::Table => "table over airspeed, linear between its points".to_owned(),
+        ScheduleKind::Table => "table over airspeed".to_owned(),
     };
     let quantity = quantity_symbol(settings.quantity);
     let delays = if settings.delays {
@@ -146,7 +146,7 @@ fn schedule_words(settings: &ScheduleSettings) -> String {
         None => String::new(),
     };
     format!(
-        "{kind}{second}, of {quantity}; airspeeds within {} kt count as equal; {delays}",
+        "{quantity} as a {kind}{second}; airspeeds within {} kt count as equal; {delays}",
         six_digits(settings.airspeed_tolerance_kt)
     )
 }

@@ -17,7 +17,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
     let dataset = &study.dataset;
     page.facts([
         ("On-axis responses", pair_names(dataset, dataset.on_axis())),
-        ("Held exactly", pair_names(dataset, &settings.constrained)),
+        ("Held", pair_names(dataset, &settings.constrained)),
         (
             "Ignored in the objective",
             pair_names(dataset, &settings.ignored),

@@ -93,6 +93,11 @@ pub fn airspeeds_figure(
     if let ([pair], [plot]) = (pairs, plots.as_slice())
         && !plot.curves.errors.is_empty()
     {
+        let optima = if plot.curves.optima.is_some() {
+            "; green: range of the errors at the optima of the conditions"
+        } else {
+            ""
+        };
         let title = format!(
             "{} · every condition: {}",
             dataset.pair_name(*pair),
@@ -101,8 +106,7 @@ pub fn airspeeds_figure(
         return Some(
             Figure::new(title)
                 .caption(format!(
-                    "{caption} Error: scheduled minus identified model; green: range of the errors \
-                    at the optima of the conditions."
+                    "{caption} Error: scheduled minus identified model{optima}."
                 ))
                 .columns(2)
                 .aspect(ASPECT)

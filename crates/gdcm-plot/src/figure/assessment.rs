@@ -13,7 +13,7 @@ pub use super::change_table::{ChangeColumn, ChangeTable};
 pub use super::evidence::evidence_figure;
 
 use super::axis::Axis;
-use super::condition_source::{schedule_words, settings_words};
+use super::condition_source::{settings_words, used_schedule_words};
 use super::drawing::{Color, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, Note, Place, Rule};
@@ -151,7 +151,7 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
     if table.choice.correction != AssessedCorrection::Own {
-        let schedule = schedule_words(&study.settings.schedule);
+        let schedule = used_schedule_words(analysis);
         caption.push_str(&format!(" Schedule: {schedule}."));
     }
     let average = average_word(table.choice.average);

@@ -14,7 +14,7 @@ use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{
-    ConditionAnalysis, CouplingCorrection, PhaseCorrection, PhysicsCorrection, Study,
+    Analysis, ConditionAnalysis, CouplingCorrection, PhaseCorrection, PhysicsCorrection, Study,
 };
 
 use super::bode_curve::BodeCurve;
@@ -338,12 +338,12 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     };
     let couplings = match settings.couplings {
         CouplingCorrection::None => "",
-        CouplingCorrection::Mixing => " Physics models include a mixing of the inputs.",
-        CouplingCorrection::MixingAndFeedback => " Physics models include mixing and feedback.",
+        CouplingCorrection::Mixing => " Couplings requested: mixing of the inputs.",
+        CouplingCorrection::MixingAndFeedback => " Couplings requested: mixing and feedback.",
     };
     let physics = match settings.physics {
         PhysicsCorrection::Off => String::new(),
-        applied => format!(" Physics models with {} applied.", applied.name()),
+        requested => format!(" Physics parameters requested: {}.", requested.name()),
     };
     format!(
         "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{physics}{couplings}",
@@ -360,6 +360,17 @@ pub fn quantity_symbol(quantity: ScheduledQuantity) -> &'static str {
         ScheduledQuantity::LnGain => "ln k",
         ScheduledQuantity::Gain => "k",
     }
+}
+
+/// Describes the schedule of an analysis with the degree used, which may be lower than requested.
+pub(super) fn used_schedule_words(analysis: &Analysis) -> String {
+    let mut settings = analysis.study.settings.schedule;
+    if let Ok(schedule) = &analysis.schedule
+        && let Some(degree) = schedule.degree()
+    {
+        settings.kind = ScheduleKind::Polynomial { degree };
+    }
+    schedule_words(&settings)
 }
 
 /// Describes the schedule: `polynomial of degree 2 of ln k`.

@@ -1,11 +1,13 @@
 //! Reference lines in plots of deviations (`error` in names): targets, bounds, quantiles and MUAD
 //! envelopes. A positive delay is a delay that the physics model lacks.
 
+use gdcm_method::correction::delta::GainSource;
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::statistics::quantile;
 use gdcm_model::units::{ratio_to_db, s_to_ms};
 use gdcm_study::ConditionAnalysis;
+use gdcm_study::decisions::settings::Settings;
 
 use super::axis::PhaseErrorUnit;
 use super::bode_curve::{BodeCurve, CurveId, Pane};
@@ -29,7 +31,7 @@ impl ConditionSource<'_> {
             return Vec::new();
         };
         let unit = options.phase_error;
-        let mut lines = delta_lines(analysis, pair, unit);
+        let mut lines = delta_lines(analysis, &self.study.settings, pair, unit);
         lines.extend(bound_lines(analysis, unit));
         let name = analysis.representative_name(BundleKind::Physics);
         let representative = drawn.iter().find(|curve| {
@@ -51,14 +53,21 @@ impl ConditionSource<'_> {
 /// Returns lines at delta gain G and delta delay D (M6) where these are defined.
 fn delta_lines(
     analysis: &ConditionAnalysis,
+    settings: &Settings,
     pair: Pair,
     unit: PhaseErrorUnit,
 ) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
+    let is_mean =
+        settings.gain_source == GainSource::MeanOfPairs && !settings.is_gain_source_idle();
     if let Some(gain) = analysis.wanted_gain(pair) {
         let label = format!("G {gain:.3} ({} dB)", one_decimal(ratio_to_db(gain)));
         let mut line = gain_line(ReferenceKind::Delta, label, gain);
-        line.note = ", median over the band".to_owned();
+        line.note = if is_mean {
+            ", mean over all pairs of kept models".to_owned()
+        } else {
+            ", median over the band".to_owned()
+        };
         lines.push(line);
     }
     if let Some(delay_s) = analysis.wanted_delay_s(pair) {

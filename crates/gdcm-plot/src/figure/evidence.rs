@@ -7,7 +7,7 @@ use gdcm_study::results::uncertainty::{PairScatter, Uncertainty};
 use gdcm_words::uncertainty::differences_summary;
 
 use super::axis::{Axis, Range};
-use super::condition_source::{schedule_words, settings_words};
+use super::condition_source::{settings_words, used_schedule_words};
 use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
@@ -207,7 +207,7 @@ fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
         the bundles; unexplained: the remainder. Above the bars: ratio of the scatter to its \
         expected value. {}",
         differences_summary(uncertainty),
-        schedule_words(&settings.schedule),
+        used_schedule_words(analysis),
         settings_words(&analysis.study.dataset, settings)
     )
 }

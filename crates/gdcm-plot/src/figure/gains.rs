@@ -9,7 +9,7 @@ pub use super::condition_classes::{Classes, class_names};
 pub use super::gain_quantity::{Across, GainAxes, GainQuantity, Measure};
 
 use super::axis::Range;
-use super::condition_source::{schedule_words, settings_words};
+use super::condition_source::{settings_words, used_schedule_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::gain_panel::{GainPanel, SIGNIFICANT};
@@ -101,7 +101,7 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
     if measure.schedule_of(analysis, across).is_some() {
-        let schedule = schedule_words(&study.settings.schedule);
+        let schedule = used_schedule_words(analysis);
         caption.push_str(&format!(" Schedule: {schedule}."));
     }
     if across == Across::Airspeed {

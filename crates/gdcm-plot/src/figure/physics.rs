@@ -51,12 +51,16 @@ pub fn physics_figure(
         level,
     };
     let name = &shown_parameter.parameter.name;
+    let misfit = if findings.diagnosis.scores.is_some() {
+        " Misfit: each condition predicted from the others."
+    } else {
+        ""
+    };
     let mut figure = Figure::new(format!("Physics parameter {name}"))
-        .caption(
+        .caption(format!(
             "Single conditions: fitted with the condition's gains free, and the other parameters and \
-            the delays fixed at the common solution. Misfit: each condition predicted from the \
-            others (M18).",
-        )
+            the delays fixed at the common solution (M18).{misfit}"
+        ))
         .columns(2)
         .aspect(0.72)
         .plot(shown_parameter.plot());

@@ -8,7 +8,7 @@ use gdcm_study::results::response_costs::ResponseCosts;
 use gdcm_study::results::uncertainty::Uncertainty;
 
 use super::axis::Axis;
-use super::condition_source::{schedule_words, settings_words};
+use super::condition_source::{settings_words, used_schedule_words};
 use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::gain_panel::GainPanel;
@@ -53,7 +53,7 @@ pub fn schedule_cost_figure(
     color_by_airspeed(&mut gain_panel, analysis);
     let mut caption = settings_words(&study.dataset, &study.settings);
     if analysis.schedule.is_ok() {
-        let schedule = schedule_words(&study.settings.schedule);
+        let schedule = used_schedule_words(analysis);
         caption.push_str(&format!(" Schedule: {schedule}."));
     }
     let figure = Figure::new(format!(

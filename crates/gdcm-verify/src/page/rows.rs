@@ -256,7 +256,8 @@ pub const COVERAGE: &[CoverageRow] = &[
     CoverageRow {
         code: "intervals-of-six-by-four-responses",
         sections: "M14",
-        what: "the same with four inputs and six outputs",
+        what: "magnitudes and phases of identified responses at twelve frequencies: four inputs, six \
+            outputs, generated flights through gusts in open loop",
     },
 ];
 

@@ -127,6 +127,6 @@ impl<'a> Context<'a> {
 pub(super) fn weight_words(mismatch: &Mismatch) -> Option<String> {
     let count = mismatch.weights()?.len();
     Some(format!(
-        "{count} of the frequencies, weighted by coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"
+        "{count} of the frequencies, weighted by their coherence γ²: W = [1.58 (1 − e^(−γ²))]² (M4a)"
     ))
 }

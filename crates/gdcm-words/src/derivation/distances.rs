@@ -42,7 +42,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         rests_on.extend(model_words(model));
     }
     Some(Derivation {
-        title: context.title(&format!("score of {}", model.name)),
+        title: context.title(&format!("mean distance of {}", model.name)),
         equation:
             "s_a = mean over b ≠ a of d(a, b), d(a, b)² = mean over the responses of J(a against b)"
                 .to_owned(),

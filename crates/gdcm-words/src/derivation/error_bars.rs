@@ -58,7 +58,7 @@ fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId
 fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
         (Some(half_width), Some(degrees)) => format!(
-            "{:.0} % error bar: ± {} = t({degrees:.1}) · {} (M13)",
+            "{:.0} % error bar: ± {} = t · {}, Student's t with {degrees:.1} degrees of freedom (M13)",
             100.0 * level,
             deviation_words(scalar, half_width),
             deviation_words(scalar, bar.deviation())
@@ -74,7 +74,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     if bar.left_out > 0 {
         let verb = if bar.left_out == 1 { "gives" } else { "give" };
         lines.push(format!(
-            "{} {verb} no value for this result",
+            "{} {verb} no value of this quantity",
             counted(bar.left_out, "model exchange")
         ));
     }
@@ -109,7 +109,7 @@ fn swap_words(result: &ConditionAnalysis, swap: &ModelSwap, scalar: Scalar) -> S
     let words = match figure {
         Some(figure) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(figure)),
         Some(figure) => format!("{:.4}", figure.exp()),
-        None => "none".to_owned(),
+        None => "no value".to_owned(),
     };
-    format!("with {kind} model {name}: {words}")
+    format!("with {kind} model {name} instead of the representative: {words}")
 }

@@ -17,7 +17,7 @@ const TERMS: [(&str, &str); 30] = [
     ("ω", "frequency [rad/s]"),
     (
         "W",
-        "weight of a frequency, from its coherence if coherence is used",
+        "weight of a frequency, from its coherence; 1 if coherence is not used",
     ),
     ("k_o", "gain of the output channel"),
     ("k_i", "gain of the input channel"),
@@ -44,7 +44,7 @@ const TERMS: [(&str, &str); 30] = [
     ),
     (
         "s_a",
-        "score of model a: its mean distance to the other models in the bundle",
+        "mean distance of model a to the other models in the bundle",
     ),
     (
         "r_a",

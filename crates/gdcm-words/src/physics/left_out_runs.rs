@@ -33,7 +33,7 @@ fn not_fitted_text(why: &NotFitted) -> String {
     match why {
         NotFitted::HeldOut => "it is held out".to_owned(),
         NotFitted::NotCompared { code } => {
-            format!("its models cannot be compared ({code})")
+            format!("its models cannot be compared (error {code})")
         }
         NotFitted::Runs(omission) => omission.to_string(),
     }
@@ -93,6 +93,9 @@ fn refusal_text(refusal: &RunRefusal) -> String {
         RunRefusal::MatricesRepeated { other } => {
             format!("\"{other}\" has the same matrices at another step; correct one of them")
         }
-        RunRefusal::TooMany => "two other runs of the parameter are already used".to_owned(),
+        RunRefusal::TooMany => {
+            "at most two runs of a parameter are used, and two others already are; remove one"
+                .to_owned()
+        }
     }
 }

@@ -69,12 +69,12 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             record,
             signal,
         } => ShortCaution::new(
-            format!("Residual {cost:.1} times the noise"),
-            format!("largest in {signal}, {record}"),
+            "Residual exceeds the noise".to_owned(),
+            format!("χ²/dof {cost:.1}, largest in {signal}, {record}"),
         ),
         IdentificationCaution::UnlikeRecord { name, cost, .. } => ShortCaution::new(
             format!("{name} unlike the others"),
-            format!("residual {cost:.1} times the noise"),
+            format!("χ²/dof {cost:.1}"),
         ),
         IdentificationCaution::Contradiction { records, contrast } => {
             contradiction(records, *contrast)
@@ -100,14 +100,11 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             raw, normalised, ..
         } => ShortCaution::new(
             "Held-out records not predicted",
-            format!(
-                "residual {raw:.1} times the noise; {normalised:.1} times with the model's \
-                uncertainty"
-            ),
+            format!("χ²/dof {raw:.1}; {normalised:.1} with the model free within its uncertainty"),
         ),
         IdentificationCaution::Reweighed(ratio) => ShortCaution::new(
             "Records weighted by their noise",
-            format!("the noise differs by a factor of {ratio:.1}"),
+            format!("the noise variance differs by a factor of {ratio:.1}"),
         ),
         IdentificationCaution::NotValidated(why) => {
             ShortCaution::new("Held-out records not compared", why.to_string())
@@ -134,11 +131,11 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
             start_s,
             length_s,
         } => ShortCaution::new(
-            "Part between two gaps left out",
+            "Short part left out",
             format!("{record}, {length_s:.1} s from {start_s:.2} s on"),
         ),
         RecordCaution::RecordUnused(record) => {
-            ShortCaution::new(format!("{record} not used"), "no part could be used")
+            ShortCaution::new(format!("{record} not used"), "no part of it could be used")
         }
         RecordCaution::SampleHold { signal, hold_s, .. } => ShortCaution::new(
             format!("{signal} changes in steps"),

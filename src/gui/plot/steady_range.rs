@@ -7,7 +7,7 @@ use gdcm_plot::figure::axis::{Scale, step_above};
 
 /// Share of an axis by which data may exceed it before it grows.
 const OVERSHOOT: f64 = 0.02;
-/// Share of an axis below which data make it shrink.
+/// An axis shrinks if its data fill less than this share of it.
 const LEAST_USE: f64 = 0.6;
 /// Maximum number of steps on an axis before its ends are moved outwards to multiples of the step,
 /// which is 1, 2 or 5 times a power of ten.

@@ -355,10 +355,14 @@ fn part_of(
     Ok(part)
 }
 
-/// Returns the message for a part \[s\] with fewer than two samples.
+/// Returns the message for the part `part_s` \[s\] of a record, which has fewer than the two samples
+/// that a record needs.
 fn no_samples(whole: &LaidOutRecord, part_s: [f64; 2]) -> String {
     let [from, to] = part_s.map(number);
-    let mut message = format!("{}: no samples from {from} to {to} s", whole.table.name);
+    let mut message = format!(
+        "{}: fewer than 2 samples from {from} to {to} s",
+        whole.table.name
+    );
     if let Some(span_s) = whole.span_s() {
         let [first, last] = span_s.map(|time_s| telling(time_s, 2));
         message.push_str(&format!(

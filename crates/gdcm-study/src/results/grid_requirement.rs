@@ -148,9 +148,9 @@ impl Requirement {
 pub enum RequirementLimit {
     /// Maximum magnitude, in the unit in which the values are stored: bandwidth, phase delay.
     Within(f64),
-    /// Mean J over the on-axis responses.
+    /// Greatest value that is met: for the mean J over the on-axis responses.
     AtMost(f64),
-    /// MUAD share.
+    /// Least value that is met: for the MUAD share.
     AtLeast(f64),
     /// The identified model's level, which the model must have.
     IdentifiedLevel,

@@ -31,7 +31,7 @@ const EQUAL_LEADS: f64 = 0.5;
 /// Minimum magnitude of the mean ln G over the conditions, or of half its range over them, for the
 /// rate commanded by the pedals.
 const NOTABLE_LN_GAIN: f64 = 0.1;
-/// Minimum difference in ln G between fast and slow conditions.
+/// Difference in ln G between fast and slow conditions from which runs are suggested.
 const NOTABLE_LN_CHANGE: f64 = 0.08;
 
 /// The observed pattern that suggests runs.

@@ -10,8 +10,8 @@ use super::comparison_input::ComparisonInput;
 use crate::results::comparison::Comparison;
 
 impl Comparison {
-    /// Returns the same comparison with other G: each is the geometric mean over all pairs of a
-    /// kept physics and a kept identified model that have the response.
+    /// Returns the comparison with each response's G replaced by its geometric mean over all pairs of
+    /// a kept physics model and a kept identified model that have the response.
     pub(crate) fn with_mean_gains(mut self, input: &ComparisonInput<'_>) -> Self {
         let physics = kept_models(input, BundleKind::Physics, &self.physics);
         let identified = kept_models(input, BundleKind::Identified, &self.identified);

@@ -48,7 +48,7 @@ const SINGLE_CHANNELS: usize = 6;
 /// Order up to which states are removed singly, however many channels there are.
 const SINGLE_ORDER: usize = 8;
 
-/// The orders that were compared.
+/// Result of comparing orders: the fit and the criterion for each, and the choice.
 pub(crate) struct OrderSearch<'a> {
     /// Refined models by order, with the top order's weights.
     pub(crate) fits: BTreeMap<usize, Fit>,

@@ -96,7 +96,8 @@ pub(crate) fn residual_noise(
     NoiseCovariance::new(points)
 }
 
-/// Returns a segment's lines (step 1); `None` if a weight has no inverse.
+/// Computes the residual at each line of a segment, in output units, with the share of noise power
+/// that the fit left in it (step 1); `None` if a weight has no inverse.
 fn residual_lines(
     segment: &SpectralLines,
     part: &SegmentCost,

@@ -1,4 +1,4 @@
-//! A channel's finite samples, in which its cautions are searched.
+//! A channel's finite samples, which are searched for faults such as spikes and clipping.
 
 use gdcm_model::simulation::{FlightRecord, Signal};
 

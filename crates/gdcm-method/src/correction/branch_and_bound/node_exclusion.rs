@@ -88,7 +88,8 @@ impl<'a> NodeExclusion<'a> {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
         let ground = self.objective.ground();
-        // A scale in a floating piece stays free, because no bound stops it alone.
+        // Free: scales that no bound of their own stops (those in a floating piece), and scales
+        // whose slope has no constant sign.
         let free: Vec<usize> = (0..ground)
             .filter(|&scale| self.bounded_by[scale] != [ground] || sign(&slopes[scale]) == 0)
             .collect();

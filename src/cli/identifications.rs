@@ -205,8 +205,8 @@ impl<'a> Identifications<'a> {
     /// Writes the output files and prints the cautions and the lines about the results.
     ///
     /// # Errors
-    /// No task has a result; a file cannot be written. After all is written: the records identify
-    /// no input.
+    /// No task has a result; a file cannot be written. Also returned, after all files are written,
+    /// if the records identify no input.
     pub(super) fn finish(mut self, task_count: usize) -> Result<(), Failure> {
         for shared in shared_messages(take(&mut self.cautions)) {
             let Message { code, text } = &shared.message;

@@ -25,14 +25,15 @@ use super::terminal::caution;
 /// Identifies models from flight records and writes them; with `--into`, also a copy of the dataset
 /// that contains them.
 ///
-/// 1. The dataset, if any, and the output files whose names are known; band and channels.
-/// 2. The records, as tasks: one for all, or one for each condition ([`identification_tasks`]).
-/// 3. The identifications ([`Identifications::run`]), and their results
+/// 1. Open the dataset, if any; check the output files whose names are known; determine band and
+///    channels.
+/// 2. Read the records as tasks: one for all, or one for each condition ([`identification_tasks`]).
+/// 3. Identify ([`Identifications::run`]), then write and print the results
 ///    ([`Identifications::finish`]).
 ///
 /// # Errors
-/// An option or a file is wrong; no task has a result; the work was stopped. After all is written:
-/// the records identify no input, or some records were not read.
+/// An option or a file is wrong; no task has a result; the work was stopped. Also returned, after
+/// all files are written, if the records identify no input, or if some records were not read.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let source = &arguments.source;
     let read = source.records.iter().chain(&source.into);

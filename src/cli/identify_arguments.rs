@@ -23,7 +23,7 @@ pub struct RecordArguments {
     /// Inputs, separated by commas (LON,LAT), each as CHANNEL, with its unit in square brackets if necessary, or CHANNEL=COLUMN (the column's name, in quotation marks if it contains a comma, or #3 for the third column) [default: the dataset's].
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
-    /// Outputs, written like inputs.
+    /// Outputs, in the syntax of --inputs.
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub outputs: Option<ChannelList>,
     /// Band to identify, in rad/s [default: the dataset's].
@@ -60,7 +60,7 @@ pub struct RecordArguments {
     /// Known channel delay in seconds, positive if it is logged late; in one record as RECORD:CHANNEL=SECONDS; may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", value_parser = channel_delay, allow_hyphen_values = true)]
     pub delay: Vec<ChannelValue<f64>>,
-    /// Recorded references that drove the loop from outside (a chirp, a position reference), written like inputs: gusts fed back into the inputs no longer bias the response.
+    /// Recorded references that drove the loop from outside (a chirp, a position reference), in the syntax of --inputs. With them, gusts that reach the inputs through the feedback do not bias the response.
     #[arg(long, value_name = "NAMES")]
     pub reference: Option<ChannelList>,
     /// Model order [default: the orders that the records support]; may be repeated.

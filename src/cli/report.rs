@@ -17,14 +17,15 @@ use super::time_histories::{read_histories, simulated_histories};
 
 /// Analyses a study and writes the full report.
 ///
-/// 1. The study; the file's ending, and whether the file may be written.
-/// 2. The flight records for the comparison in time.
-/// 3. The analysis without error bars, which the report adds; the responses to the records.
-/// 4. The report, and the file.
+/// 1. Open the study, and check the output path.
+/// 2. Read the flight records for the comparison in time.
+/// 3. Analyse without error bars (`compose_report` computes them), and simulate the responses to
+///    the records.
+/// 4. Compose and save the report.
 ///
 /// # Errors
-/// An option or a file is wrong, no condition has a result, or the work was stopped. After all is
-/// written: some records were not read.
+/// An option or a file is wrong, no condition has a result, or the work was stopped. Also returned,
+/// after the report is written, if some records were not read.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let CommandStudy {
         study,

@@ -1,7 +1,8 @@
 //! Converts numbers to text: the formats shared by messages, files, plots and the window.
 //!
-//! Text for messages, files and tables in a terminal uses a hyphen as minus sign; text in plots,
-//! windows and sentences uses a true minus sign.
+//! Each function has a fixed minus sign: a hyphen for messages and files, a true minus sign for
+//! plots, the window and sentences. Where a value that may be negative gets a hyphen but needs a
+//! true minus sign, [`with_minus_sign`] converts it.
 //!
 //! | function | digits | minus sign |
 //! |---|---|---|
@@ -12,12 +13,12 @@
 //! | [`five_digits`] | 5 significant | true |
 //! | [`significant`] | 3 significant | hyphen |
 //! | [`three_digits`] | 3 significant; below 1, 3 decimals | hyphen |
-//! | [`rounded_to_three_digits`] | at most 3 significant, without trailing zeros | positive values |
-//! | [`gain_text`] | 3 decimals, or 2; below 0.1, 3 significant | positive values |
+//! | [`rounded_to_three_digits`] | at most 3 significant, without trailing zeros | none (positive) |
+//! | [`gain_text`] | 3 decimals, or 2 if the third is zero; below 0.1, 3 significant | none (positive) |
 //! | [`decimals`], [`decimals_or_dash`] | given decimals | true |
 //! | [`signed`] | given decimals, with plus sign | true |
-//! | [`telling`] | given decimals; of a smaller nonzero value, 2 significant | hyphen |
-//! | [`conjugate_pair`] | given decimals, real and imaginary part | true |
+//! | [`telling`] | given decimals; 2 significant below one unit in the last decimal | hyphen |
+//! | [`conjugate_pair`] | real and imaginary part, each as by [`telling`] | true |
 //! | [`told_apart`] | given decimals, or as many as distinguish two values | hyphen |
 //!
 //! Counts with their nouns: [`counted`].

@@ -24,7 +24,8 @@ use crate::identification::Identification;
 /// Module `gdcm._gdcm`.
 #[pymodule]
 fn _gdcm(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    // Results state the commit, as do those that the program writes itself.
+    // Record the commit, so that results written through this module state it, as the program's own
+    // results do.
     gdcm::version::set_commit();
     module.add("version", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<Data>()?;

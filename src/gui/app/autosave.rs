@@ -91,7 +91,8 @@ pub struct Autosave {
 }
 
 impl Autosave {
-    /// Starts the thread, which first offers unsaved decisions from windows that crashed.
+    /// Starts the thread, which first offers the unsaved decisions of windows that ended without
+    /// being closed by the user; without a directory, there are none.
     pub(super) fn start(
         directory: Option<&Path>,
         keep_after: Duration,

@@ -119,11 +119,11 @@ impl GdcmApp {
 impl DatasetRequest {
     /// Builds a dataset from the records that contain the requested channels:
     ///
-    /// 1. read the records; what cannot be read is a problem;
+    /// 1. read the files; each unreadable file becomes a problem;
     /// 2. combine tables that are topics of one record, and propose a layout for each record;
-    /// 3. a record without problems completes the channels' units and becomes an entry in the
-    ///    dataset;
-    /// 4. build the dataset; the problems say what it leaves out.
+    /// 3. make each record without problems an entry in the dataset, and take missing channel units
+    ///    from it;
+    /// 4. build the dataset, and list the problems of what it leaves out.
     ///
     /// # Errors
     /// At most [`MOST_PROBLEMS`] problems in the records, if no record is suitable; otherwise the

@@ -7,26 +7,26 @@ use gdcm_model::assembly::Rules;
 /// Command in the import view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblingCommand {
-    /// Start the import, or return to it.
+    /// Starts the import, or returns to it.
     Open,
-    /// Choose a folder with the desktop's dialog.
+    /// Chooses a folder with the desktop's dialog.
     AskFolder,
-    /// Read files, and folders with all their files.
+    /// Reads files, and folders with all their files.
     Add(Vec<PathBuf>),
     StopReading,
-    /// Change the import rules.
+    /// Changes the import rules.
     Change(Box<Rules>),
     Undo,
     Redo,
     Select(usize),
-    /// Sort the table by the column with this index; the same column again reverses the order.
+    /// Sorts the table by the column with this index; the same column again reverses the order.
     Sort(usize),
-    /// Show the response with this index in the preview.
+    /// Shows a response in the preview, given as `output * inputs + input`.
     ShowResponse(usize),
     LoadRules(PathBuf),
     SaveRules(PathBuf),
-    /// Write the dataset and its rules, and open the dataset.
+    /// Writes the dataset and its rules, and opens the dataset.
     MakeDataset(PathBuf),
-    /// Leave the import and discard it.
+    /// Leaves the import and discards it.
     Close,
 }

@@ -10,9 +10,10 @@ pub enum Menu {
     /// Opening, saving, exporting.
     File,
     Edit,
-    /// Displayed content, steps through it, layout and theme.
+    /// Fitting the plots, frequency unit, next or previous condition and response, views, pages,
+    /// panels, window regions and theme.
     View,
-    /// Units, styles and visibility of curves: a submenu in `View`.
+    /// Units other than the frequency's, styles and visibility of curves: a submenu in `View`.
     Curves,
     Help,
 }

@@ -14,7 +14,7 @@ use crate::message::Message;
 
 /// Returns the most important caution, by the first rule that applies:
 ///
-/// 1. couplings are requested but missing, or make poles unstable within the band;
+/// 1. couplings are requested but not applied, or make poles unstable within the band;
 /// 2. physics parameters are requested but not applied;
 /// 3. the leads amplify a constrained response above the band by more than 0.05 dB;
 /// 4. there are other cautions about the couplings;
@@ -38,14 +38,15 @@ pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Messag
         .or_else(|| schedule_caution(state, shown))
 }
 
-/// Caution about the couplings in use, in a few words.
+/// Caution about the couplings, in a few words.
 struct CouplingCaution {
     kind: RemarkKind,
     message: Message,
 }
 
-/// Returns the most serious remark on the couplings in use, in a few words; the reasons sheet
-/// contains every remark.
+/// Returns a short caution about the couplings: requested but not applied; otherwise the number of
+/// poles unstable in the band; otherwise the number of cautions, which the reasons sheet lists.
+/// `None` without any.
 fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
         return Some(CouplingCaution {

@@ -62,7 +62,7 @@ pub struct BodeScene<'a> {
     pub shows_bands: Option<bool>,
     /// Role drawn above all others.
     pub raised: Option<Role>,
-    /// Whether the curves in the most important roles are named in the right margin.
+    /// Whether the curves in the roles of `bode_headings::NAMED` are named in the right margin.
     pub names_curves: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,

@@ -352,7 +352,7 @@ impl BodeView {
         }
     }
 
-    /// Fits the values in both panes, unless the engineer chose their ranges.
+    /// Fits the value axes of both panes to the curves, unless the engineer chose their ranges.
     fn fit_values(&mut self, scene: &BodeScene<'_>) {
         let band = fitted_band(scene);
         for pane in PANES {
@@ -366,8 +366,8 @@ impl BodeView {
     }
 }
 
-/// Returns the frequencies at which values are fitted: the band, with leads extended up to the end
-/// of the drawn curves ([`BodeScene::invalid`]).
+/// Returns the frequencies whose values set the value axes: the band or, if the correction has
+/// leads, from the band's lower end to the end of the drawn curves ([`BodeScene::invalid`]).
 fn fitted_band(scene: &BodeScene<'_>) -> Range {
     let max = match scene.invalid {
         Some(invalid) => invalid.up_to,

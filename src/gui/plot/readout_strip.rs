@@ -14,8 +14,8 @@ pub(in crate::gui) const STRIP_HEIGHT: f32 = 40.0;
 const VALUE_GAP: f32 = 10.0;
 /// Minimum width for a name beside its sample \[pt\].
 const LEAST_NAME: f32 = 40.0;
-/// Width of the frequency column and the difference column, which have longer names, relative to a
-/// role's column.
+/// Width of the frequency column and the last column, which have longer names, relative to the
+/// others.
 const WIDE_COLUMN: f32 = 1.25;
 /// Padding at the left and at the right of a column \[pt\].
 const PAD: f32 = 8.0;
@@ -24,10 +24,11 @@ const SAMPLE: f32 = 22.0;
 /// Gap between a sample and the name beside it \[pt\].
 const SAMPLE_GAP: f32 = 6.0;
 
-/// A role's values, or the differences between two roles.
+/// A role's values, or a comparison of roles or conditions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadoutCell {
-    /// Role; `None` for a difference.
+    /// Role whose values the cell shows, or whose change between two marks; `None` if the cell
+    /// compares roles or conditions.
     pub role: Option<Role>,
     /// Column heading.
     pub name: String,
@@ -43,13 +44,13 @@ impl ReadoutCell {
         format!("{}: {}, {}", self.name, self.values[0], self.values[1])
     }
 
-    /// Returns the sample's style, with the same width and dashes as its curves; `None` for a
-    /// difference.
+    /// Returns the sample's style, with the same width and dashes as its curves; `None` without a
+    /// role.
     fn sample(&self, palette: &Palette) -> Option<CurveStyle> {
         Some(palette.role_style(self.role?, false))
     }
 
-    /// Returns the font for the values: medium weight for a difference.
+    /// Returns the font for the values: medium weight without a role.
     fn font(&self, size: f32) -> FontId {
         if self.role.is_none() {
             medium(size)
@@ -112,7 +113,7 @@ pub struct Readout {
     pub heading: String,
     /// Formatted frequency, such as "6.00 rad/s".
     pub frequency: String,
-    /// Roles in the same order as their chips, the difference last.
+    /// Roles in the same order as their chips, then comparisons.
     pub cells: Vec<ReadoutCell>,
 }
 

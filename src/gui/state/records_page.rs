@@ -111,8 +111,8 @@ impl TimeRole {
         }
     }
 
-    /// Returns the style of the role: colour and dashes as in the Bode view, with a line width for
-    /// plots over time.
+    /// Returns the style of the role, with a line width for plots over time: colour and dashes as
+    /// in the Bode view; for the samples, which have no role there, solid in the text colour.
     pub fn style(self, palette: &Palette) -> CurveStyle {
         let width = match self {
             Self::Identified => 2.0,
@@ -132,7 +132,7 @@ impl TimeRole {
         }
     }
 
-    /// Returns the colour of the role, which is that of the same role in the Bode view.
+    /// Returns the colour of the role: as in the Bode view; for the samples, the text colour.
     pub fn color(self, palette: &Palette) -> Color32 {
         self.style(palette).color
     }

@@ -16,8 +16,8 @@ fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }
 
-/// Returns whether a control had the focus after the last frame. Such a control has already used
-/// Escape, and lost its focus.
+/// Returns whether a control had the focus at the end of the last frame. If Escape is pressed in
+/// this frame, it belonged to that control, whose focus egui has already removed.
 pub fn was_focused(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
 }

@@ -104,7 +104,7 @@ pub(super) struct TableLayout {
     pub row_edges: Vec<f32>,
     /// Total width \[pt\].
     pub width: f32,
-    /// Width to which the last column's text is wrapped \[pt\]; `None` if it fits.
+    /// Width to which the last column's text is wrapped \[pt\]; `None` if it is not wrapped.
     wrapped: Option<f32>,
 }
 

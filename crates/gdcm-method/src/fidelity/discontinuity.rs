@@ -41,8 +41,8 @@ impl Discontinuity {
     /// `bundle` lists the models in bundle order.
     ///
     /// ```text
-    /// 1  p_ak: perturbation coordinate k of model a, divided by the coordinate's maximum magnitude in the bundle;
-    ///    0 where the model lacks it
+    /// 1  p_ak: perturbation coordinate k of model a, divided by the coordinate's maximum
+    ///    magnitude over these models; 0 where the model lacks it
     /// 2  fit d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2, w >= 0, by least absolute deviations over all model pairs
     /// 3  r_ab = d(a,b) / sqrt(fitted), r_a = median over b of r_ab; pairs with zero fitted distance are skipped
     /// ```
@@ -194,7 +194,8 @@ fn pair_ratios(
 pub struct CoordinateWeight {
     /// Coordinate name ("airspeed_kt").
     pub name: String,
-    /// The coordinate's maximum magnitude in the bundle, by which it is divided.
+    /// The coordinate's maximum magnitude over the compared models; perturbations are divided by
+    /// it.
     pub largest: f64,
     /// Fitted weight `w_k`.
     pub weight: f64,
@@ -237,7 +238,7 @@ pub enum DiscontinuityError {
 /// The compared models' perturbation coordinates, scaled to at most 1 (step 1).
 #[derive(Debug)]
 struct ScaledTrims<'a> {
-    /// Each coordinate's maximum magnitude, by name; none is zero.
+    /// Each coordinate's maximum magnitude over the compared models, by name; none is zero.
     largest: BTreeMap<&'a str, f64>,
     /// `p_ak`: coordinates `k` for each model `a`, ordered as in `largest`.
     scaled: Vec<Vec<f64>>,

@@ -10,7 +10,7 @@ const STEP_S: f64 = 1e-3;
 const COARSE: i32 = 16;
 
 /// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest likeness `L = sum
-/// cos(phase - omega delay)`, the first among equals (M6b).
+/// cos(phase - omega delay)`; the first, if several are equal (M6b).
 ///
 /// ```text
 /// 1  L at every 16th delay (coarse grid)

@@ -82,8 +82,9 @@ impl SharedSystem {
         }
     }
 
-    /// Returns `F`: the parameters' normal matrix after eliminating the delays; `None` if the
-    /// delays are not determined.
+    /// Returns `F` (see `identifiability`): the parameters' normal matrix without their prior,
+    /// after eliminating the ln gains and the delays, whose prior is included; `None` if the delays
+    /// are not determined.
     pub(super) fn parameter_information(&self) -> Option<DMatrix<f64>> {
         let size = self.counts.parameters;
         let mut information = self.matrix.view((0, 0), (size, size)).into_owned();

@@ -74,7 +74,8 @@ impl<'a> WeightedCondition<'a> {
         }
     }
 
-    /// Returns the other identified models' weighted mean squares (M18.4).
+    /// Returns, for each other identified model, the weighted mean square of its log difference
+    /// from the flight response (M18.4). Models without a weighted frequency are left out.
     fn other_squares(&self, squared_weights: &PairTable<Vec<f64>>) -> Vec<f64> {
         let mut squares = Vec::new();
         for other in &self.condition.others {
@@ -142,8 +143,8 @@ fn log_ratio(a: Complex<f64>, b: Complex<f64>) -> Complex<f64> {
     )
 }
 
-/// Returns `sum q^2 |ln(R_b / R)|^2 / (2 sum q^2)` over the frequencies at which both models have a
-/// response; `None` if there are none.
+/// Returns `sum q^2 |ln(R_b / R)|^2 / (2 sum q^2)` over the weighted frequencies at which both
+/// models have a response; `None` if there are none.
 fn mean_square(
     flight: &FrequencyResponse,
     other: &FrequencyResponse,

@@ -280,8 +280,8 @@ impl Reading<'_> {
         }
     }
 
-    /// Returns the lower of both margins; the result also depends on the frequencies at the other
-    /// margin, because both are compared.
+    /// Returns the lower of `omega_phase` and `omega_gain` (step 4). Its `read_at` covers the
+    /// frequencies from which either was read, because the choice depends on both.
     fn lower_margin(&self, phase: Metric, gain: Metric) -> Result<LimitingMargin, NoMetric> {
         let rule = if gain.value < phase.value {
             BandwidthRule::Gain

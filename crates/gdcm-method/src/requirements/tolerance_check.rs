@@ -225,7 +225,7 @@ fn error_multiples(flown: &[f64], simulated: &[f64], width: &[f64]) -> Vec<f64> 
         .collect()
 }
 
-/// Returns the maximum's index, the first among equals.
+/// Returns the index of the largest value (the first, if several are equal); 0 for an empty slice.
 fn first_maximum(values: &[f64]) -> usize {
     let mut largest = 0;
     for (n, value) in values.iter().enumerate() {

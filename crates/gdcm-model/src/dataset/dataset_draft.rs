@@ -67,8 +67,8 @@ pub struct ResponseDraft {
     pub im: ResponseArray,
     /// Coherence (0 to 1); `None` if the file does not give it.
     pub coherence: Option<ResponseArray>,
-    /// Each response's first and last trusted frequency \[rad/s\]; `None` if the file does not give
-    /// them.
+    /// Each response's first and last trusted frequency \[rad/s\], both 0 if none is
+    /// trusted; `None` if the file does not give them.
     pub valid_bands: Option<ResponseArray>,
     pub estimate: Estimate,
 }

@@ -150,7 +150,7 @@ impl MeasuredResponse {
     }
 
     /// Returns the response with valid bands: each response's first and last trusted frequency
-    /// \[rad/s\] (M4a).
+    /// \[rad/s\] (M4a); both 0 if none is trusted.
     ///
     /// # Errors
     /// [`MeasuredResponseError::ValidBand`] if a band is not finite, negative, or ends before it
@@ -208,8 +208,8 @@ impl MeasuredResponse {
         self.coherence.as_ref()
     }
 
-    /// Returns each response's first and last trusted frequency \[rad/s\]; `None` if the file does
-    /// not give them.
+    /// Returns each response's first and last trusted frequency \[rad/s\], both 0 if none is
+    /// trusted; `None` if the file does not give them.
     pub fn valid_bands(&self) -> Option<&PairTable<[f64; 2]>> {
         self.valid_bands.as_ref()
     }

@@ -140,8 +140,8 @@ impl HessenbergForm {
         self.order + self.outputs
     }
 
-    /// Returns the row of `[G K]` whose subdiagonal entry, scaled to 1, lies in this column; it
-    /// begins at the next column.
+    /// Returns row `column + 1` of `[G K]`, counted from 0, from the diagonal on, divided by its
+    /// subdiagonal entry, which lies in `column`, unless that is negligible.
     #[inline(always)]
     pub fn next_row(&self, column: usize) -> &[f64] {
         &self.next_rows[column * self.width()..][column + 1..self.width()]

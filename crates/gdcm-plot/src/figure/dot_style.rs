@@ -8,8 +8,8 @@ pub(super) const DOT: f64 = 2.1;
 /// Line width for an open dot, a cross or a plus in the usual size \[pt\].
 const DOT_LINE: f64 = 0.9;
 
-// Corners and line ends, relative to the radius; y runs downwards. Some lie outside the radius, so
-// that all shapes have about the circle's area.
+// Corners and line ends, relative to the radius; y runs downwards. Some corners lie outside the
+// radius, so that the polygons have about the circle's area.
 const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
 const SQUARE: [[f64; 2]; 4] = [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
@@ -38,7 +38,7 @@ impl DotStyle {
         }
     }
 
-    /// Paints a dot; all shapes have about the same area.
+    /// Returns the shapes for a dot at `center`; circle and polygons have about the same area.
     pub fn shapes(self, center: [f64; 2]) -> Vec<Shape> {
         match self.shape {
             DotShape::Circle => {
@@ -86,7 +86,7 @@ impl DotStyle {
         Stroke::solid(self.color, DOT_LINE * self.size.sqrt())
     }
 
-    /// Paints a polygon; `corners` are relative to the radius.
+    /// Returns a polygon; `corners` are relative to the radius.
     fn polygon(self, center: [f64; 2], corners: &[[f64; 2]]) -> Shape {
         let pen = self.pen();
         Shape::Path {
@@ -100,7 +100,7 @@ impl DotStyle {
         }
     }
 
-    /// Paints two crossing lines; their ends are relative to the radius. They are separate shapes:
+    /// Returns two crossing lines; their ends are relative to the radius. They are separate shapes:
     /// a single polyline would double back on itself, and the screen cannot draw such a corner.
     fn lines(self, center: [f64; 2], lines: [[[f64; 2]; 2]; 2]) -> Vec<Shape> {
         let mut shapes = Vec::new();

@@ -190,7 +190,8 @@ struct OtherLabel {
     center: [f64; 2],
 }
 
-/// A possible place for a label, and its cost.
+/// A possible place for a label. `cost` covers direction and distance alone as returned by
+/// [`candidates`]; in [`Placing::best_place`] the best candidate has its full cost.
 struct Candidate {
     place: LabelPlace,
     cost: f64,
@@ -202,8 +203,7 @@ impl Placing<'_> {
         let others = self.other_labels(index);
         let mut best: Option<Candidate> = None;
         for candidate in candidates(self.dots[index]) {
-            // `candidate.cost` covers direction and distance alone; it already rules out most
-            // places.
+            // Direction and distance alone already rule out most places.
             if !is_better(candidate.cost, &best) {
                 continue;
             }

@@ -9,7 +9,8 @@ use super::placed::{HOOK, Placed};
 
 /// Line between a dot and a label that is not next to it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
-/// Half of a ring's line width, which a label must not touch \[pt\].
+/// Added to the ring's radius \[pt\], so that labels stay clear of its line, which is about 0.8 pt
+/// wide.
 const RING_MARGIN: f64 = 0.5;
 /// Digit height, relative to the font size; digits have no descenders.
 const DIGIT_HEIGHT: f64 = 0.74;

@@ -43,9 +43,10 @@ pub struct Step<B = (), C = ()> {
 
 /// Undo history: snapshots of the study, with the changes between them.
 ///
-/// `B` is state outside the study that a step changes as well. A step stores its value before the
-/// decision; undo and redo exchange the stored value and the present value. Decisions that only
-/// change the study use `B::default()`. `C` describes a change to that state.
+/// `B` is a snapshot of state outside the study, which some steps change instead of the study
+/// ([`History::record_beside`]). Such a step stores the snapshot from before the change; undo and
+/// redo exchange it for the present one. All other steps store `B::default()`. `C` describes a
+/// change to that state.
 #[derive(Clone, Debug)]
 pub struct History<B = (), C = ()> {
     past: Vec<Step<B, C>>,
@@ -251,8 +252,8 @@ impl<B: Default, C> History<B, C> {
     }
 
     /// Undoes the last step and returns the study before it; `None` if there is no step. `now` is
-    /// the present study, kept for a redo; `exchange` restores the state outside the study, and
-    /// returns the value that it had.
+    /// the present study, kept for a redo; `exchange` restores the state outside the study from the
+    /// step's snapshot, and returns a snapshot of the present state.
     pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;

@@ -307,7 +307,7 @@ pub static QUANTILE: Setting = Setting {
     ..DEFAULT
 };
 
-/// Manual gain bounds, -120 to 120 dB; no value restores the quantiles.
+/// Gain bounds set by hand, -120 to 120 dB; without them, they are computed from [`QUANTILE`].
 pub static GAIN_BOUNDS: Setting = Setting {
     name: "gain bounds",
     key: "gain_bounds",
@@ -334,7 +334,7 @@ pub static GAIN_BOUNDS: Setting = Setting {
     ..DEFAULT
 };
 
-/// Manual upper delay bound \[s\]; no value restores the quantile.
+/// Upper delay bound \[s\] set by hand; without it, the bound is computed from [`QUANTILE`].
 pub static DELAY_UPPER: Setting = Setting {
     name: "upper delay bound",
     key: "delay_upper_s",

@@ -76,8 +76,8 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports the largest gain change that the lead filters cause in a constrained response within the
-/// band, for which the channel gains compensate.
+/// Reports the constrained response whose G the lead filters change most; `None` below
+/// [`LEAST_RISE_DB`] and without leads. The channel gains compensate for this change.
 fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
@@ -91,9 +91,9 @@ fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::GainRaised { rise_db, pair })
 }
 
-/// Reports the constrained responses whose two estimates for D are far apart, which indicates a
-/// zero or a mode in the band. Responses with a suspected sign difference are excluded, because
-/// their phase difference near half a turn has another cause.
+/// Reports the constrained responses for which D by eq. (9) and D over the band differ by more than
+/// [`APART_S`], which indicates a zero or a mode in the band. Responses with a suspected sign
+/// difference are excluded, because their phase difference near half a turn has another cause.
 fn not_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let delta = &result.comparison.delta;
     let mut responses = Vec::new();

@@ -52,11 +52,11 @@ pub enum Remark {
     LeadsMatched { held: usize },
     /// Constrained responses do not get the delay or lead that they need.
     LeadsMissed(MissedTargets),
-    /// Maximum gain change within the band \[dB\] due to the lead filters, and the response in
-    /// which it occurs.
+    /// Largest change in G \[dB\] that the lead filters cause among the constrained responses, and
+    /// the response in which it occurs.
     GainRaised { rise_db: f64, pair: Pair },
-    /// Constrained responses whose two estimates for D are far apart: their missing phase is not
-    /// due to a delay. `by_leads`: whether leads are requested.
+    /// Constrained responses for which D by eq. (9) and D over the band differ so much that the
+    /// missing phase is not due to a delay. `by_leads`: whether leads are requested.
     NotADelay {
         responses: Vec<DelaysApart>,
         by_leads: bool,

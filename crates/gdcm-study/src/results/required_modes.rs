@@ -126,7 +126,8 @@ pub struct ModeFinding {
     pub airspeed_kt: f64,
     /// The mode's number in this condition, counted from 1 by increasing frequency.
     pub number: usize,
-    /// `None` where neither states nor frequency determine the name.
+    /// Mode name; `None` if the states (the frequency and damping if no states are named) do not
+    /// determine it, or if another mode keeps the same name.
     pub name: Option<ModeName>,
     /// Basis of the name; a name from frequency and damping alone is a guess.
     pub named_by: NamedBy,

@@ -43,7 +43,7 @@ const FREEDOM_AN_OUTPUT: f64 = 8.0;
 /// Share by which the diagonal is raised.
 const ADDED: f64 = 1e-4;
 
-/// A line's residual in output units, and the share of the noise power that it holds.
+/// A line's residual in output units, and the share of the noise power left in it.
 struct ResidualLine {
     log_omega: f64,
     /// `e`.
@@ -96,8 +96,8 @@ pub(crate) fn residual_noise(
     NoiseCovariance::new(points)
 }
 
-/// Computes the residual at each line of a segment, in output units, with the share of noise power
-/// that the fit left in it (step 1); `None` if a weight has no inverse.
+/// Computes the residual at each line in a segment, in output units, with the share of the noise
+/// power left (step 1); `None` if a weight has no inverse.
 fn residual_lines(
     segment: &SpectralLines,
     part: &SegmentCost,

@@ -19,8 +19,10 @@ pub enum DeclaredConversion {
 pub struct ResamplingSettings {
     /// Upper band end \[rad/s\]; `None` if unknown.
     pub band_end: Option<f64>,
-    /// Sample rate \[Hz\], also applied to records with a single clock. With `None`, such records
-    /// are unchanged and topics are resampled by the rule.
+    /// Requested sample rate \[Hz\]; records with a single clock are then resampled too. With
+    /// `None`, the rate follows from the channels and the band
+    /// ([`CommonClock::choose`](super::common_clock::CommonClock::choose)), and records with a
+    /// single clock are not resampled.
     pub rate_hz: Option<f64>,
     /// Inputs treated as constant between logged samples, even if they never repeat a sample.
     pub held: BTreeSet<String>,

@@ -194,8 +194,9 @@ impl RecordTable {
         self.position_ignoring_case(&format!("{matrix}_{number}"))
     }
 
-    /// Returns the record restricted to the time between two stamps \[s\] on its clock: under
-    /// another name, with `part_s` set, and with all samples.
+    /// Returns a copy that marks the time between two stamps \[s\] on its clock as the used part
+    /// (`part_s`), and that is named after the part. It keeps all samples; layout and resampling
+    /// select those in the part.
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();

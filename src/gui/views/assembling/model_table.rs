@@ -153,8 +153,8 @@ impl Table<'_> {
         }
     }
 
-    /// Returns a cell's colour: warning for unknown values and marked files, quiet for models that
-    /// are left out.
+    /// Returns a cell's colour: warning for an unknown value; otherwise quiet if the model is left
+    /// out; otherwise warning if the cell is marked.
     fn cell_color(&self, text: &str, part: &Part, is_marked: bool) -> Color32 {
         if text == "?" {
             self.palette.warning

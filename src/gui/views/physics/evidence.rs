@@ -80,8 +80,8 @@ impl Evidence<'_> {
         ui.add(Label::new(self.palette.small(text)).wrap());
     }
 
-    /// Draws the selected parameter: value, sources of its variance, parameters with a similar
-    /// effect, and the fields for its prior and its value.
+    /// Draws the selected parameter: its value, the evidence for it (shares explained and learned,
+    /// strongest correlation, sources of its variance), and the fields for its prior and value.
     fn parameter_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let (Some(parameter), Some(diagnosis)) = (
             self.findings.parameters.get(self.selected),

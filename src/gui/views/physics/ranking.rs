@@ -308,8 +308,8 @@ impl Ranking<'_> {
     }
 }
 
-/// Returns the colour for a parameter's verdict: the warning colour if the parameter would have to
-/// change implausibly.
+/// Returns the colour for a parameter's verdict: the warning colour if the change is at its bound,
+/// the text colour if the parameter is named, otherwise the dim colour.
 fn verdict_color(diagnosed: &DiagnosedParameter<'_>, palette: &Palette) -> Color32 {
     match diagnosed.diagnosis.why_not_named {
         None => palette.text,

@@ -1,5 +1,5 @@
-//! Row above the time charts: a chip that shows and hides the curve of each role (physics,
-//! identified and corrected model, samples), and the selectors for outputs and spectrogram.
+//! Row above the time charts: for each [`TimeRole`] a chip that shows or hides its curve; at the
+//! right, the selectors for outputs and spectrogram.
 
 use egui::{Align, ComboBox, Layout, PopupCloseBehavior, Rect, Role as WidgetRole, Ui, UiBuilder};
 

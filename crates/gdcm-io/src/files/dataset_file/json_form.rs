@@ -302,7 +302,7 @@ pub(crate) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
-    /// First and last trusted frequency \[rad/s\] for each response.
+    /// First and last trusted frequency \[rad/s\] for each response; both 0 if none is trusted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) valid_band_rad_s: Option<Nested<3>>,
     /// Number of independent averages in the estimate.

@@ -1,5 +1,5 @@
-//! `requirements.json`: the findings as the analysis holds them, with sentences instead of codes
-//! for missing values, and with sentences on the cautions.
+//! `requirements.json`: the findings, serialised as they are, and a requirement grid per role.
+//! Sentences replace the codes for missing values; cautions get a sentence, bandwidths their level.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -69,7 +69,7 @@ pub(super) fn requirements_json(results: RequirementResults<'_>) -> io::Result<V
     with_sentences(&document, results)
 }
 
-/// Content of `requirements.json`: the dataset, the findings, then the requirement grids.
+/// Content of `requirements.json`: the dataset, the findings, the requirement grids.
 #[derive(Serialize)]
 struct RequirementsDocument<'a> {
     format: &'static str,

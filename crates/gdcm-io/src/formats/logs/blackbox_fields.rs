@@ -107,7 +107,7 @@ impl FrameFields {
                 encoding::TAG8_8SVB => self.read_tag8_8svb(bytes, &mut values)?,
                 encoding::TAG2_3S32 => values.extend(bytes.tag2_3s32()?.map(i64::from)),
                 encoding::TAG8_4S16 => values.extend(bytes.tag8_4s16()?.map(i64::from)),
-                // `encoding::NULL`: `is_whole` admits no other.
+                // Only `encoding::NULL` remains, because `is_whole` rejects unknown encodings.
                 _ => values.push(0),
             }
         }

@@ -16,7 +16,8 @@ use crate::variable_fault::unread::Unread;
 /// Size of a 64-bit integer element \[bytes\].
 const LONG_WORD: u64 = 8;
 
-/// Content of the object part.
+/// Cells of the object part; `long_words` contains those with 64-bit integers unrounded, by cell
+/// index.
 pub(super) struct ObjectCells {
     /// Cells; the first holds the directory.
     pub(super) cells: Vec<Value>,

@@ -14,7 +14,8 @@ use crate::variable_fault::unread::Unread;
 /// Remedy in questions about delays.
 const CHANNEL_DELAYS: &str = "call it input_delays_s or output_delays_s (a number for each \
     channel, in s), or rename it if it is not a delay";
-/// Remedy for delays that are not the sum of an input delay and an output delay.
+/// Remedy for internal delays, and for response delays that are not the sum of an input delay and
+/// an output delay.
 const APPROXIMATE: &str =
     "approximate them first: sys = pade(sys, 3); in discrete time: sys = absorbDelay(sys)";
 

@@ -41,8 +41,8 @@ pub(super) struct QuadraticModel {
     /// Lower Cholesky factor for the free scales' Hessian. Its rows and columns are places in
     /// `free`, not scales; each row has memory for all scales.
     factor: Vec<f64>,
-    /// Further step to the unbounded minimum over the free scales, by scale; meaningless for scales
-    /// that are not free.
+    /// Remaining step to the unconstrained minimum over the free scales (box ignored), by scale;
+    /// undefined for scales that are not free.
     move_to: Vec<f64>,
 }
 

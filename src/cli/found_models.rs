@@ -19,7 +19,7 @@ pub(super) fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<Fou
     for words in &found.ignored {
         note("no-model", &format!("no model: {words}"));
     }
-    for words in found.unused_words() {
+    for words in found.unused_variable_lines() {
         note("unused-variables", &words);
     }
     Ok(found)

@@ -91,12 +91,12 @@ impl GdcmApp {
         };
         let models = found.models.len();
         let files = found.files;
-        import.unused.extend(found.unused_words());
+        import.unused.extend(found.unused_variable_lines());
         import.add(&name, found.models);
         import.faults.extend(found.faults);
         import.ignored.extend(found.ignored);
         import.tables.extend(found.tables);
-        import.unsaid.extend(found.unsaid);
+        import.unsaid.extend(found.missing_units);
         if import.dataset_path.is_empty()
             && let Some(first) = paths.first()
         {

@@ -3,7 +3,7 @@
 
 use gdcm_model::dataset::{ConditionId, Dynamics};
 use gdcm_study::decisions::adopted_models::AdoptedModels;
-use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
+use gdcm_sysid::diagnostics::model_cautions::NOT_PREDICTED;
 use gdcm_sysid::identification::Identification;
 
 use super::condition_records::ConditionRecords;
@@ -52,11 +52,12 @@ pub struct FitCosts {
 
 impl FitCosts {
     pub fn of_identification(found: &Identification) -> Self {
-        let [_, limit] = HELD_OUT;
         Self {
             fitted: found.cost,
             held_out: found.held_out_cost,
-            is_held_out_bad: found.held_out_normalised.is_some_and(|cost| cost > limit),
+            is_held_out_bad: found
+                .held_out_normalised
+                .is_some_and(|cost| cost > NOT_PREDICTED),
         }
     }
 }

@@ -1,4 +1,9 @@
 //! Models whose matrices are in separate files: `nominal_A.csv`, `nominal_B.csv`, ...
+//!
+//! 1. Each file with a single array and a matrix letter at the end of its name is a loose matrix.
+//! 2. When all files have been read, loose matrices whose file names agree but for the letter form
+//!    a group.
+//! 3. Each group is recognised as if its matrices were the variables of one file.
 
 use std::collections::BTreeMap;
 
@@ -7,28 +12,62 @@ use gdcm_model::dataset::model::Provenance;
 
 use super::recognise::recognition_fault::{FoundFault, RecognitionFault};
 use super::recognise::{Found, recognise};
+use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::variables::{Value, Variable};
+use crate::formats::with_file_name;
 use crate::reading_budget::ReadingBudget;
 
-/// `pages_first` for [`recognise`]: in a NumPy array with three dimensions, the first index selects
-/// the matrix.
-const PAGES_FIRST: bool = true;
+/// The matrices of a state-space model, `E x' = A x + B u`, `y = C x + D u`; E only in descriptor
+/// form.
+pub(super) const MATRIX_LETTERS: [char; 5] = ['A', 'B', 'C', 'D', 'E'];
+/// Characters that may separate the matrix letter from the rest of a file name.
+const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
+
+/// Variables as read from a file.
+#[derive(Clone, Copy)]
+pub(super) struct FileVariables<'v> {
+    pub(super) variables: &'v [Variable],
+    /// Remarks on how the file was read.
+    pub(super) notes: &'v [ReadingNote],
+    /// Whether, in arrays with three dimensions, the first index selects a matrix, as in NumPy.
+    pub(super) pages_first: bool,
+}
 
 /// A matrix that is the only variable in its file.
 pub(super) struct LooseMatrix {
-    /// Folder, and file name without the matrix letter; the matrices in a group form a model.
+    /// File path without the matrix letter, its separator and the extension:
+    ///
+    /// ```text
+    /// A.csv         ->  .
+    /// nom_A.csv     ->  nom
+    /// c1/A.csv      ->  c1
+    /// c1/nom_A.csv  ->  c1/nom
+    /// ```
+    ///
+    /// The matrices in a group form a model, which rules and messages know by the group's name.
+    /// Files such as `nom_A.csv` and `nom/A.csv` therefore share a group; a letter that occurs
+    /// twice in a group is a fault.
     group: String,
     file: String,
     sha256: String,
     /// The matrix; its letter is the variable name.
     variable: Variable,
+    notes: Vec<ReadingNote>,
+    /// As in [`FileVariables`].
+    pages_first: bool,
 }
 
 impl LooseMatrix {
     /// Takes the matrix from a file; `None` unless the only variable is an array and the file name
     /// ends in a matrix letter.
-    pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
-        let [variable] = variables else { return None };
+    pub(super) fn from_variables(
+        read: FileVariables<'_>,
+        file: &str,
+        sha256: &str,
+    ) -> Option<Self> {
+        let [variable] = read.variables else {
+            return None;
+        };
         if !matches!(variable.value, Value::Array(_)) {
             return None;
         }
@@ -52,6 +91,8 @@ impl LooseMatrix {
                 name: letter.to_string(),
                 value: variable.value.clone(),
             },
+            notes: read.notes.to_vec(),
+            pages_first: read.pages_first,
         })
     }
 }
@@ -61,14 +102,14 @@ impl LooseMatrix {
 /// if the letter belongs to a word.
 pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last()?;
-    if !matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E') {
+    if !MATRIX_LETTERS.contains(&letter) {
         return None;
     }
-    let before = &stem[..stem.len() - 1];
-    if !before.is_empty() && !before.ends_with(['_', '-', '.', ' ']) {
+    let before = &stem[..stem.len() - letter.len_utf8()];
+    if !before.is_empty() && !before.ends_with(SEPARATORS) {
         return None;
     }
-    Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
+    Some((letter, before.trim_end_matches(SEPARATORS)))
 }
 
 /// Builds a model from each group of matrices; the group is stated as the model's file.
@@ -86,16 +127,21 @@ pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     found
 }
 
-/// Reads a group's matrices as a file with one variable for each. A group without a model and
-/// without a fault, such as a lone `A.csv`, is a fault.
+/// Recognises the models that a group's matrices form. If recognition finds neither a model nor a
+/// fault (a lone `A.csv`), reports missing matrices.
 fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
+    let mut found = Found::default();
+    if let Some(fault) = duplicate_matrix(matrices) {
+        found.faults.push(group_fault(group, fault));
+        return found;
+    }
     let variables: Vec<Variable> = matrices
         .iter()
         .map(|matrix| matrix.variable.clone())
         .collect();
-    let mut found = Found::default();
     // No limit is needed: each file was already read within its own budget.
-    match recognise(&variables, PAGES_FIRST, &ReadingBudget::new(u64::MAX)) {
+    let budget = ReadingBudget::new(u64::MAX);
+    match recognise(&variables, pages_first(matrices), &budget) {
         Ok(recognised) => {
             found.items = recognised.items;
             for fault in recognised.faults {
@@ -105,31 +151,70 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
                 });
             }
         }
-        Err(fault) => found.faults.push(FoundFault {
-            files: group.to_owned(),
-            ..FoundFault::new("", RecognitionFault::Variables(fault))
-        }),
+        Err(fault) => {
+            let fault = RecognitionFault::Variables(fault);
+            found.faults.push(group_fault(group, fault));
+        }
     }
     if found.items.is_empty() && found.faults.is_empty() {
         let names: Vec<&str> = matrices.iter().map(|matrix| matrix.file.as_str()).collect();
-        found.faults.push(FoundFault {
-            files: names.join(", "),
-            ..FoundFault::new("", RecognitionFault::MissingMatrices)
-        });
+        let fault = RecognitionFault::MissingMatrices;
+        found.faults.push(group_fault(&names.join(", "), fault));
     }
-    let hashes: Vec<String> = matrices
-        .iter()
-        .map(|matrix| format!("{} {}", matrix.file, matrix.sha256))
-        .collect();
     for model in &mut found.items {
-        let source = model.draft.source.get_or_insert_with(Provenance::default);
-        source.file = Some(group.to_owned());
-        source.note = Some(format!(
-            "SHA-256 of the matrix files: {}",
-            hashes.join(", ")
-        ));
+        add_provenance(model, group, matrices);
     }
     found
+}
+
+/// Returns the fault for a letter that occurs twice in a group, such as in `nom_A.csv` and
+/// `nom-A.mat`; only one of these matrices could be used.
+fn duplicate_matrix(matrices: &[LooseMatrix]) -> Option<RecognitionFault> {
+    for (index, matrix) in matrices.iter().enumerate() {
+        let name = &matrix.variable.name;
+        let mut before = matrices[..index].iter();
+        if let Some(first) = before.find(|first| first.variable.name == *name) {
+            return Some(RecognitionFault::DuplicateMatrix {
+                name: name.clone(),
+                files: [first.file.clone(), matrix.file.clone()],
+            });
+        }
+    }
+    None
+}
+
+fn group_fault(files: &str, fault: RecognitionFault) -> FoundFault {
+    FoundFault {
+        files: files.to_owned(),
+        ..FoundFault::new("", fault)
+    }
+}
+
+/// Returns whether, in a group's arrays with three dimensions, the first index selects the matrix:
+/// by the format of the file with A, which determines the number of models.
+fn pages_first(matrices: &[LooseMatrix]) -> bool {
+    matrices
+        .iter()
+        .any(|matrix| matrix.variable.name == "A" && matrix.pages_first)
+}
+
+/// Adds the notes on reading each file to a model, and states the group as its file, with all notes
+/// and the hashes of the matrix files.
+fn add_provenance(model: &mut FoundModel, group: &str, matrices: &[LooseMatrix]) {
+    let mut hashes = Vec::with_capacity(matrices.len());
+    for matrix in matrices {
+        let notes = note_texts(&matrix.notes);
+        model.notes.extend(with_file_name(&matrix.file, notes));
+        hashes.push(format!("{} {}", matrix.file, matrix.sha256));
+    }
+    let mut notes = model.notes.clone();
+    notes.push(format!(
+        "SHA-256 of the matrix files: {}",
+        hashes.join(", ")
+    ));
+    let source = model.draft.source.get_or_insert_with(Provenance::default);
+    source.file = Some(group.to_owned());
+    source.note = Some(notes.join("; "));
 }
 
 #[cfg(test)]
@@ -137,17 +222,29 @@ mod tests {
     use super::*;
     use crate::formats::variables::Array;
 
+    fn loose(file: &str, array: Array, pages_first: bool) -> LooseMatrix {
+        let variables = [Variable {
+            name: "x".into(),
+            value: Value::Array(array),
+        }];
+        let read = FileVariables {
+            variables: &variables,
+            notes: &[],
+            pages_first,
+        };
+        LooseMatrix::from_variables(read, file, "").unwrap()
+    }
+
     fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
-        let value = Value::Array(Array::matrix(rows, columns, vec![-1.0; rows * columns]));
-        LooseMatrix::from_variables(
-            &[Variable {
-                name: "x".into(),
-                value,
-            }],
-            file,
-            "",
-        )
-        .unwrap()
+        let array = Array::matrix(rows, columns, vec![-1.0; rows * columns]);
+        loose(file, array, false)
+    }
+
+    fn only_fault(found: &Found<FoundModel>) -> &FoundFault {
+        let [fault] = found.faults.as_slice() else {
+            panic!("{:?}", found.faults)
+        };
+        fault
     }
 
     #[test]
@@ -164,11 +261,77 @@ mod tests {
         let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
         let names: Vec<&str> = found.items.iter().map(|model| model.file()).collect();
         assert_eq!(names, ["c1", "c1/nom"]);
-        let [fault] = found.faults.as_slice() else {
-            panic!("{:?}", found.faults)
-        };
+        let fault = only_fault(&found);
         assert_eq!(fault.files, "c1/lone_A.csv");
         assert_eq!(fault.fault, RecognitionFault::MissingMatrices);
+    }
+
+    #[test]
+    fn groups_are_named_by_path() {
+        for (file, group) in [
+            ("A.csv", "."),
+            ("nom_A.csv", "nom"),
+            ("c1/A.csv", "c1"),
+            ("c1/nom_A.csv", "c1/nom"),
+        ] {
+            assert_eq!(matrix(file, 1, 1).group, group, "{file}");
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_given_twice_is_a_fault() {
+        let files = [
+            "c1/nom/A.csv",
+            "c1/nom/B.csv",
+            "c1/nom/C.csv",
+            "c1/nom_A.csv",
+        ];
+        let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
+        assert!(found.items.is_empty());
+        let fault = only_fault(&found);
+        assert_eq!(fault.files, "c1/nom");
+        assert_eq!(
+            fault.fault,
+            RecognitionFault::DuplicateMatrix {
+                name: "A".to_owned(),
+                files: ["c1/nom/A.csv".to_owned(), "c1/nom_A.csv".to_owned()],
+            }
+        );
+    }
+
+    #[test]
+    fn the_format_decides_which_index_selects_the_model() {
+        // In column order, both as A(:,:,k) and as A[k,:,:].
+        let cube = Array {
+            shape: vec![2, 2, 2],
+            ..Array::matrix(2, 4, (1..=8).map(f64::from).collect())
+        };
+        for (pages_first, expected) in [(false, [1.0, 2.0, 3.0, 4.0]), (true, [1.0, 3.0, 5.0, 7.0])]
+        {
+            let found = models_of_matrices(vec![
+                loose("A.mat", cube.clone(), pages_first),
+                matrix("B.csv", 2, 1),
+                matrix("C.csv", 1, 2),
+            ]);
+            assert_eq!(found.items.len(), 2, "{:?}", found.faults);
+            let a = found.items[0].draft.matrices[0].as_ref().unwrap();
+            assert_eq!(a.as_slice(), expected);
+        }
+    }
+
+    #[test]
+    fn notes_on_reading_the_files_are_kept() {
+        let mut files = vec![
+            matrix("nom_A.m", 1, 1),
+            matrix("nom_B.m", 1, 1),
+            matrix("nom_C.m", 1, 1),
+        ];
+        files[1].notes.push(ReadingNote::Truncated);
+        let found = models_of_matrices(files);
+        let note = format!("nom_B.m: {}", ReadingNote::Truncated);
+        assert!(found.items[0].notes.contains(&note));
+        let source = found.items[0].draft.source.as_ref().unwrap();
+        assert!(source.note.as_ref().unwrap().contains(&note));
     }
 
     #[test]

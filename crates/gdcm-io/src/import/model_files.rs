@@ -7,7 +7,9 @@ use gdcm_model::assembly::{FoundModel, Headings};
 use gdcm_model::dataset::model::Provenance;
 
 use super::dataset_models::models_of_dataset;
-use super::loose_matrices::{LooseMatrix, matrix_letter, models_of_matrices};
+use super::loose_matrices::{
+    FileVariables, LooseMatrix, MATRIX_LETTERS, matrix_letter, models_of_matrices,
+};
 use super::recognise::{Found, recognise};
 use super::response_tables::models_of_table;
 use crate::file_error::FileError;
@@ -29,10 +31,9 @@ pub const EVERY_TABLE: &str = "*";
 const HEADING_LINES: usize = 50;
 /// Maximum number of unused variables listed for each file.
 const MOST_LISTED: usize = 20;
-/// `pages_first` for [`recognise`]: in a NumPy array with three dimensions, the first index selects
-/// the matrix.
+/// `pages_first` in [`FileVariables`] for NumPy arrays.
 const NUMPY_PAGES_FIRST: bool = true;
-/// `pages_first` for [`recognise`]: matrices in a text have two dimensions.
+/// `pages_first` in [`FileVariables`] for matrices in a text, which have two dimensions.
 const NO_PAGES: bool = false;
 
 /// Results of reading model files.
@@ -49,13 +50,13 @@ pub struct FoundModels {
     /// Tables of columns, by file, with the headings that were used.
     pub tables: Headings,
     /// Missing units without which a table cannot be read as a frequency response, by file.
-    pub unsaid: BTreeMap<String, Vec<UnitNotGiven>>,
+    pub missing_units: BTreeMap<String, Vec<UnitNotGiven>>,
     pub files: usize,
 }
 
 impl FoundModels {
     /// Returns a line for each file that has unused variables.
-    pub fn unused_words(&self) -> Vec<String> {
+    pub fn unused_variable_lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for (file, names) in &self.unused {
             let mut listed: Vec<String> = names.iter().take(MOST_LISTED).cloned().collect();
@@ -72,7 +73,8 @@ impl FoundModels {
 /// tables. A file that cannot be read is recorded in `faults`, and the others are read.
 ///
 /// # Errors
-/// [`FileError`] if a folder cannot be read, or if the only file cannot be read.
+/// [`FileError`] if a folder cannot be read, or if the only file cannot be read: then there are no
+/// other models that the error would withhold.
 pub fn read_models(
     paths: &[PathBuf],
     headings: &Headings,
@@ -82,16 +84,19 @@ pub fn read_models(
     let (files, mut faults) = import(paths, progress, |file, budget| {
         reading.add_file(file, budget)
     })?;
-    let mut found = reading.finish();
-    faults.append(&mut found.faults);
+    let mut result = reading.finish();
+    faults.append(&mut result.faults);
     Ok(FoundModels {
         files,
         faults,
-        ..found
+        ..result
     })
 }
 
 /// Reads the models in a file whose bytes are in memory.
+///
+/// # Errors
+/// [`FileError`] if the file cannot be read. Invalid models are recorded in `faults`.
 pub fn models_of_bytes(
     bytes: &[u8],
     name: &str,
@@ -116,7 +121,8 @@ struct FileIdentity<'f> {
 /// State while model files are read.
 struct ModelReading<'h> {
     headings: &'h Headings,
-    found: FoundModels,
+    /// Results of the files read so far.
+    result: FoundModels,
     /// Matrices in separate files, from which models are built at the end.
     matrices: Vec<LooseMatrix>,
 }
@@ -125,15 +131,25 @@ impl<'h> ModelReading<'h> {
     fn new(headings: &'h Headings) -> Self {
         Self {
             headings,
-            found: FoundModels::default(),
+            result: FoundModels::default(),
             matrices: Vec::new(),
         }
     }
 
-    /// Adds the models in a file, by its contents: named variables, and matrices in a text, go
-    /// through [`recognise`]; a table in a text may hold frequency responses; a dataset or models
-    /// of this program are taken as they are; a log is ignored; an archive is read file by file,
-    /// and its arrays together.
+    /// Adds the models in a file, by its contents:
+    ///
+    /// | contents | models |
+    /// |---|---|
+    /// | variables | recognised; a single matrix may be set aside as a [`LooseMatrix`] |
+    /// | text | matrices like variables; a table as frequency responses |
+    /// | dataset, models of this program | taken as they are |
+    /// | log | none: the file is ignored |
+    /// | archive | each file by itself; its NumPy arrays together, like variables |
+    ///
+    /// # Errors
+    /// [`FileError`] if variables or a text cannot be read within the budget, a text has no
+    /// readable matrix or table, or the reading is cancelled. Invalid models are recorded in
+    /// `faults`.
     fn add_file(
         &mut self,
         file: ImportedFile<'_>,
@@ -150,18 +166,30 @@ impl<'h> ModelReading<'h> {
             sha256: &sha256,
         };
         let error = |fault| FileError::variables(path, fault);
-        let found = match contents {
+        let in_file = match contents {
             Contents::Variables {
                 variables,
                 notes,
                 pages_first,
-            } => self
-                .recognise(&variables, &notes, identity, pages_first, budget)
-                .map_err(error)?,
+            } => {
+                let read = FileVariables {
+                    variables: &variables,
+                    notes: &notes,
+                    pages_first,
+                };
+                self.recognise_or_set_aside(read, identity, budget)
+                    .map_err(error)?
+            }
             Contents::Text(text) => match read_text(&text, path, budget).map_err(error)? {
-                TextContents::Variables { variables, notes } => self
-                    .recognise(&variables, &notes, identity, NO_PAGES, budget)
-                    .map_err(error)?,
+                TextContents::Variables { variables, notes } => {
+                    let read = FileVariables {
+                        variables: &variables,
+                        notes: &notes,
+                        pages_first: NO_PAGES,
+                    };
+                    self.recognise_or_set_aside(read, identity, budget)
+                        .map_err(error)?
+                }
                 TextContents::Table(table) => self.read_table(table, name).map_err(error)?,
             },
             Contents::Dataset(dataset, unknown) => Found {
@@ -186,12 +214,17 @@ impl<'h> ModelReading<'h> {
                 for (inner, contents) in files {
                     self.add_archived_file(identity, &inner, contents, budget)?;
                 }
-                self.found.ignored.extend(with_file_name(name, ignored));
-                self.recognise(&variables, &[], identity, NUMPY_PAGES_FIRST, budget)
+                self.result.ignored.extend(with_file_name(name, ignored));
+                let read = FileVariables {
+                    variables: &variables,
+                    notes: &[],
+                    pages_first: NUMPY_PAGES_FIRST,
+                };
+                self.recognise_or_set_aside(read, identity, budget)
                     .map_err(error)?
             }
         };
-        self.add_found(found, identity);
+        self.add_found(in_file, identity);
         Ok(())
     }
 
@@ -222,33 +255,32 @@ impl<'h> ModelReading<'h> {
         match added {
             Err(stopped) if stopped.is_stopped() => Err(stopped),
             Err(error) => {
-                self.found.faults.push(format!("{}: {error}", archive.name));
+                self.result
+                    .faults
+                    .push(format!("{}: {error}", archive.name));
                 Ok(())
             }
             Ok(()) => Ok(()),
         }
     }
 
-    /// Recognises models among variables; a [`LooseMatrix`] is stored until all files have been
-    /// read.
-    fn recognise(
+    /// Recognises the models among a file's variables. A [`LooseMatrix`] is set aside, with its
+    /// notes, until all files have been read; then the file by itself has no models.
+    fn recognise_or_set_aside(
         &mut self,
-        variables: &[Variable],
-        notes: &[ReadingNote],
+        read: FileVariables<'_>,
         identity: FileIdentity<'_>,
-        pages_first: bool,
         budget: &ReadingBudget<'_>,
     ) -> Result<Found<FoundModel>, VariableFault> {
-        if let Some(matrix) = LooseMatrix::from_variables(variables, identity.name, identity.sha256)
-        {
+        if let Some(matrix) = LooseMatrix::from_variables(read, identity.name, identity.sha256) {
             self.matrices.push(matrix);
             return Ok(Found::default());
         }
-        let mut found = recognise(variables, pages_first, budget)?;
-        for model in &mut found.items {
-            model.notes.extend(note_texts(notes));
+        let mut recognised = recognise(read.variables, read.pages_first, budget)?;
+        for model in &mut recognised.items {
+            model.notes.extend(note_texts(read.notes));
         }
-        Ok(found)
+        Ok(recognised)
     }
 
     /// Reads the frequency responses in a table. Its headings are those given for this file; else
@@ -266,47 +298,50 @@ impl<'h> ModelReading<'h> {
             table = table.with_headings(headings)?;
         }
         let models = models_of_table(&table, name)?;
-        if !models.unsaid.is_empty() {
-            self.found.unsaid.insert(name.to_owned(), models.unsaid);
+        if !models.missing_units.is_empty() {
+            self.result
+                .missing_units
+                .insert(name.to_owned(), models.missing_units);
         }
-        self.found.tables.insert(name.to_owned(), table.headings());
+        self.result.tables.insert(name.to_owned(), table.headings());
         Ok(models.found)
     }
 
-    /// Adds models with their provenance; the first model in a file lists the unused variables.
-    fn add_found(&mut self, mut found: Found<FoundModel>, identity: FileIdentity<'_>) {
+    /// Adds a file's models with their provenance. Only the first lists the unused variables: they
+    /// are a property of the file, and would otherwise be repeated for each model.
+    fn add_found(&mut self, mut in_file: Found<FoundModel>, identity: FileIdentity<'_>) {
         let FileIdentity { name, sha256 } = identity;
-        for (index, model) in found.items.iter_mut().enumerate() {
+        for (index, model) in in_file.items.iter_mut().enumerate() {
             let source = model.draft.source.get_or_insert_with(Provenance::default);
             if index == 0 {
-                source.unused.clone_from(&found.unused);
+                source.unused.clone_from(&in_file.unused);
             }
             source.file = Some(name.to_owned());
             source.sha256 = Some(sha256.to_owned());
             source.note = Some(model.notes.join("; ")).filter(|note| !note.is_empty());
         }
-        self.found.models.append(&mut found.items);
-        if !found.unused.is_empty() {
-            self.found
+        self.result.models.append(&mut in_file.items);
+        if !in_file.unused.is_empty() {
+            self.result
                 .unused
                 .entry(name.to_owned())
                 .or_default()
-                .extend(found.unused);
+                .extend(in_file.unused);
         }
-        self.found
+        self.result
             .faults
-            .extend(with_file_name(name, fault_messages(found.faults)));
-        self.found
+            .extend(with_file_name(name, fault_messages(in_file.faults)));
+        self.result
             .ignored
-            .extend(with_file_name(name, found.ignored));
+            .extend(with_file_name(name, in_file.ignored));
     }
 
     /// Builds the models whose matrices are in separate files, and returns all models.
     fn finish(mut self) -> FoundModels {
         let separate = models_of_matrices(self.matrices);
-        self.found.models.extend(separate.items);
-        self.found.faults.extend(fault_messages(separate.faults));
-        self.found
+        self.result.models.extend(separate.items);
+        self.result.faults.extend(fault_messages(separate.faults));
+        self.result
     }
 }
 
@@ -324,6 +359,10 @@ enum TextContents {
 /// 1. a single matrix, if the file name ends in a matrix letter;
 /// 2. else named matrices, if one is headed in the first lines and all can be read;
 /// 3. else a table; complex numbers are split into two columns first.
+///
+/// # Errors
+/// [`VariableFault`] if the text cannot be read in the first form that applies. Step 1 does not
+/// fall back on step 2: in a file `A.txt`, a second headed matrix is an error.
 fn read_text(
     text: &str,
     path: &Path,
@@ -353,8 +392,25 @@ fn read_text(
     Ok(TextContents::Table(table))
 }
 
-/// Returns whether a line is a matrix heading, such as "A =", "B:" or "C = [".
+/// Returns whether a line is a matrix heading, such as "A =", "B:" or "C=[".
 fn is_matrix_heading(line: &str) -> bool {
     let name = line.trim().trim_end_matches(['=', ':', '[']).trim_end();
-    matches!(name, "A" | "B" | "C" | "D")
+    MATRIX_LETTERS
+        .iter()
+        .any(|letter| name.strip_prefix(*letter) == Some(""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_matrix_heading;
+
+    #[test]
+    fn a_heading_names_a_matrix_of_a_model() {
+        for line in ["A =", " B:", "C=[", "D", "E ="] {
+            assert!(is_matrix_heading(line), "{line}");
+        }
+        for line in ["", "F =", "AB =", "A, B", "A = 1"] {
+            assert!(!is_matrix_heading(line), "{line}");
+        }
+    }
 }

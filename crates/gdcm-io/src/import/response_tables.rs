@@ -19,7 +19,7 @@ use crate::reading_budget::VariableFault;
 pub(super) struct TableModels {
     pub(super) found: Found<FoundModel>,
     /// Units that the user must state before the table can be read as frequency responses.
-    pub(super) unsaid: Vec<UnitNotGiven>,
+    pub(super) missing_units: Vec<UnitNotGiven>,
 }
 
 /// Returns each response in a table as a model with one input and one output. A table without
@@ -36,7 +36,10 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
                 ignored: vec![words],
                 ..Found::default()
             };
-            return Ok(TableModels { found, unsaid });
+            return Ok(TableModels {
+                found,
+                missing_units: unsaid,
+            });
         }
     };
     let values = columns.values(table)?;
@@ -56,7 +59,7 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
     }
     Ok(TableModels {
         found,
-        unsaid: Vec::new(),
+        missing_units: Vec::new(),
     })
 }
 

@@ -244,8 +244,8 @@ fn a_table_whose_units_or_names_are_not_said_is_never_read_by_a_guess() {
         let found = found(&format!("text/{name}"));
         assert!(found.models.is_empty(), "{name}");
         let mut asked = Vec::new();
-        for unsaid in found.unsaid.values().flatten() {
-            asked.push(unsaid.units);
+        for missing in found.missing_units.values().flatten() {
+            asked.push(missing.units);
         }
         assert_eq!(asked, units, "{name}");
         // The question about the headings is the description of what is not a model.

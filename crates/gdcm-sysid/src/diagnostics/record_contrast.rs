@@ -29,7 +29,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::each;
 
 use super::cautions::IdentificationCaution;
-use super::model_doubts::Diagnostics;
+use super::model_cautions::ModelCautions;
 use super::record_fault::{ContradictingRecord, RecordFault};
 use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
 use crate::likelihood::descent::Fit;
@@ -140,7 +140,7 @@ impl<'a> RecordContrasts<'a> {
     pub(crate) fn caution(
         &self,
         is_in_gusts: bool,
-        names: &Diagnostics,
+        names: &ModelCautions<'_>,
     ) -> Option<IdentificationCaution> {
         let mut worst = self.contrasts.clone();
         worst.sort_by(|a, b| b.contrast.total_cmp(&a.contrast));

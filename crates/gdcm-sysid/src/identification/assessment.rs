@@ -14,7 +14,7 @@ use super::prepared_data::PreparedData;
 use crate::diagnostics::bands::BandModels;
 use crate::diagnostics::cautions::IdentificationCaution;
 use crate::diagnostics::feedback::{Feedback, FeedbackLevel, FeedbackRecords};
-use crate::diagnostics::model_doubts::Diagnostics;
+use crate::diagnostics::model_cautions::ModelCautions;
 use crate::diagnostics::record_contrast::{RecordContrast, RecordContrasts};
 use crate::diagnostics::record_fits::RecordFits;
 use crate::identification_error::IdentificationError;
@@ -200,7 +200,7 @@ impl Assessment<'_> {
         contrasts: Option<&RecordContrasts<'_>>,
     ) -> Vec<IdentificationCaution> {
         let Refinement { search, fit, .. } = self.refinement;
-        let diagnostics = Diagnostics {
+        let model_cautions = ModelCautions {
             records: self.records,
             options: self.options,
             data: self.data.measured_data(),
@@ -211,10 +211,10 @@ impl Assessment<'_> {
         let feedback = feedback_caution(uncertainty.feedback.as_ref());
         let is_in_gusts = feedback.is_some();
         cautions.extend(feedback);
-        cautions.extend(diagnostics.departures());
+        cautions.extend(model_cautions.departures());
         if let Some(contrasts) = contrasts {
-            cautions.extend(diagnostics.adequacy(fits));
-            cautions.extend(contrasts.caution(is_in_gusts, &diagnostics));
+            cautions.extend(model_cautions.adequacy(fits));
+            cautions.extend(contrasts.caution(is_in_gusts, &model_cautions));
         }
         if search.still_falls {
             cautions.push(IdentificationCaution::OrderLimit {
@@ -222,7 +222,7 @@ impl Assessment<'_> {
                 narrower: [self.options.band[0], NARROWER * self.options.band[1]],
             });
         }
-        cautions.extend(diagnostics.unidentified_pairs(&uncertainty.not_identified));
+        cautions.extend(model_cautions.unidentified_pairs(&uncertainty.not_identified));
         if let Some(pole) = self.unstable_pole() {
             cautions.push(IdentificationCaution::Unstable {
                 pole,

@@ -13,7 +13,7 @@ use gdcm_model::simulation::{FlightRecord, Segment, centred};
 
 use super::candidates::SubspaceSettings;
 use crate::diagnostics::cautions::IdentificationCaution;
-use crate::diagnostics::model_doubts::MeasuredData;
+use crate::diagnostics::departure::MeasuredData;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
 use crate::likelihood::noise_covariance::NoiseCovariance;

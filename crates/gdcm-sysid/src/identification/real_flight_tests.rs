@@ -18,8 +18,9 @@ use super::prepared_data::PreparedData;
 use super::second_start::refine;
 use super::{Identification, IdentificationCaution, Options, Preparation, TRUSTED_COHERENCE};
 use crate::diagnostics::bands::BandModels;
+use crate::diagnostics::departure::{Departure, predict_points};
 use crate::diagnostics::feedback::{Feedback, FeedbackRecords};
-use crate::diagnostics::model_doubts::{Departure, Diagnostics, predict_points};
+use crate::diagnostics::model_cautions::ModelCautions;
 use crate::diagnostics::record_contrast::RecordContrasts;
 use crate::diagnostics::record_fault::RecordFault;
 use crate::likelihood::covariance::ParameterCovariance;
@@ -469,13 +470,13 @@ fn the_late_record_is_named_with_its_delay() {
                 known["F"]
             );
         }
-        let diagnostics = Diagnostics {
+        let model_cautions = ModelCautions {
             records: &records,
             options: &options(),
             data: data.measured_data(),
             fit,
         };
-        let named = match contrasts.caution(false, &diagnostics) {
+        let named = match contrasts.caution(false, &model_cautions) {
             Some(IdentificationCaution::Contradiction { records, .. }) => {
                 let fault = records.last().and_then(|last| last.fault.as_ref());
                 let delay_s = fault.and_then(RecordFault::delay_s).expect("it is late");

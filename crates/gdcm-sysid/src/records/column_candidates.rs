@@ -1,17 +1,43 @@
 //! Searches the columns that may hold a channel, by name, documentation and unit.
 //!
+//! Steps 1 to 3, and the rules a to e in step 1, are tried in turn until one finds columns:
+//!
 //! ```text
-//! 1  names: the exact name; else the name beside a sign mark (-az); else a synonym
-//!    aliases replace the name: exactly as given; else the first column that an alias finds without
-//!    regard to case, by its number or by its index (RecordTable::find); else, unless an alias is a
-//!    number, in folded spelling, then beside a sign mark, then a synonym
-//!    only columns that the file does not assign to the other side, except in RecordTable::find
-//! 2  if none: columns that the logging system's documentation assigns to the channel
-//! 3  if none: fields of topics with the exact name (`xyz` in TOPIC.xyz); without aliases, this
-//!    step is left out in logs with documented columns
-//! 4  without aliases: latitudes and longitudes are removed
-//! 5  if several: the only column whose unit can be converted, if there is just one
+//! 1  without aliases, by the channel's name         channel -> column in the file
+//!    a  exactly                                     az -> az
+//!    b  apart from sign marks                       az -> -az, az (down)
+//!    c  as a synonym, apart from sign marks         NZ -> load factor
+//!    with aliases, by these instead                 alias -> column in the file
+//!    a  exactly                                     elev_yoke1 -> elev_yoke1
+//!    b  the first that RecordTable::find resolves:
+//!          without regard to case                   Elev_Yoke1 -> elev_yoke1
+//!          by its column number, from 1             #3 -> the third column
+//!          by its index in a matrix                 xyz[0] or xyz(1) -> xyz_1
+//!       a column number that does not exist ends step 1
+//!    c  folded: without case, marks and blanks      elev_yoke1 -> elev,yoke1
+//!    d  folded, apart from sign marks               az_b -> az b (down)
+//!    e  as a synonym, apart from sign marks         elevator -> pitch stick
+//! 2  by the logging system's documentation          P -> vehicle_angular_velocity.xyz[0]
+//! 3  as a topic's field, exactly                    az -> IMU.az
 //! ```
+//!
+//! The columns found are then reduced:
+//!
+//! ```text
+//! 4  without aliases, latitudes and longitudes are removed
+//! 5  of several, the only one whose unit can be converted to the channel's; if that is not exactly
+//!    one, all remain, and the user must choose
+//! ```
+//!
+//! - Sign marks: after 1a, names and aliases are also tried without their own sign marks.
+//! - Sides: step 1 skips columns that the file assigns to the other side (inputs or outputs).
+//!   Only 1b for aliases does not: there the user's word selects a single column. Step 2 concerns
+//!   logs, which assign no sides. Step 3, the last resort, ignores sides; in a table without
+//!   topics it compares whole column names.
+//! - Step 3 is left out for a channel without aliases if the log has documented columns: there a
+//!   field with the same name is another quantity (PIDR.P is a controller term, not a roll rate).
+//! - Step 4: "lat" and "lon" are also synonyms of the lateral and the longitudinal stick. An alias
+//!   is the user's choice, and its column is kept.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_alias::{folded_name, same_channel};
@@ -25,17 +51,17 @@ use super::record_table::{RecordColumn, RecordTable};
 /// Returns the columns that may hold this channel (steps 1 to 5).
 pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let search = ColumnSearch { table, rule, side };
-    let names = search.wanted_names();
+    let spellings = search.spellings();
     let mut found = if rule.aliases.is_empty() {
         search.by_name()
     } else {
-        search.by_aliases(&names)
+        search.by_aliases(&spellings)
     };
     if found.is_empty() {
-        found = search.by_documentation(&names);
+        found = search.by_documentation(&spellings);
     }
     if found.is_empty() && search.may_be_field() {
-        found = search.by_field(&names);
+        found = search.by_field(&spellings);
     }
     if rule.aliases.is_empty() {
         found.retain(|column| !is_position(table, *column, rule));
@@ -54,7 +80,7 @@ pub(super) fn without_sign_mark(name: &str) -> String {
     SignedName::parse(name).name
 }
 
-/// Searches a channel's column.
+/// A channel, and the table in which its column is searched.
 struct ColumnSearch<'r> {
     table: &'r RecordTable,
     rule: &'r ChannelRule,
@@ -62,84 +88,32 @@ struct ColumnSearch<'r> {
 }
 
 impl ColumnSearch<'_> {
-    /// Returns the channel's name, or its aliases, each also without its sign mark.
-    fn wanted_names(&self) -> Vec<String> {
-        if self.rule.aliases.is_empty() {
-            return vec![self.rule.name.clone()];
+    /// Returns the aliases, or else the channel's name, each as given and without its sign mark.
+    fn spellings(&self) -> Vec<String> {
+        let names = if self.rule.aliases.is_empty() {
+            std::slice::from_ref(&self.rule.name)
+        } else {
+            self.rule.aliases.as_slice()
+        };
+        let mut spellings = Vec::with_capacity(2 * names.len());
+        for name in names {
+            spellings.push(name.clone());
+            spellings.push(without_sign_mark(name));
         }
-        let mut names = Vec::new();
-        for alias in &self.rule.aliases {
-            names.push(alias.clone());
-            names.push(without_sign_mark(alias));
-        }
-        names
+        spellings
     }
 
-    /// Returns the columns accepted by `is_wanted`, without those that the file assigns to the
-    /// other side.
-    fn named(&self, is_wanted: impl Fn(&str) -> bool) -> Vec<usize> {
-        let mut found = Vec::new();
-        for (index, column) in self.table.columns.iter().enumerate() {
+    /// Returns the columns whose names are accepted by `is_wanted`, without those that the file
+    /// assigns to the other side.
+    fn own_side(&self, is_wanted: impl Fn(&str) -> bool) -> Vec<usize> {
+        self.any_side(|column| {
             let has_other_side = column.side.is_some_and(|side| side != self.side);
-            if !has_other_side && is_wanted(&column.name) {
-                found.push(index);
-            }
-        }
-        found
-    }
-
-    /// Returns the columns with the channel's name: exactly, else beside a sign mark, else as a
-    /// synonym.
-    fn by_name(&self) -> Vec<usize> {
-        let name = &self.rule.name;
-        let exact = self.named(|column| column == name);
-        if !exact.is_empty() {
-            return exact;
-        }
-        let wanted = without_sign_mark(name);
-        let marked = self.named(|column| without_sign_mark(column) == wanted);
-        if !marked.is_empty() {
-            return marked;
-        }
-        self.named(|column| same_channel(&without_sign_mark(column), &wanted))
-    }
-
-    /// Returns the columns that the user's aliases denote, in the order of step 1. In folded
-    /// spelling "elev_yoke1" is "elev,yoke1". If an alias is a column number that does not exist,
-    /// no names are tried.
-    fn by_aliases(&self, aliases: &[String]) -> Vec<usize> {
-        let exact = self.named(|column| self.rule.aliases.iter().any(|alias| alias == column));
-        if !exact.is_empty() {
-            return exact;
-        }
-        if let Some(column) = aliases.iter().find_map(|alias| self.table.find(alias)) {
-            return vec![column];
-        }
-        if aliases.iter().any(|alias| alias.starts_with('#')) {
-            return Vec::new();
-        }
-        let folded = self.named(|column| {
-            let column = folded_name(column);
-            aliases.iter().any(|alias| column == folded_name(alias))
-        });
-        if !folded.is_empty() {
-            return folded;
-        }
-        let marked = self.named(|column| {
-            let column = folded_name(&without_sign_mark(column));
-            aliases.iter().any(|alias| column == folded_name(alias))
-        });
-        if !marked.is_empty() {
-            return marked;
-        }
-        self.named(|column| {
-            let column = without_sign_mark(column);
-            aliases.iter().any(|alias| same_channel(&column, alias))
+            !has_other_side && is_wanted(&column.name)
         })
     }
 
     /// Returns the columns accepted by `is_wanted`, on any side.
-    fn columns(&self, is_wanted: impl Fn(&RecordColumn) -> bool) -> Vec<usize> {
+    fn any_side(&self, is_wanted: impl Fn(&RecordColumn) -> bool) -> Vec<usize> {
         let mut found = Vec::new();
         for (index, column) in self.table.columns.iter().enumerate() {
             if is_wanted(column) {
@@ -149,32 +123,77 @@ impl ColumnSearch<'_> {
         found
     }
 
+    /// Returns the columns with the channel's name (step 1 without aliases, rules a to c).
+    fn by_name(&self) -> Vec<usize> {
+        let name = &self.rule.name;
+        let exact = self.own_side(|column| column == name);
+        if !exact.is_empty() {
+            return exact;
+        }
+        let unmarked = without_sign_mark(name);
+        let marked = self.own_side(|column| without_sign_mark(column) == unmarked);
+        if !marked.is_empty() {
+            return marked;
+        }
+        self.own_side(|column| same_channel(&without_sign_mark(column), &unmarked))
+    }
+
+    /// Returns the columns that the aliases denote (step 1 with aliases, rules a to e). The
+    /// `spellings` are the aliases with and without their sign marks; rule a takes the aliases only
+    /// as given, so that "-az" prefers a column "-az" to a column "az".
+    fn by_aliases(&self, spellings: &[String]) -> Vec<usize> {
+        let exact = self.own_side(|column| self.rule.aliases.iter().any(|alias| alias == column));
+        if !exact.is_empty() {
+            return exact;
+        }
+        if let Some(column) = spellings.iter().find_map(|alias| self.table.find(alias)) {
+            return vec![column];
+        }
+        if spellings.iter().any(|alias| is_column_number(alias)) {
+            return Vec::new();
+        }
+        let folded_spellings: Vec<String> =
+            spellings.iter().map(|alias| folded_name(alias)).collect();
+        let folded = self.own_side(|column| folded_spellings.contains(&folded_name(column)));
+        if !folded.is_empty() {
+            return folded;
+        }
+        let marked = self
+            .own_side(|column| folded_spellings.contains(&folded_name(&without_sign_mark(column))));
+        if !marked.is_empty() {
+            return marked;
+        }
+        self.own_side(|column| {
+            let unmarked = without_sign_mark(column);
+            spellings.iter().any(|alias| same_channel(&unmarked, alias))
+        })
+    }
+
     /// Returns the columns that the logging system's documentation assigns to the channel (step 2).
-    fn by_documentation(&self, names: &[String]) -> Vec<usize> {
-        self.columns(|column| match column.meaning {
-            Some(meaning) => names.iter().any(|name| same_channel(meaning, name)),
+    fn by_documentation(&self, spellings: &[String]) -> Vec<usize> {
+        self.any_side(|column| match column.meaning {
+            Some(meaning) => spellings.iter().any(|name| same_channel(meaning, name)),
             None => false,
         })
     }
 
-    /// Returns whether a topic's field may be the channel because it has the same name. In logs
-    /// with documented columns such a field has another meaning, unless the user names it: "PIDR.P"
-    /// is not a roll rate.
+    /// Returns whether step 3 applies: the user named the field, or the log has no documented
+    /// columns.
     fn may_be_field(&self) -> bool {
-        let is_documented = self
-            .table
-            .columns
-            .iter()
-            .any(|column| column.meaning.is_some());
-        !self.rule.aliases.is_empty() || !is_documented
+        if !self.rule.aliases.is_empty() {
+            return true;
+        }
+        let mut columns = self.table.columns.iter();
+        let has_documented = columns.any(|column| column.meaning.is_some());
+        !has_documented
     }
 
-    /// Returns the columns whose name within their topic is in `names` (step 3).
-    fn by_field(&self, names: &[String]) -> Vec<usize> {
-        self.columns(|column| names.iter().any(|name| column.field() == *name))
+    /// Returns the columns whose name within their topic is in `spellings` (step 3).
+    fn by_field(&self, spellings: &[String]) -> Vec<usize> {
+        self.any_side(|column| spellings.iter().any(|name| column.field() == *name))
     }
 
-    /// Returns the columns whose unit can be converted to the channel's unit.
+    /// Returns the columns whose unit can be converted to the channel's unit (step 5).
     fn convertible(&self, columns: &[usize]) -> Vec<usize> {
         let mut found = Vec::new();
         for column in columns {
@@ -184,5 +203,94 @@ impl ColumnSearch<'_> {
             }
         }
         found
+    }
+}
+
+/// Returns whether an alias is a column number, such as `#3`.
+fn is_column_number(alias: &str) -> bool {
+    alias.starts_with('#')
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::record_table::TopicClock;
+    use super::*;
+
+    fn table(names: &[&str]) -> RecordTable {
+        let columns = names
+            .iter()
+            .map(|name| RecordColumn::new(*name, vec![0.0, 1.0]))
+            .collect();
+        RecordTable::new("flight", columns)
+    }
+
+    fn rule(name: &str, aliases: &[&str]) -> ChannelRule {
+        ChannelRule {
+            aliases: aliases.iter().map(ToString::to_string).collect(),
+            ..ChannelRule::named(name)
+        }
+    }
+
+    #[test]
+    fn a_name_is_found_by_the_first_rule_that_applies() {
+        for (name, columns, expected) in [
+            ("az", ["-az", "az"], 1),
+            ("az", ["load factor", "az (down)"], 1),
+            ("NZ", ["P", "load factor"], 1),
+        ] {
+            let found = candidates(&table(&columns), &rule(name, &[]), ChannelSide::Output);
+            assert_eq!(found, [expected], "{name} in {columns:?}");
+        }
+    }
+
+    #[test]
+    fn an_alias_is_found_by_the_first_rule_that_applies() {
+        for (alias, columns, expected) in [
+            ("elev_yoke1", ["elev,yoke1", "elev_yoke1"], 1),
+            ("Elev_Yoke1", ["elev,yoke1", "elev_yoke1"], 1),
+            ("#2", ["xyz_1", "xyz_2"], 1),
+            ("xyz[0]", ["xyz_1", "xyz_2"], 0),
+            ("xyz(2)", ["xyz_1", "xyz_2"], 1),
+            ("elev_yoke1", ["pitch stick", "elev,yoke1"], 1),
+            ("az_b", ["load factor", "az b (down)"], 1),
+            ("elevator", ["roll stick", "pitch stick"], 1),
+        ] {
+            let found = candidates(&table(&columns), &rule("X", &[alias]), ChannelSide::Input);
+            assert_eq!(found, [expected], "{alias} in {columns:?}");
+        }
+    }
+
+    #[test]
+    fn a_column_number_that_does_not_exist_leaves_out_the_folded_spelling() {
+        let other = candidates(
+            &table(&["az", "X"]),
+            &rule("X", &["#9", "AZ (down)"]),
+            ChannelSide::Output,
+        );
+        assert_eq!(other, [0], "rule b resolves the other alias");
+        let missing = candidates(
+            &table(&["a z", "X"]),
+            &rule("X", &["#9", "az"]),
+            ChannelSide::Output,
+        );
+        assert!(missing.is_empty(), "{missing:?}");
+    }
+
+    #[test]
+    fn a_channel_with_a_sign_mark_is_found_as_a_field() {
+        let mut table = table(&["IMU.az", "IMU.ay"]);
+        let clock = Arc::new(TopicClock {
+            name: "IMU".to_owned(),
+            time_s: vec![0.0, 0.1],
+        });
+        for column in &mut table.columns {
+            column.topic = Some(Arc::clone(&clock));
+        }
+        for name in ["az", "-az", "az (down)"] {
+            let found = candidates(&table, &rule(name, &[]), ChannelSide::Output);
+            assert_eq!(found, [0], "{name}");
+        }
     }
 }

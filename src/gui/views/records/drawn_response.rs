@@ -12,7 +12,7 @@ use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::response::response_shape::ResponseShape;
 use gdcm_model::units::neper_to_db;
 use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
-use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
+use gdcm_sysid::diagnostics::departure::NARROW_WINDOW;
 use gdcm_sysid::identification::{Identification, IdentificationCaution, TRUSTED_COHERENCE};
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 

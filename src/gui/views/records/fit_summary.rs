@@ -6,7 +6,7 @@ use egui::{Color32, Label, ProgressBar, Rect, RichText, Role, Sense, Ui, UiBuild
 use gdcm_model::dataset::BundleKind;
 use gdcm_model::number_format::{counted, decimals};
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
-use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
+use gdcm_sysid::diagnostics::model_cautions::{NOT_PREDICTED, PREDICTED_WELL};
 use gdcm_sysid::identification::Identification;
 
 use super::caution_list::remedy_ui;
@@ -117,10 +117,10 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
         (Some(raw), Some(normalised)) => Figure {
             name: "held out",
             value: decimals(raw, 2),
-            color: limit_color(normalised, HELD_OUT[1], palette),
+            color: limit_color(normalised, NOT_PREDICTED, palette),
             hint: format!(
                 "{HELD_OUT_HINT}; {} for this model adapted within its uncertainty, where values up \
-                to 1.3 are good",
+                to {PREDICTED_WELL} are good",
                 decimals(normalised, 2)
             ),
         },

@@ -71,6 +71,12 @@ pub(crate) enum RecognitionFault {
     /// Matrices in separate files do not form a model.
     #[error("matrices are missing; a model needs A, B and C")]
     MissingMatrices,
+    /// Two files hold the same matrix of a model.
+    #[error(
+        "matrix {name} is given twice, in {} and {}; remove or rename one",
+        files[0], files[1]
+    )]
+    DuplicateMatrix { name: String, files: [String; 2] },
     #[error("{name}: expected {expected}, found {found}")]
     Kind {
         name: String,

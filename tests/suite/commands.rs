@@ -510,7 +510,11 @@ fn the_phase_is_corrected_as_an_option_says() {
             .any(|limit| limit.conditions == conditions && limit.text.contains(" 20 ")),
         "{limits:?}"
     );
-    for words in ["order 2, n 3, R_max 10", "at 120 rad/s", "PED → NY"] {
+    for words in [
+        "order 2, n 3 (--lead-n), R_max 10",
+        "at 120 rad/s",
+        "PED → NY",
+    ] {
         assert!(told.text.contains(words), "{words}: {}", told.text);
     }
     let led = crate::read_json(&corrections);

@@ -104,7 +104,7 @@ fn tables_show_the_shares_costs_and_excesses_of_the_records() {
         [left(0), left(1)]
     );
     assert!(of_records.title.contains(&format!(
-        "{} of {} rows",
+        "{} of {}",
         2 * rows - left(0) - left(1),
         2 * rows
     )));

@@ -326,6 +326,8 @@ pub(crate) fn wait_for_export_plan(window: &mut Window) {
 /// Presses the button of the export dialog that writes the files, and waits until the dialog is
 /// closed or shows an error.
 pub(crate) fn press_export(window: &mut Window) {
+    // A dry run is repeated if the results have changed since.
+    wait_for_export_plan(window);
     let plan = state(window).current_export_plan().expect("a dry run");
     let count = plan.file_count();
     click(window, &format!("Export {}", counted(count, "file")));

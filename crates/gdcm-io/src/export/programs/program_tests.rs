@@ -697,7 +697,7 @@ fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
     }
     assert_eq!(
         text.lines()
-            .filter(|line| line.starts_with("% Input"))
+            .filter(|line| line.starts_with("% Input "))
             .count(),
         4
     );

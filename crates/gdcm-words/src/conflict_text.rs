@@ -6,6 +6,7 @@ use gdcm_method::correction::conflict::{Conflict, ConflictKind};
 use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::correction::solution::Unmatched;
 use gdcm_method::correction::{Channel, Quantity};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{s_to_ms, telling, told_apart};
 
 /// Describes a conflict and its possible resolutions, with the given channel names.
@@ -75,7 +76,7 @@ pub fn miss_text(
 fn gain_miss_text(miss: &Unmatched, pair: &str) -> String {
     let (target, delta) = told_apart(miss.target, miss.delta, 3);
     let sign = if miss.excess > 0.0 { "+" } else { "" };
-    let excess = telling(miss.excess, 1);
+    let excess = with_minus_sign(&telling(miss.excess, 1));
     format!("{pair} is held at a gain of {target} instead of {delta} ({sign}{excess} dB).")
 }
 

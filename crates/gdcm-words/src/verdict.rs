@@ -2,7 +2,7 @@
 //! window, the printed summary and the report use the same words.
 
 use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_model::number_format::{NO_VALUE, counted};
+use gdcm_model::number_format::{NO_VALUE, counted, with_minus_sign};
 use gdcm_model::units::{number, six_digits, telling, told_apart};
 use gdcm_study::results::verdict::{GainVerdict, MatchCount, MeanCost, PhaseVerdict, RemainingLag};
 use gdcm_study::{Analysis, ConditionAnalysis, PhaseCorrection, Study};
@@ -92,7 +92,7 @@ fn lag_verb(lag_ms: f64) -> &'static str {
 
 /// Formats a lag in whole milliseconds, with a minus sign.
 fn lag_number(lag_ms: f64) -> String {
-    telling(lag_ms, 0).replace('-', "\u{2212}")
+    with_minus_sign(&telling(lag_ms, 0))
 }
 
 /// Returns the verdict on a whole study: "gains of 55 of 55 held responses matched, phases of 0 of

@@ -4,7 +4,7 @@
 use egui::{Grid, Ui, Vec2, vec2};
 
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::number_format::decimals_or_dash;
+use gdcm_model::number_format::{decimals_or_dash, with_minus_sign};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::requirements::{
@@ -206,7 +206,7 @@ impl FigureWords for BandwidthWords<'_> {
                     "{} {} rad/s, {} ms",
                     role.name(),
                     telling(bandwidth_rad_s, 2),
-                    telling(delay_ms, 0)
+                    with_minus_sign(&telling(delay_ms, 0))
                 );
                 if let Some(level) = finding.level(&self.state.study.requirements.levels) {
                     text += &format!(", Level {}", level_text(Some(level)));

@@ -4,6 +4,7 @@
 
 use egui::{Frame, Label, Margin, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_study::CouplingCorrection;
@@ -323,7 +324,7 @@ impl CouplingsWords<'_> {
             let mut change = String::new();
             let mut response = String::new();
             if let Some((pair, change_db)) = condition.most_changed_above_band(dataset.on_axis()) {
-                change = telling(change_db, 1).replace('-', "\u{2212}");
+                change = with_minus_sign(&telling(change_db, 1));
                 response = dataset.pair_name(pair);
             }
             table.row([id.to_string(), least, at, change, response]);

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::{BundleKind, ModelId};
+use gdcm_model::number_format::decimals;
 use gdcm_model::response::zeros::finite_zeros;
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::jobs::curve_jobs::ConditionModes;
@@ -172,5 +173,5 @@ fn modes_table(
 }
 
 fn three_decimals(value: f64) -> String {
-    format!("{value:.3}").replace('-', "\u{2212}")
+    decimals(value, 3)
 }

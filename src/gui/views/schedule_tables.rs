@@ -13,7 +13,7 @@ use gdcm_method::schedule::ScheduleKind;
 use gdcm_method::schedule::form_comparison::{FormComparison, FormFit};
 use gdcm_method::schedule::lead_degree_comparison::LeadDegreeFit;
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::number_format::NO_VALUE;
+use gdcm_model::number_format::{NO_VALUE, decimals};
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::decisions::setting_table;
 use gdcm_words::Table;
@@ -216,7 +216,7 @@ pub(super) fn coefficient_table(state: &State) -> Option<Table> {
     for row in coefficients.rows {
         let mut cells = vec![row.name];
         for figure in &row.figures {
-            cells.push(format!("{figure:.5}").replace('-', "\u{2212}"));
+            cells.push(decimals(*figure, 5));
         }
         table.row(cells);
     }

@@ -25,7 +25,7 @@ use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PolarResponse};
 use gdcm_study::decisions::setting_table;
 use gdcm_study::results::comparison::BundleMetrics;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::stages::compared_model::ComparisonGrid;
 use gdcm_study::stages::condition_responses::ConditionResponses;
 use gdcm_study::{Edit, Engine, Execution, PhaseCorrection, Study};
@@ -357,7 +357,7 @@ fn requirements(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("requirements of the embedded example");
     group.sample_size(10);
     group.bench_function("without intervals", |bencher| {
-        bencher.iter(|| engine.requirements(&analysis, &KnownPoles::default(), &Unobserved))
+        bencher.iter(|| engine.requirements(&analysis, &IdentifiedPoles::default(), &Unobserved))
     });
     analysis.uncertainty = Some(Arc::new(
         engine
@@ -365,7 +365,7 @@ fn requirements(criterion: &mut Criterion) {
             .expect("nobody stops it"),
     ));
     group.bench_function("with intervals", |bencher| {
-        bencher.iter(|| engine.requirements(&analysis, &KnownPoles::default(), &Unobserved))
+        bencher.iter(|| engine.requirements(&analysis, &IdentifiedPoles::default(), &Unobserved))
     });
     group.bench_function("the analysis itself, everything anew", |bencher| {
         bencher.iter(|| Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved));

@@ -58,12 +58,9 @@ fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
         return false;
     };
     match setting.kind {
-        Kind::Range {
-            nothing: Some([word, _]),
-            ..
-        } => argument == word,
+        Kind::Range { nothing, .. } => argument == nothing.option,
         Kind::Choice { words, .. } if setting.bare.is_some() => {
-            words.iter().any(|[word, ..]| argument == *word)
+            words.iter().any(|word| argument == word.option)
         }
         _ => false,
     }

@@ -14,7 +14,7 @@ use gdcm_plot::figure::{ConditionSource, Figure, FigureKind, FigureRequest, Role
 use gdcm_study::decisions::physics_settings::PhysicsCorrection;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
 use gdcm_words::caution::failure_text;
@@ -100,7 +100,7 @@ pub(super) fn drawn_figure(
     if view == FigureKind::Requirements {
         request.requirements = Some(Arc::new(engine.requirements(
             analysis,
-            &KnownPoles::default(),
+            &IdentifiedPoles::default(),
             &Unobserved,
         )?));
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use gdcm_io::report::{ReportSource, ReportSubject, report as compose_report, save_report};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 
 use super::failure::Failure;
 use super::progress::TerminalProgress;
@@ -52,7 +52,7 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     }
     let source = ReportSource::from_files(&loaded, study_file);
     let progress = TerminalProgress::new("drawing");
-    let known = KnownPoles::default();
+    let known = IdentifiedPoles::default();
     let subject = ReportSubject {
         analysis: &analysis,
         histories: histories.as_ref(),

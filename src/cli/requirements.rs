@@ -11,8 +11,8 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::number_format::{NO_VALUE, counted};
 use gdcm_study::Study;
-use gdcm_study::results::missing_finding::MissingFinding;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::missing_finding::{MissingFinding, MissingPart};
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::TimeHistories;
@@ -67,7 +67,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         analyze_study(study, &arguments.study, ErrorBars::Computed)?;
     let requirements = engine.requirements(
         &analysis,
-        &KnownPoles::default(),
+        &IdentifiedPoles::default(),
         &TerminalProgress::new("computing bandwidths"),
     )?;
     let histories = simulated_histories(&analysis, &records)?;
@@ -146,13 +146,11 @@ fn report_cautions(requirements: &Requirements, dataset: &Dataset) {
 /// Reports missing results, first those that concern all conditions. Missing time histories are
 /// reported only if some record was compared: otherwise the printed section gives the reason.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
-    /// Value of [`MissingFinding::what`] for a condition without a result.
-    const EVERYTHING: &str = "all";
     // Skip conditions without a result, which have already been reported.
     let mut missing: Vec<&MissingFinding> = requirements
         .missing
         .iter()
-        .filter(|finding| finding.what != EVERYTHING)
+        .filter(|finding| finding.what != MissingPart::All)
         .collect();
     if !histories.records.is_empty() {
         missing.extend(&histories.missing);

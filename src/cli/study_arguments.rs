@@ -84,7 +84,7 @@ fn setting_option(setting: &'static Setting) -> Arg {
         .help(format!("{}{unit}", setting_words(setting).help));
     let argument = match setting.kind {
         Kind::Flag { .. } => return argument.action(ArgAction::SetTrue),
-        Kind::Range { nothing: None, .. } => argument.value_names(["LO", "HI"]).num_args(2),
+        Kind::Band { .. } => argument.value_names(["LO", "HI"]).num_args(2),
         Kind::Range { .. } => argument.value_name("LO HI").num_args(1..=2),
         _ => match setting.bare {
             Some(word) => argument

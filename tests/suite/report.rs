@@ -16,7 +16,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::record_simulations::time_histories_of;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::results::verdict::PhaseVerdict;
@@ -77,7 +77,7 @@ static REPORT: LazyLock<String> = LazyLock::new(|| {
 });
 
 fn without_records(analysis: &Analysis) -> ReportSubject<'_> {
-    static NOTHING: LazyLock<KnownPoles> = LazyLock::new(KnownPoles::default);
+    static NOTHING: LazyLock<IdentifiedPoles> = LazyLock::new(IdentifiedPoles::default);
     ReportSubject {
         analysis,
         histories: None,
@@ -235,7 +235,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         ..ANALYSIS.clone()
     };
     let requirements = engine
-        .requirements(&analysis, &KnownPoles::default(), &Unobserved)
+        .requirements(&analysis, &IdentifiedPoles::default(), &Unobserved)
         .unwrap();
     let cells = texts(&parsed(&REPORT), "td");
     for row in summary_table(&requirements, None).rows {

@@ -83,8 +83,8 @@ fn setting_differences(before: &Study, after: &Study) -> Vec<DecisionDifference>
         .map(|setting| {
             DecisionDifference::new(
                 setting.name,
-                setting.words(&before.settings),
-                setting.words(&after.settings),
+                setting.current_text(&before.settings),
+                setting.current_text(&after.settings),
             )
         })
         .collect()

@@ -4,7 +4,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::identification_jobs::SimulationFailure;
 use gdcm_study::results::analysis::NoResult;
 use gdcm_study::results::missing_finding::{
-    MissingFinding, MissingReason, NoModes, NoRoleModel, NotCompared,
+    MissingFinding, MissingPart, MissingReason, NoModes, NoRoleModel, NotCompared,
 };
 use gdcm_study::results::record_history::{NoRecordHistory, NotInHistory};
 use gdcm_study::results::required_bandwidth::NoBandwidth;
@@ -25,9 +25,10 @@ pub fn no_result_text(why: &NoResult) -> String {
 /// Returns what is missing among the requirements, and why.
 pub fn missing_finding_text(finding: &MissingFinding) -> String {
     let missing = match finding.what {
-        "all" => "results",
-        "scheduled" => "values with the schedule",
-        other => other,
+        MissingPart::All => "results",
+        MissingPart::Scheduled => "values with the schedule",
+        MissingPart::Modes => "modes",
+        MissingPart::TimeHistories => "time histories",
     };
     format!("no {missing}: {}", missing_reason_text(&finding.why))
 }

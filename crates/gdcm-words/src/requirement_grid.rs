@@ -375,7 +375,7 @@ mod tests {
     use gdcm_study::Execution;
     use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
     use gdcm_study::results::grid_source::GridSource;
-    use gdcm_study::results::required_modes::KnownPoles;
+    use gdcm_study::results::required_modes::IdentifiedPoles;
     use gdcm_study::results::requirement_role::RequirementRole;
     use gdcm_study::results::requirements::requirements_of;
 
@@ -384,8 +384,12 @@ mod tests {
 
     fn grid(limits: OverviewLimits) -> RequirementGrid {
         let analysis = &*EXAMPLE;
-        let requirements =
-            requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let requirements = requirements_of(
+            analysis,
+            &IdentifiedPoles::default(),
+            &Execution::sequential(),
+        )
+        .unwrap();
         let settings = RequirementSettings {
             overview: limits,
             ..RequirementSettings::default()

@@ -352,7 +352,7 @@ mod tests {
                 _ => 0,
             };
             assert_eq!(words.meanings.len(), choices, "{}", setting.key);
-            let is_range = matches!(setting.kind, Kind::Range { .. });
+            let is_range = matches!(setting.kind, Kind::Range { .. } | Kind::Band { .. });
             assert_eq!(words.ends.iter().all(|end| !end.is_empty()), is_range);
         }
     }

@@ -13,8 +13,8 @@ use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
 use gdcm_study::Analysis;
-use gdcm_study::decisions::setting::Value;
 use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_study::results::export_note::ExportRemedy;
 
 use super::GdcmApp;

@@ -76,7 +76,7 @@ impl GdcmApp {
             analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
             shown: analysis,
             records: self.state.records.history_records(),
-            known: self.state.records.known_poles(),
+            known: self.state.records.identified_poles(),
             source,
         })
     }

@@ -6,8 +6,9 @@ use egui::{Key, Modifiers};
 use gdcm_plot::figure::FigureFormat;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::adopted_models::AdoptionChoice;
-use gdcm_study::decisions::setting::{Kind, Value};
+use gdcm_study::decisions::setting::Kind;
 use gdcm_study::decisions::setting_table::{self, SETTINGS};
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_words::setting_words::setting_words;
 
 use super::command::Command;
@@ -139,7 +140,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
             Kind::Number { .. } | Kind::Optional { .. } => {
                 entries.push(field_entry(setting.name, option, texts.label));
             }
-            Kind::Range { .. } => {
+            Kind::Range { .. } | Kind::Band { .. } => {
                 let ends = texts.ends;
                 let lower = format!("lower end of the {}", setting.name);
                 let upper = format!("upper end of the {}", setting.name);
@@ -148,8 +149,8 @@ fn setting_entries(state: &State) -> Vec<Entry> {
             }
             Kind::Choice { words, get, .. } => {
                 let now = get(&state.study.settings);
-                for (index, [_, text]) in words.iter().enumerate() {
-                    let name = format!("{}: {text}", texts.label);
+                for (index, choice) in words.iter().enumerate() {
+                    let name = format!("{}: {}", texts.label, choice.sentence);
                     let edit = setting.to(Value::Choice(index));
                     entries.push(Entry::new(name, texts.help, edit).enabled(index != now));
                 }

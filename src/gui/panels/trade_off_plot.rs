@@ -4,8 +4,8 @@
 use egui::{Align2, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use gdcm_model::number_format::decimals;
-use gdcm_study::decisions::setting::Value;
 use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_study::jobs::trade_off_job::{TradeOff, TradeOffPoint};
 
 use crate::gui::state::window_state::State;

@@ -197,8 +197,8 @@ mod tests {
 
     use gdcm_model::dataset::Pair;
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::decisions::setting::Value;
     use gdcm_study::decisions::setting_table;
+    use gdcm_study::decisions::setting_value::Value;
     use gdcm_study::results::couplings_assessment::UnstablePole;
     use gdcm_study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
 

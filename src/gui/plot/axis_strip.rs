@@ -121,7 +121,7 @@ impl AxisStrip<'_> {
                     if viewed.choose(range) {
                         is_open = false;
                     } else {
-                        let refusal = self.axis.beyond_ends(scene, viewed.ends());
+                        let refusal = self.axis.beyond_ends(scene, viewed.permitted_values());
                         form.refuse(refusal.text);
                     }
                 }

@@ -335,7 +335,7 @@ impl BodeView {
             .omega_range
             .map(|(min, max)| Range::new(min.log10(), max.log10()));
         if let Some(given) = given {
-            self.log_omega.reach(given);
+            self.log_omega.limit_to_decade_around(given);
         }
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
@@ -343,7 +343,7 @@ impl BodeView {
         let Some(log_omega) = given.or_else(|| log_omega_of(scene.curves)) else {
             return;
         };
-        self.log_omega.reach(log_omega);
+        self.log_omega.limit_to_decade_around(log_omega);
         if std::mem::take(&mut self.must_fit_frequencies) {
             self.log_omega.fit(log_omega);
         }

@@ -12,8 +12,9 @@ use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT};
 use super::panel_painter::{Follow, Gestures, PanelPainter};
 use super::panel_text::caption_font;
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};
-use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
+use super::viewed_range::ranges_of;
 use super::zoom_gesture::ZoomGesture;
+use super::zoom_limit::{ZoomLimit, zoomed_within};
 use crate::gui::widgets::palette::Palette;
 
 /// Gap between two notes \[pt\].

@@ -7,8 +7,9 @@ use gdcm_plot::figure::axis::Scale;
 use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::{Panel, Range};
 
-use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
+use super::viewed_range::ranges_of;
 use super::zoom_gesture::ZoomGesture;
+use super::zoom_limit::{ZoomLimit, zoomed_within};
 
 /// Maximum visible range, relative to the panel's full range.
 const FARTHEST: f64 = 10.0;

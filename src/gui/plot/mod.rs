@@ -8,7 +8,7 @@
 //! ```text
 //! panel_painter               frame, axes, grid and gestures; each scene adds its layers
 //! panel_axis, ticks           numbers and grid lines
-//! viewed_range                visible ranges and zoom limits
+//! viewed_range, zoom_limit    visible ranges, and how far they may be zoomed out
 //! zoom_gesture, drawn_box     wheel and pinching; boxes drawn by dragging
 //! nearest_curve, nearest_dot  curve or dot under the pointer
 //! pointed_curve_text          status text for the curve under the pointer
@@ -80,10 +80,11 @@ mod ticks;
 mod tiles;
 pub mod value_unit;
 mod viewed_range;
+mod zoom_gesture;
+mod zoom_limit;
 
 #[cfg(test)]
 mod tests;
-mod zoom_gesture;
 
 pub use bode::bode_ui;
 pub use bode_scene::BodeScene;

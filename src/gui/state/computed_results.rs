@@ -62,7 +62,7 @@ pub struct Results {
     pub first: Option<FirstResult>,
     /// Costs of constraining or releasing each response, with their job; see `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// The displayed condition's frequency responses, with their job; see `State::curves`.
+    /// The displayed condition's frequency responses, with their job; see `State::responses`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
     /// Modes by model, with their job; see `State::modes`.
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,

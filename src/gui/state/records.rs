@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use gdcm_io::Example;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::jobs::identification_jobs::IdentifyJob;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_sysid::records::LaidOutRecord;
 
@@ -130,7 +130,7 @@ impl RecordsState {
     }
 
     /// Returns the poles identified in this session, condition by condition.
-    pub fn known_poles(&self) -> KnownPoles {
+    pub fn identified_poles(&self) -> IdentifiedPoles {
         self.conditions
             .iter()
             .filter_map(|(id, records)| Some((*id, records.identification()?.poles.clone())))

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use gdcm_io::report::{Report, ReportSource, ReportSubject, compose_report};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::jobs::job::Job;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_study::{Analysis, Engine};
 
@@ -19,7 +19,7 @@ pub struct ReportInputs {
     pub analysis: Arc<Analysis>,
     /// Flight records in use, for the time-history comparison.
     pub records: Vec<HistoryRecords>,
-    pub known: KnownPoles,
+    pub known: IdentifiedPoles,
     pub source: ReportSource,
 }
 

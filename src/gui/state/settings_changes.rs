@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use gdcm_study::decisions::setting::{Setting, Value};
+use gdcm_study::decisions::setting::Setting;
 use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_study::{Analysis, ConditionAnalysis, Edit};
 
 use super::settings_session::SettingsSession;

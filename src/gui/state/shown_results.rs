@@ -11,7 +11,7 @@
 //! | `analysis`                     | displayed dataset                           | may be older |
 //! | `outcome`, `shown`             | displayed dataset and condition             | may be older |
 //! | `toggles`                      | displayed result                            | its own     |
-//! | `curves`                       | displayed dataset and condition             | may be older |
+//! | `responses`                    | displayed dataset and condition             | may be older |
 //! | `modes`                        | displayed condition                         | independent |
 //! | `across`, `requirements`       | displayed dataset                           | may be older |
 //! | `assessment`                   | displayed dataset and choice                | may be older |
@@ -118,12 +118,12 @@ impl State {
     }
 
     /// Returns the displayed condition's frequency responses; `None` until they are computed.
-    pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
-        let (job, curves) = self.results.curves.as_ref()?;
+    pub fn responses(&self) -> Option<&Arc<ConditionCurves>> {
+        let (job, responses) = self.results.curves.as_ref()?;
         if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
             return None;
         }
-        Some(curves)
+        Some(responses)
     }
 
     /// Returns the message shown when curves are missing or being recomputed.
@@ -131,7 +131,7 @@ impl State {
         let results = &self.results;
         if results.is_behind() {
             Some(results.absence())
-        } else if self.curves().is_some() {
+        } else if self.responses().is_some() {
             None
         } else if results.background.stopped {
             Some("stopped; choose Compute")

@@ -3,8 +3,9 @@
 
 use egui::Role;
 
-use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting::{Kind, Setting};
 use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_words::setting_words::setting_words;
 
 use super::setting_controls::{SettingControls, number_field};
@@ -63,19 +64,14 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws both range ends. The program determines an optional range (`nothing` is then
-    /// `Some`) unless it is set by hand.
+    /// Draws both range ends. The program determines a [`Kind::Range`], but not the band, unless it
+    /// is set by hand.
     ///
     /// A typed or dragged end takes precedence over a click on "auto", which acts as in
     /// [`Self::automatic_number_ui`]. An invalid range is refused with a message if an end was
     /// typed, and ignored if it was dragged.
     pub(super) fn range_ui(&mut self, setting: &'static Setting, value: Value) {
-        let Kind::Range {
-            range: [least, most],
-            nothing,
-            ..
-        } = setting.kind
-        else {
+        let Some([least, most]) = setting.kind.range() else {
             return;
         };
         let Some(Value::Range([lower, upper])) = self.shown_value(setting, value) else {
@@ -89,7 +85,7 @@ impl SettingControls<'_, '_> {
             self.small_ui(setting.unit.shown);
         }
         let mut switched = None;
-        if nothing.is_some() {
+        if matches!(setting.kind, Kind::Range { .. }) {
             switched = self.automatic_ui(setting, value);
         }
         if low.is_dragged || high.is_dragged {

@@ -1,11 +1,13 @@
-//! Curves over frequency in the displayed condition: where they come from (`condition_source`), how
-//! they are drawn (`bode_options`), and what the pointer adds to them (`with_interaction`).
+//! Curves over frequency in the displayed condition: their data (`condition_source`), the engineer's
+//! choices (`bode_options`), and what the window alone adds (`with_interaction`): the highlight
+//! under the pointer, the effect of a click, and a label on results from older settings.
 //!
 //! Computing a curve's shape (magnitude and continuous phase) costs most of the time, and does not
 //! depend on the options. The shapes are therefore cached: for each response in
-//! `FrequencyPlots::shapes`, for the error plot in `FrequencyPlots::errors`. The caches check for
-//! themselves whether their shapes belong to the given responses, and recompute them if not.
+//! `FrequencyPlots::shapes`, for the error plot in `FrequencyPlots::errors`. A cache that is used
+//! checks for itself whether its shapes belong to the given responses, and recomputes them if not.
 
+use std::mem;
 use std::sync::Arc;
 
 use gdcm_model::dataset::{BundleKind, ModelId, Pair};
@@ -14,11 +16,16 @@ use gdcm_plot::figure::bode::BodeOptions;
 
 use super::variant_analyses::overlaid_analysis;
 use crate::gui::plot::{BodeCurve, CurveId};
+use crate::gui::state::frequency_plots::FrequencyPlots;
 use crate::gui::state::window_state::State;
 
 /// Returns the data for all curves in the displayed condition: the study, the condition's result,
 /// the schedule, the models' responses and the overlaid variant's result, if any. `None` until the
 /// responses are available.
+///
+/// The schedule comes from the analysis of all conditions (`State::analysis`). The condition's own
+/// result (`State::shown`) is complete earlier, and may then belong to newer settings than the
+/// schedule; [`with_interaction`] labels the scheduled curve accordingly.
 pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let mut schedule = None;
     if let Some(analysis) = state.analysis() {
@@ -34,7 +41,7 @@ pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<
         study: &state.study,
         analysis: state.shown(),
         schedule,
-        curves: state.curves()?,
+        curves: state.responses()?,
         variant,
     })
 }
@@ -70,10 +77,14 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
 }
 
 /// Returns all curves for a response in the displayed condition, with the engineer's options; empty
-/// until the responses are available. Drops cached shapes that belong to other responses than the
-/// displayed condition's, because each cache keeps its responses in memory.
+/// until the responses are available.
+///
+/// Every cache keeps the responses of its condition in memory, and is checked only when its own
+/// curves are drawn. The caches for all pairs are therefore dropped here if they belong to other
+/// responses than the displayed condition's. [`plain_curves`] leaves this to the next Bode plot;
+/// [`error_curves`] has a single cache for all pairs.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
-    let responses = state.curves().map(Arc::clone);
+    let responses = state.responses().map(Arc::clone);
     state.display.frequency.keep_shapes_of(responses.as_ref());
     let options = bode_options(state);
     let curves = response_curves(state, pair, &options);
@@ -89,33 +100,40 @@ pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
 
 /// Returns a response's curves, made with the cached shapes for that response.
 fn response_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
-    // The source borrows the whole state: the cache is taken out of it, and put back afterwards.
-    let mut cache = state
-        .display
-        .frequency
-        .shapes
-        .remove(&pair)
-        .unwrap_or_default();
-    let curves = match condition_source(state) {
-        Some(source) => source.response_curves(pair, options, &mut cache),
-        None => Vec::new(),
-    };
-    state.display.frequency.shapes.insert(pair, cache);
-    curves
+    with_cache(
+        state,
+        |plots| plots.shapes.entry(pair).or_default(),
+        |source, cache| source.response_curves(pair, options, cache),
+    )
 }
 
 /// Returns a response's error curves in the displayed condition, for drawing and for fitting the
 /// axes; empty until the responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
-    // The source borrows the whole state: the cache is taken out of it, and put back afterwards.
-    let mut cache = std::mem::take(&mut state.display.frequency.errors);
-    let curves = match condition_source(state) {
-        Some(source) => source.error_curves(pair, options, &mut cache),
-        None => Vec::new(),
-    };
-    state.display.frequency.errors = cache;
+    let curves = with_cache(
+        state,
+        |plots| &mut plots.errors,
+        |source, cache| source.error_curves(pair, options, cache),
+    );
     let reference = error_reference(&curves);
     with_interaction(state, curves, reference.as_ref())
+}
+
+/// Makes curves from the displayed condition's data, with a cache in the frequency plots; empty
+/// until the responses are available.
+fn with_cache<C: Default>(
+    state: &mut State,
+    cache_in: impl Fn(&mut FrequencyPlots) -> &mut C,
+    curves_from: impl FnOnce(&ConditionSource<'_>, &mut C) -> Vec<BodeCurve>,
+) -> Vec<BodeCurve> {
+    // The source borrows the whole state: the cache is taken out of it, and put back afterwards.
+    let mut cache = mem::take(cache_in(&mut state.display.frequency));
+    let curves = match condition_source(state) {
+        Some(source) => curves_from(&source, &mut cache),
+        None => Vec::new(),
+    };
+    *cache_in(&mut state.display.frequency) = cache;
+    curves
 }
 
 /// Returns the identified model among the error curves: its error is zero everywhere, and the other
@@ -131,9 +149,9 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Adds the parts that depend on the pointer and on running computations: a label for a scheduled
-/// curve from older settings, and for each model its highlight and what a click on it does.
-/// `reference` is the model with which error curves are compared; it cannot be rejected.
+/// Adds the parts that depend on the pointer and on running computations: for each model its
+/// highlight and the effect of a click on it; for the scheduled curve a label, if the schedule
+/// belongs to older settings than the condition's result. `reference` is the model with which error curves are compared; it cannot be rejected.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,

@@ -45,7 +45,7 @@ pub fn error_view_ui(
     };
     let band = state.study.settings.band;
     let mut omega_range = None;
-    if let Some(curves) = state.curves()
+    if let Some(curves) = state.responses()
         && let (Some(first), Some(last)) = (curves.grid.omega().first(), curves.grid.omega().last())
     {
         omega_range = Some((*first, *last));

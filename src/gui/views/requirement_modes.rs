@@ -43,7 +43,7 @@ pub(super) fn modes_detail_ui(
     commands: &mut Vec<Command>,
 ) {
     let condition = state.condition().id();
-    if let Some(why) = requirements.no_modes(condition) {
+    if let Some(why) = requirements.missing_modes_reason(condition) {
         ui.label(palette.dim(missing_reason_text(why)));
         return;
     }

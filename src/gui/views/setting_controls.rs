@@ -9,8 +9,9 @@ use egui::{
     WidgetInfo, vec2,
 };
 
-use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting::{Kind, Setting, Words};
 use gdcm_study::decisions::setting_table;
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_words::setting_words::setting_words;
 
 use crate::gui::commands::command::Command;
@@ -167,7 +168,7 @@ impl SettingControls<'_, '_> {
                 Some(initial) => self.threshold_ui(setting, value, initial, range),
                 None => self.automatic_number_ui(setting, value, range),
             },
-            (Kind::Range { .. }, value) => self.range_ui(setting, value),
+            (Kind::Range { .. } | Kind::Band { .. }, value) => self.range_ui(setting, value),
             (Kind::Flag { .. }, Value::Flag(flag)) => self.flag_ui(setting, flag),
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
                 self.list_ui(setting, index, words);
@@ -185,12 +186,12 @@ impl SettingControls<'_, '_> {
     }
 
     /// Draws the choices in a list; pointing at a choice explains it.
-    fn list_ui(&mut self, setting: &'static Setting, chosen: usize, texts: &[[&'static str; 2]]) {
+    fn list_ui(&mut self, setting: &'static Setting, chosen: usize, texts: &[Words]) {
         let words = setting_words(setting);
         let mut clicked = None;
         let mut pointed = None;
         let current = match texts.get(chosen) {
-            Some([_, text]) => *text,
+            Some(text) => text.sentence,
             None => "…",
         };
         self.explained(words.help, |ui| {
@@ -198,8 +199,8 @@ impl SettingControls<'_, '_> {
                 .selected_text(current)
                 .width(60.0)
                 .show_ui(ui, |ui| {
-                    for (index, [_, text]) in texts.iter().enumerate() {
-                        let entry = ui.selectable_label(index == chosen, *text);
+                    for (index, text) in texts.iter().enumerate() {
+                        let entry = ui.selectable_label(index == chosen, text.sentence);
                         if entry.hovered() {
                             pointed = words.meanings.get(index).copied();
                         }
@@ -241,7 +242,7 @@ impl SettingControls<'_, '_> {
             .rect(frame, 6.0, palette.background, outline, inside);
         let inner = frame.shrink(2.0);
         let width = inner.width() / texts.len() as f32;
-        for (index, [short, long]) in texts.iter().enumerate() {
+        for (index, text) in texts.iter().enumerate() {
             let corner = inner.min + vec2(width * index as f32, 0.0);
             let place = Rect::from_min_size(corner, vec2(width, inner.height()));
             let id = self.ui.scope_id().with((words.label, index));
@@ -265,8 +266,8 @@ impl SettingControls<'_, '_> {
             let at = place.center();
             self.ui
                 .painter()
-                .text(at, Align2::CENTER_CENTER, *short, body(), color);
-            let name = format!("{}: {long}", words.label);
+                .text(at, Align2::CENTER_CENTER, text.option, body(), color);
+            let name = format!("{}: {}", words.label, text.sentence);
             let response = named_switch(response, Role::RadioButton, is_chosen, name);
             if response.clicked() && !is_chosen {
                 self.set(setting, Value::Choice(index));

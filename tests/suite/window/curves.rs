@@ -185,7 +185,7 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
         study: &state(&window).study,
         analysis: state(&window).shown(),
         schedule: None,
-        curves: state(&window).curves().unwrap(),
+        curves: state(&window).responses().unwrap(),
         variant: None,
     };
     let rules = source.error_references(

@@ -160,7 +160,7 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
             .condition()
             .position(BundleKind::Physics, &name)
             .unwrap();
-        let curves = state.curves().unwrap();
+        let curves = state.responses().unwrap();
         let middle = curves.grid.omega().len() / 2;
         let db = 20.0 * curves.physics[model].curve(pair)[middle].norm().log10();
         state

@@ -16,7 +16,7 @@ fn curves_of_other_conditions_are_not_kept() {
         give(&mut window, SelectionCommand::SelectCondition(id));
         give(&mut window, SelectionCommand::FocusPair(*pair));
         let shapes = &state(&window).display.frequency.shapes;
-        let shown = state(&window).curves().unwrap();
+        let shown = state(&window).responses().unwrap();
         assert!(!shapes.is_empty());
         for (pair, cache) in shapes {
             assert!(cache.is_from(shown), "{pair:?} of condition {id}");

@@ -158,7 +158,7 @@ pub(crate) fn settle(window: &mut Window) {
         let state = state(window);
         let drawn = !state.display.frequency.drawn.is_empty()
             || !state.display.layout.arrangement.is_shown(View::Bode);
-        let shown = state.curves().is_some() && drawn;
+        let shown = state.responses().is_some() && drawn;
         !state.results.is_waiting() && shown && state.opening.is_none()
     });
     window.run_steps(2);

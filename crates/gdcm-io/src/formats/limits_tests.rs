@@ -83,11 +83,8 @@ fn setting_rows() -> String {
 }
 
 fn setting_row(setting: &Setting) -> Option<String> {
-    let ([least, greatest], is_whole) = match setting.kind {
-        Kind::Number { range, whole, .. } => (range, whole),
-        Kind::Optional { range, .. } | Kind::Range { range, .. } => (range, false),
-        _ => return None,
-    };
+    let [least, greatest] = setting.kind.range()?;
+    let is_whole = matches!(setting.kind, Kind::Number { whole: true, .. });
     let kind = if is_whole { ", a whole number" } else { "" };
     let unit = if setting.unit.file.is_empty() {
         String::new()

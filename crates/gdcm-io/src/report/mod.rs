@@ -29,7 +29,7 @@ use std::path::Path;
 use gdcm_model::message_text::sanitized;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::results::export_note::{ExportNote, FileSummary};
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Analysis, Engine};
 
@@ -80,7 +80,7 @@ pub struct ReportSubject<'a> {
     /// Model responses to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
     /// Poles of the identified models with their uncertainty, which the dataset does not store.
-    pub known: &'a KnownPoles,
+    pub known: &'a IdentifiedPoles,
 }
 
 /// A report with facts about it, which the export dialog shows before the file is written.

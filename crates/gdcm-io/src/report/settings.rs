@@ -31,7 +31,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
         let words = if *row == setting_table::GAIN_SOURCE {
             gain_source_text(settings)
         } else {
-            row.words(settings)
+            row.current_text(settings)
         };
         facts.push((capital(row.name), words));
     }

@@ -10,7 +10,8 @@ use super::choices::{BundleChoice, ConditionChoice};
 use super::edit_refusal::{EditRefusal, check_length};
 use super::physics_settings::ParameterDecision;
 use super::requirement_settings::{RequirementPart, RequirementSettings};
-use super::setting::{Setting, Value};
+use super::setting::Setting;
+use super::setting_value::Value;
 use super::signs::SignRole;
 use super::study::Study;
 

@@ -1,18 +1,25 @@
 //! The type [`Setting`], a row in the settings table, and operations on it: setting, checking,
-//! formatting and parsing a value. The table itself is in `setting_table.rs`.
+//! formatting and parsing a value. The table itself is in `setting_table.rs`. Two of its rows:
+//!
+//! ```text
+//! name     confidence level                coherence threshold
+//! key      error_bars.level                coherence_threshold
+//! option   --level 0.95                    --coherence 0.6, --coherence on, --coherence off
+//! unit     % shown, factor 100             none
+//! kind     number from 0.5 to 0.999        number from 0 to 1, or no value: "off", "not used"
+//! control  on its own line, one decimal    on its own line, if the dataset has coherences
+//! ```
+//!
+//! `--coherence on` sets the default threshold (`on` in [`Kind::Optional`]). An option with a value
+//! in `bare` may be given without an argument: `--schedule-delays` is `--schedule-delays=always`.
 
-use gdcm_method::correction::delta::GainSource;
-use gdcm_method::correction::{GainBounds, GainObjective};
-use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
-use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
 use gdcm_model::dataset::Band;
+use gdcm_model::dataset::band::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::number_format::{number, six_digits};
-use gdcm_model::response::LeadOrder;
 
 use super::edit_refusal::EditRefusal;
-use super::physics_settings::PhysicsCorrection;
-use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
+use super::setting_value::Value;
+use super::settings::Settings;
 use super::study::Study;
 
 /// One setting: a row in [`SETTINGS`](super::setting_table::SETTINGS).
@@ -44,6 +51,22 @@ pub struct Unit {
     pub scale: f64,
 }
 
+/// The words for a value that is not a number.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// Word on the command line.
+    pub option: &'static str,
+    /// Word in a sentence and in the window.
+    pub sentence: &'static str,
+}
+
+impl Words {
+    /// Creates the words on the command line and in a sentence.
+    pub const fn new(option: &'static str, sentence: &'static str) -> Self {
+        Self { option, sentence }
+    }
+}
+
 /// A setting's type and range, with access to its field in [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
@@ -56,8 +79,8 @@ pub enum Kind {
     /// A number within a range, or no value.
     Optional {
         range: [f64; 2],
-        /// The words for no value: on the command line, and in a sentence.
-        nothing: [&'static str; 2],
+        /// The words for no value.
+        nothing: Words,
         /// Number that the argument "on" sets; `None` if "on" is not accepted.
         on: Option<f64>,
         get: fn(&Settings) -> Option<f64>,
@@ -66,24 +89,43 @@ pub enum Kind {
     /// A lower and an upper number within a range, or no value.
     Range {
         range: [f64; 2],
-        /// The words for no value: on the command line, and in a sentence; `None` where a value is
-        /// required.
-        nothing: Option<[&'static str; 2]>,
+        /// The words for no value.
+        nothing: Words,
         get: fn(&Settings) -> Option<[f64; 2]>,
-        set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
+        set: fn(&mut Settings, Option<[f64; 2]>),
+    },
+    /// The comparison band, which always has a value. [`Band::new`] checks its ends, and describes
+    /// their range in the refusal.
+    Band {
+        get: fn(&Settings) -> Band,
+        set: fn(&mut Settings, Band),
     },
     Flag {
-        /// The words for no and yes, in a sentence.
-        words: [&'static str; 2],
+        /// The words in a sentence.
+        no: &'static str,
+        yes: &'static str,
         get: fn(&Settings) -> bool,
         set: fn(&mut Settings, bool),
     },
     Choice {
-        /// For each choice: word on the command line, and word in a sentence and in the window.
-        words: &'static [[&'static str; 2]],
+        /// The words for each choice.
+        words: &'static [Words],
         get: fn(&Settings) -> usize,
         set: fn(&mut Settings, usize),
     },
+}
+
+impl Kind {
+    /// Returns the range of a number or of both ends; `None` for flags and choices.
+    pub fn range(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Number { range, .. }
+            | Self::Optional { range, .. }
+            | Self::Range { range, .. } => Some(range),
+            Self::Band { .. } => Some([LEAST_OMEGA, GREATEST_OMEGA]),
+            Self::Flag { .. } | Self::Choice { .. } => None,
+        }
+    }
 }
 
 /// A setting's control in the window.
@@ -123,128 +165,6 @@ pub enum Place {
     Elsewhere,
 }
 
-/// A setting's value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// A number in the file unit.
-    Number(f64),
-    /// No value, for settings that allow it.
-    Nothing,
-    Range([f64; 2]),
-    Flag(bool),
-    Choice(usize),
-}
-
-/// A type whose values are a setting's choices.
-pub trait Choice: Copy + PartialEq + 'static {
-    /// All values, in the same order as the words in [`Kind::Choice`].
-    const ALL: &'static [Self];
-
-    /// Returns the value's index in [`Self::ALL`].
-    fn index(self) -> usize {
-        Self::ALL
-            .iter()
-            .position(|choice| *choice == self)
-            .unwrap_or_default()
-    }
-}
-
-impl Choice for PhaseCorrection {
-    const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
-}
-
-impl Choice for CouplingCorrection {
-    const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
-}
-
-impl Choice for PhysicsCorrection {
-    const ALL: &'static [Self] = &[Self::Off, Self::Named, Self::All, Self::ByHand];
-}
-
-impl Choice for DelayFrom {
-    const ALL: &'static [Self] = &[Self::Median, Self::Band];
-}
-
-impl Choice for CostAverage {
-    const ALL: &'static [Self] = &[Self::Median, Self::Mean];
-}
-
-impl Choice for GainObjective {
-    const ALL: &'static [Self] = &[Self::Ratio, Self::Decibel];
-}
-
-impl Choice for GainSource {
-    const ALL: &'static [Self] = &[Self::Representatives, Self::MeanOfPairs];
-}
-
-impl Choice for LeadOrder {
-    const ALL: &'static [Self] = &[Self::Second, Self::First];
-}
-
-impl Choice for ScheduleKind {
-    const ALL: &'static [Self] = &SCHEDULE_KINDS;
-}
-
-impl Choice for DelayScheduling {
-    const ALL: &'static [Self] = &[Self::Automatic, Self::Always, Self::Never];
-}
-
-impl Choice for ScheduledQuantity {
-    const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
-}
-
-impl Choice for Option<SecondVariable> {
-    const ALL: &'static [Self] = &[
-        None,
-        Some(SecondVariable::Altitude),
-        Some(SecondVariable::Mass),
-    ];
-}
-
-impl<C: Choice> From<C> for Value {
-    fn from(choice: C) -> Self {
-        Self::Choice(choice.index())
-    }
-}
-
-impl From<f64> for Value {
-    fn from(value: f64) -> Self {
-        Self::Number(value)
-    }
-}
-
-impl From<usize> for Value {
-    fn from(count: usize) -> Self {
-        Self::Number(count as f64)
-    }
-}
-
-impl From<bool> for Value {
-    fn from(flag: bool) -> Self {
-        Self::Flag(flag)
-    }
-}
-
-impl From<Option<f64>> for Value {
-    fn from(value: Option<f64>) -> Self {
-        value.map_or(Self::Nothing, Self::Number)
-    }
-}
-
-impl From<Band> for Value {
-    fn from(band: Band) -> Self {
-        Self::Range([band.min(), band.max()])
-    }
-}
-
-impl From<Option<GainBounds>> for Value {
-    fn from(bounds: Option<GainBounds>) -> Self {
-        bounds.map_or(Self::Nothing, |bounds| {
-            Self::Range([bounds.lower, bounds.upper])
-        })
-    }
-}
-
 impl PartialEq for Setting {
     fn eq(&self, other: &Self) -> bool {
         self.key == other.key
@@ -257,7 +177,11 @@ impl Setting {
         match self.kind {
             Kind::Number { get, .. } => Value::Number(get(settings)),
             Kind::Optional { get, .. } => get(settings).into(),
-            Kind::Range { get, .. } => get(settings).map_or(Value::Nothing, Value::Range),
+            Kind::Range { get, .. } => match get(settings) {
+                Some(ends) => Value::Range(ends),
+                None => Value::Nothing,
+            },
+            Kind::Band { get, .. } => get(settings).into(),
             Kind::Flag { get, .. } => Value::Flag(get(settings)),
             Kind::Choice { get, .. } => Value::Choice(get(settings)),
         }
@@ -273,8 +197,11 @@ impl Setting {
             (Kind::Number { set, .. }, Value::Number(value)) => set(settings, value),
             (Kind::Optional { set, .. }, Value::Number(value)) => set(settings, Some(value)),
             (Kind::Optional { set, .. }, _) => set(settings, None),
-            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends))?,
-            (Kind::Range { set, .. }, _) => set(settings, None)?,
+            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends)),
+            (Kind::Range { set, .. }, _) => set(settings, None),
+            (Kind::Band { set, .. }, Value::Range([min, max])) => {
+                set(settings, Band::new(min, max)?);
+            }
             (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
             (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
             // `check` refuses a value of another type.
@@ -295,20 +222,17 @@ impl Setting {
             (Kind::Optional { range, .. }, Value::Number(found)) => {
                 self.check_number(found, range, false)
             }
-            (Kind::Range { range, nothing, .. }, Value::Range(ends)) => {
-                if nothing.is_none() {
-                    // The band must have a value; [`Band::new`] describes its range in the refusal.
-                    Band::new(ends[0], ends[1])?;
-                    return Ok(());
-                }
-                self.check_ends(ends, range)
+            (Kind::Range { range, .. }, Value::Range(ends)) => self.check_ends(ends, range),
+            (Kind::Band { .. }, Value::Range([min, max])) => {
+                Band::new(min, max)?;
+                Ok(())
             }
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
                 let range = [0.0, words.len() as f64 - 1.0];
                 self.check_range("a whole number", index as f64, range)
             }
-            (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
-            (Kind::Range { nothing, .. }, Value::Nothing) if nothing.is_some() => Ok(()),
+            (Kind::Flag { .. }, Value::Flag(_))
+            | (Kind::Optional { .. } | Kind::Range { .. }, Value::Nothing) => Ok(()),
             (Kind::Flag { .. }, _) => Err(EditRefusal::NotAValue {
                 setting: self.name,
                 expected: "yes or no".to_owned(),
@@ -363,7 +287,7 @@ impl Setting {
     }
 
     /// Formats the setting's value in `settings`.
-    pub fn words(&self, settings: &Settings) -> String {
+    pub fn current_text(&self, settings: &Settings) -> String {
         self.text(self.value(settings))
     }
 
@@ -379,16 +303,12 @@ impl Setting {
             (_, Value::Range([lower, upper])) => {
                 format!("{} to {}{unit}", shown(lower), shown(upper))
             }
-            (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
-            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
-            (Kind::Optional { nothing, .. }, _) => nothing[1].to_owned(),
-            (
-                Kind::Range {
-                    nothing: Some(nothing),
-                    ..
-                },
-                _,
-            ) => nothing[1].to_owned(),
+            (Kind::Flag { yes, .. }, Value::Flag(true)) => yes.to_owned(),
+            (Kind::Flag { no, .. }, Value::Flag(false)) => no.to_owned(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index].sentence.to_owned(),
+            (Kind::Optional { nothing, .. } | Kind::Range { nothing, .. }, _) => {
+                nothing.sentence.to_owned()
+            }
             _ => String::new(),
         }
     }
@@ -399,9 +319,9 @@ impl Setting {
             Kind::Number { .. } => "NUMBER".to_owned(),
             Kind::Optional { nothing, on, .. } => {
                 let on = if on.is_some() { "|on" } else { "" };
-                format!("{}{on}|NUMBER", nothing[0])
+                format!("{}{on}|NUMBER", nothing.option)
             }
-            Kind::Range { .. } => "LO HI".to_owned(),
+            Kind::Range { .. } | Kind::Band { .. } => "LO HI".to_owned(),
             Kind::Flag { .. } => String::new(),
             Kind::Choice { words, .. } => command_line_words(words).join("|"),
         }
@@ -417,10 +337,11 @@ impl Setting {
             (_, Value::Number(value)) => vec![value.to_string()],
             (_, Value::Range(ends)) => ends.map(|end| end.to_string()).to_vec(),
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
-                vec![words.get(index)?[0].to_owned()]
+                vec![words.get(index)?.option.to_owned()]
             }
-            (Kind::Optional { nothing, .. }, _) => vec![nothing[0].to_owned()],
-            (Kind::Range { nothing, .. }, _) => vec![nothing?[0].to_owned()],
+            (Kind::Optional { nothing, .. } | Kind::Range { nothing, .. }, _) => {
+                vec![nothing.option.to_owned()]
+            }
             _ => return None,
         };
         // The argument of an option that may stand alone is joined to it.
@@ -432,8 +353,10 @@ impl Setting {
         Some(words)
     }
 
-    /// Parses the value from the command line; a flag is set by its presence. Only the range of
-    /// whole numbers is checked here; [`Self::check`] checks the others.
+    /// Parses the value from the command line; a flag is set by its presence.
+    ///
+    /// The range of a whole number is checked here, so that its message states both type and range;
+    /// the other ranges are checked when the value is set ([`Self::check`]).
     ///
     /// # Errors
     /// The expected values and the text found.
@@ -448,13 +371,9 @@ impl Setting {
                 };
                 Ok(Value::Number(number))
             }
-            (Kind::Optional { nothing, on, .. }, [text]) => read_optional(text, nothing[0], on),
-            (Kind::Range { nothing, .. }, [word])
-                if nothing.is_some_and(|nothing| nothing[0] == *word) =>
-            {
-                Ok(Value::Nothing)
-            }
-            (Kind::Range { .. }, [lower, upper]) => {
+            (Kind::Optional { nothing, on, .. }, [text]) => read_optional(text, nothing.option, on),
+            (Kind::Range { nothing, .. }, [word]) if nothing.option == *word => Ok(Value::Nothing),
+            (Kind::Range { .. } | Kind::Band { .. }, [lower, upper]) => {
                 Ok(Value::Range([read_number(lower)?, read_number(upper)?]))
             }
             (Kind::Choice { words, .. }, [text]) => read_choice(text, words),
@@ -496,13 +415,13 @@ fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, St
     {
         return Ok(Value::Number(on));
     }
-    text.parse().map(Value::Number).map_err(|_| {
+    text.trim().parse().map(Value::Number).map_err(|_| {
         let on = if on.is_some() { ", on" } else { "" };
         format!("expected {nothing}{on} or a number, found {text}")
     })
 }
 
-fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
+fn read_choice(text: &str, words: &[Words]) -> Result<Value, String> {
     let words = command_line_words(words);
     if let Some(index) = words.iter().position(|word| *word == text) {
         return Ok(Value::Choice(index));
@@ -513,6 +432,28 @@ fn read_choice(text: &str, words: &[[&str; 2]]) -> Result<Value, String> {
 }
 
 /// Returns the words for the choices on the command line.
-fn command_line_words<'a>(words: &[[&'a str; 2]]) -> Vec<&'a str> {
-    words.iter().map(|[option, _]| *option).collect()
+fn command_line_words(words: &[Words]) -> Vec<&'static str> {
+    words.iter().map(|word| word.option).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decisions::setting_table::{BAND, COHERENCE, DELAY_UPPER};
+
+    #[test]
+    fn spaces_around_a_number_are_ignored_also_where_the_number_is_optional() {
+        assert_eq!(DELAY_UPPER.read(&[" 0.05 "]), Ok(Value::Number(0.05)));
+        assert_eq!(COHERENCE.read(&["0.5 "]), Ok(Value::Number(0.5)));
+        assert!(DELAY_UPPER.read(&["0.05 s"]).is_err());
+    }
+
+    #[test]
+    fn the_band_needs_two_ends() {
+        assert!(BAND.check(Value::Range([0.5, 12.0])).is_ok());
+        assert!(BAND.check(Value::Range([12.0, 0.5])).is_err());
+        assert!(BAND.check(Value::Nothing).is_err());
+        assert!(BAND.read(&["auto"]).is_err());
+        assert_eq!(BAND.option_words(Value::Nothing), None);
+    }
 }

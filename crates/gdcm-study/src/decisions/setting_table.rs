@@ -6,13 +6,13 @@ use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
-use gdcm_model::dataset::band::{GREATEST_OMEGA, LEAST_OMEGA};
-use gdcm_model::dataset::{Band, limits};
+use gdcm_model::dataset::limits;
 use gdcm_model::response::LeadOrder;
 
 use super::edit_refusal::EditRefusal;
 use super::physics_settings::PhysicsCorrection;
-use super::setting::{Choice, Control, Digits, Kind, Place, Setting, Unit};
+use super::setting::{Control, Digits, Kind, Place, Setting, Unit, Words};
+use super::setting_value::Choice;
 use super::settings::{
     CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
 };
@@ -38,7 +38,8 @@ const DEFAULT: Setting = Setting {
         scale: 1.0,
     },
     kind: Kind::Flag {
-        words: ["", ""],
+        no: "",
+        yes: "",
         get: |_| false,
         set: |_, _| {},
     },
@@ -88,9 +89,9 @@ pub static PHASE: Setting = Setting {
     option: "--phase",
     kind: Kind::Choice {
         words: &[
-            ["none", "none"],
-            ["delay", "delay"],
-            ["lead", "delay or lead"],
+            Words::new("none", "none"),
+            Words::new("delay", "delay"),
+            Words::new("lead", "delay or lead"),
         ],
         get: |settings| settings.phase.index(),
         set: |settings, index| settings.phase = PhaseCorrection::ALL[index],
@@ -109,7 +110,10 @@ pub static DELAY_FROM: Setting = Setting {
     key: "delay_from",
     option: "--delay-from",
     kind: Kind::Choice {
-        words: &[["median", "median"], ["band", "line over the band"]],
+        words: &[
+            Words::new("median", "median"),
+            Words::new("band", "line over the band"),
+        ],
         get: |settings| settings.delay_from.index(),
         set: |settings, index| settings.delay_from = DelayFrom::ALL[index],
     },
@@ -127,7 +131,7 @@ pub static LEAD_ORDER: Setting = Setting {
     key: "lead.order",
     option: "--lead-order",
     kind: Kind::Choice {
-        words: &[["2", "2"], ["1", "1"]],
+        words: &[Words::new("2", "2"), Words::new("1", "1")],
         get: |settings| settings.lead.order.index(),
         set: |settings, index| settings.lead.order = LeadOrder::ALL[index],
     },
@@ -190,9 +194,9 @@ pub static COUPLINGS: Setting = Setting {
     option: "--couplings",
     kind: Kind::Choice {
         words: &[
-            ["none", "none"],
-            ["mixing", "mixing"],
-            ["feedback", "mixing and feedback"],
+            Words::new("none", "none"),
+            Words::new("mixing", "mixing"),
+            Words::new("feedback", "mixing and feedback"),
         ],
         get: |settings| settings.couplings.index(),
         set: |settings, index| settings.couplings = CouplingCorrection::ALL[index],
@@ -212,10 +216,10 @@ pub static PHYSICS: Setting = Setting {
     option: "--physics",
     kind: Kind::Choice {
         words: &[
-            ["off", "off"],
-            ["named", "the named ones"],
-            ["all", "all"],
-            ["by-hand", "set by hand"],
+            Words::new("off", "off"),
+            Words::new("named", "the named ones"),
+            Words::new("all", "all"),
+            Words::new("by-hand", "set by hand"),
         ],
         get: |settings| settings.physics.index(),
         set: |settings, index| settings.physics = PhysicsCorrection::ALL[index],
@@ -245,15 +249,9 @@ pub static BAND: Setting = Setting {
         shown: "rad/s",
         scale: 1.0,
     },
-    kind: Kind::Range {
-        range: [LEAST_OMEGA, GREATEST_OMEGA],
-        nothing: None,
-        get: |settings| Some([settings.band.min(), settings.band.max()]),
-        set: |settings, ends| {
-            let [min, max] = ends.unwrap_or([settings.band.min(), settings.band.max()]);
-            settings.band = Band::new(min, max)?;
-            Ok(())
-        },
+    kind: Kind::Band {
+        get: |settings| settings.band,
+        set: |settings, band| settings.band = band,
     },
     control: Control {
         place: Place::Line,
@@ -314,7 +312,7 @@ pub static GAIN_BOUNDS: Setting = Setting {
     option: "--gain-bounds",
     kind: Kind::Range {
         range: [1e-6, 1e6],
-        nothing: Some(["auto", "by the quantile"]),
+        nothing: Words::new("auto", "by the quantile"),
         get: |settings| {
             settings
                 .gain_bounds
@@ -322,7 +320,6 @@ pub static GAIN_BOUNDS: Setting = Setting {
         },
         set: |settings, ends| {
             settings.gain_bounds = ends.map(|[lower, upper]| GainBounds { lower, upper });
-            Ok(())
         },
     },
     control: Control {
@@ -346,7 +343,7 @@ pub static DELAY_UPPER: Setting = Setting {
     },
     kind: Kind::Optional {
         range: [0.0, 1e3],
-        nothing: ["auto", "by the quantile"],
+        nothing: Words::new("auto", "by the quantile"),
         on: None,
         get: |settings| settings.delay_upper_s,
         set: |settings, upper_s| settings.delay_upper_s = upper_s,
@@ -389,7 +386,10 @@ pub static COST_AVERAGE: Setting = Setting {
     key: "cost_average",
     option: "--cost-average",
     kind: Kind::Choice {
-        words: &[["median", "J median"], ["mean", "J mean"]],
+        words: &[
+            Words::new("median", "J median"),
+            Words::new("mean", "J mean"),
+        ],
         get: |settings| settings.cost_average.index(),
         set: |settings, index| settings.cost_average = CostAverage::ALL[index],
     },
@@ -406,7 +406,7 @@ pub static GAIN_OBJECTIVE: Setting = Setting {
     key: "gain_objective",
     option: "--gain-objective",
     kind: Kind::Choice {
-        words: &[["ratio", "ratio"], ["dB", "dB"]],
+        words: &[Words::new("ratio", "ratio"), Words::new("dB", "dB")],
         get: |settings| settings.gain_objective.index(),
         set: |settings, index| settings.gain_objective = GainObjective::ALL[index],
     },
@@ -425,8 +425,8 @@ pub static GAIN_SOURCE: Setting = Setting {
     option: "--gain-from",
     kind: Kind::Choice {
         words: &[
-            ["representatives", "representatives"],
-            ["mean", "mean of pairs"],
+            Words::new("representatives", "representatives"),
+            Words::new("mean", "mean of pairs"),
         ],
         get: |settings| settings.gain_source.index(),
         set: |settings, index| settings.gain_source = GainSource::ALL[index],
@@ -491,7 +491,7 @@ pub static COHERENCE: Setting = Setting {
     option: "--coherence",
     kind: Kind::Optional {
         range: [0.0, 1.0],
-        nothing: ["off", "not used"],
+        nothing: Words::new("off", "not used"),
         on: Some(DEFAULT_COHERENCE),
         get: |settings| settings.coherence_threshold,
         set: |settings, least| settings.coherence_threshold = least,
@@ -513,7 +513,7 @@ pub static AVERAGES: Setting = Setting {
     option: "--averages",
     kind: Kind::Optional {
         range: limits::AVERAGES,
-        nothing: ["auto", "as stated in the files"],
+        nothing: Words::new("auto", "as stated in the files"),
         on: None,
         get: |settings| settings.uncertainty.averages,
         set: |settings, averages| settings.uncertainty.averages = averages,
@@ -533,7 +533,7 @@ pub static WINDOW: Setting = Setting {
     },
     kind: Kind::Optional {
         range: limits::WINDOW_S,
-        nothing: ["auto", "as stated in the files"],
+        nothing: Words::new("auto", "as stated in the files"),
         on: None,
         get: |settings| settings.uncertainty.window_s,
         set: |settings, window_s| settings.uncertainty.window_s = window_s,
@@ -547,7 +547,8 @@ pub static HALF_OVERLAP: Setting = Setting {
     key: "error_bars.half_overlap",
     option: "--half-overlap",
     kind: Kind::Flag {
-        words: ["no", "by half"],
+        no: "no",
+        yes: "by half",
         get: |settings| settings.uncertainty.half_overlap,
         set: |settings, overlap| settings.uncertainty.half_overlap = overlap,
     },
@@ -561,11 +562,11 @@ pub static SCHEDULE: Setting = Setting {
     option: "--degree",
     kind: Kind::Choice {
         words: &[
-            ["0", "constant"],
-            ["1", "degree 1"],
-            ["2", "degree 2"],
-            ["3", "degree 3"],
-            ["table", "table"],
+            Words::new("0", "constant"),
+            Words::new("1", "degree 1"),
+            Words::new("2", "degree 2"),
+            Words::new("3", "degree 3"),
+            Words::new("table", "table"),
         ],
         get: |settings| settings.schedule.kind.index(),
         set: |settings, index| settings.schedule.kind = ScheduleKind::ALL[index],
@@ -583,7 +584,7 @@ pub static SCHEDULED_QUANTITY: Setting = Setting {
     key: "schedule.of",
     option: "--schedule-of",
     kind: Kind::Choice {
-        words: &[["ln-k", "of ln k"], ["k", "of k"]],
+        words: &[Words::new("ln-k", "of ln k"), Words::new("k", "of k")],
         get: |settings| settings.schedule.quantity.index(),
         set: |settings, index| settings.schedule.quantity = ScheduledQuantity::ALL[index],
     },
@@ -602,9 +603,9 @@ pub static SCHEDULE_DELAYS: Setting = Setting {
     bare: Some("always"),
     kind: Kind::Choice {
         words: &[
-            ["automatic", "delays automatic"],
-            ["always", "delays too"],
-            ["never", "no delays"],
+            Words::new("automatic", "delays automatic"),
+            Words::new("always", "delays too"),
+            Words::new("never", "no delays"),
         ],
         get: |settings| settings.schedule_delays.index(),
         set: |settings, index| settings.set_delay_scheduling(DelayScheduling::ALL[index]),
@@ -624,10 +625,10 @@ pub static TAU_DEGREE: Setting = Setting {
     option: "--tau-degree",
     kind: Kind::Choice {
         words: &[
-            ["0", "τ constant"],
-            ["1", "τ degree 1"],
-            ["2", "τ degree 2"],
-            ["3", "τ degree 3"],
+            Words::new("0", "τ constant"),
+            Words::new("1", "τ degree 1"),
+            Words::new("2", "τ degree 2"),
+            Words::new("3", "τ degree 3"),
         ],
         get: |settings| settings.schedule.tau_degree,
         set: |settings, degree| settings.schedule.tau_degree = degree,
@@ -672,9 +673,9 @@ pub static SECOND_VARIABLE: Setting = Setting {
     option: "--second-variable",
     kind: Kind::Choice {
         words: &[
-            ["none", "airspeed only"],
-            ["altitude", "airspeed and altitude"],
-            ["mass", "airspeed and mass"],
+            Words::new("none", "airspeed only"),
+            Words::new("altitude", "airspeed and altitude"),
+            Words::new("mass", "airspeed and mass"),
         ],
         get: |settings| settings.schedule.second.index(),
         set: |settings, index| settings.schedule.second = <Option<SecondVariable>>::ALL[index],

@@ -14,7 +14,7 @@ use crate::execution::Execution;
 use crate::results::analysis::{Analysis, NoResult};
 use crate::results::record_history::{ComparedRecord, NoRecordHistory, RecordHistory};
 use crate::results::record_simulations::time_histories_of;
-use crate::results::required_modes::KnownPoles;
+use crate::results::required_modes::IdentifiedPoles;
 use crate::results::requirements::{Requirements, requirements_of};
 use crate::results::test_input_responses::TestAnswers;
 use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistories};
@@ -29,7 +29,7 @@ pub struct RequirementsJob {
     pub uncertainty: Option<Shared<Uncertainty>>,
     /// Requirement settings, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
-    pub known: KnownPoles,
+    pub known: IdentifiedPoles,
 }
 
 impl Job for RequirementsJob {

@@ -28,8 +28,8 @@ use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, BundleKind, Dynamics, Pair};
 use gdcm_model::response::GainDelay;
 
-use super::asked_condition::RequestedCondition;
 use super::model_swap::ModelSwap;
+use super::requested_condition::RequestedCondition;
 use super::required_bandwidth::{
     BandwidthFinding, METRICS, MetricValues, NoBandwidth, metric_values, metrics,
 };
@@ -37,11 +37,11 @@ use super::requirement_role::RequirementRole;
 
 /// Computes a condition's on-axis bandwidths for every role; a response without a bandwidth has the
 /// reason instead.
-pub(crate) fn bandwidth_findings(asked: &RequestedCondition<'_>) -> Vec<BandwidthFinding> {
-    let models = ConditionBandwidths::new(asked);
+pub(crate) fn bandwidth_findings(requested: &RequestedCondition<'_>) -> Vec<BandwidthFinding> {
+    let models = ConditionBandwidths::new(requested);
     let mut findings = Vec::new();
-    for pair in asked.analysis.study.dataset.measuring_pairs().marked() {
-        for role in asked.roles() {
+    for pair in requested.analysis.study.dataset.measuring_pairs().marked() {
+        for role in requested.roles() {
             findings.push(models.finding(pair, role));
         }
     }
@@ -128,7 +128,7 @@ struct MeasuredBandwidth {
 
 /// A condition's models, prepared for bandwidths.
 struct ConditionBandwidths<'a> {
-    asked: &'a RequestedCondition<'a>,
+    requested: &'a RequestedCondition<'a>,
     /// The physics representative's index.
     physics: usize,
     /// The physics representative and the models that replace it in swaps, by index.
@@ -141,17 +141,17 @@ struct ConditionBandwidths<'a> {
 }
 
 impl<'a> ConditionBandwidths<'a> {
-    fn new(asked: &'a RequestedCondition<'a>) -> Self {
-        let band = asked.analysis.study.settings.band;
-        let physics = asked.result.comparison.physics.model;
-        let swaps = swaps_of(asked);
+    fn new(requested: &'a RequestedCondition<'a>) -> Self {
+        let band = requested.analysis.study.settings.band;
+        let physics = requested.result.comparison.physics.model;
+        let swaps = swaps_of(requested);
         let mut used = vec![physics];
         for swap in swaps {
             if swap.bundle == BundleKind::Physics {
                 used.push(swap.model);
             }
         }
-        let models = asked.result.condition.bundle(BundleKind::Physics);
+        let models = requested.result.condition.bundle(BundleKind::Physics);
         let mut plain = BTreeMap::new();
         let mut coupled = BTreeMap::new();
         for index in used {
@@ -160,18 +160,20 @@ impl<'a> ConditionBandwidths<'a> {
                 index,
                 EvaluatedModel::new(Cow::Borrowed(dynamics), None, band),
             );
-            if let Some(dynamics) = coupled_dynamics(asked, index) {
+            if let Some(dynamics) = coupled_dynamics(requested, index) {
                 coupled.insert(index, EvaluatedModel::new(Cow::Owned(dynamics), None, band));
             }
         }
-        let flight = asked.result.representative_model(BundleKind::Identified);
+        let flight = requested
+            .result
+            .representative_model(BundleKind::Identified);
         let identified = EvaluatedModel::new(
             Cow::Borrowed(&flight.dynamics),
             flight.bands.as_deref(),
             band,
         );
         Self {
-            asked,
+            requested,
             physics,
             plain,
             coupled,
@@ -182,19 +184,19 @@ impl<'a> ConditionBandwidths<'a> {
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
         let (output, input) = self
-            .asked
+            .requested
             .analysis
             .study
             .dataset
             .output_and_input_name(pair);
         let mut finding = BandwidthFinding {
-            condition: self.asked.id(),
-            airspeed_kt: self.asked.airspeed_kt(),
+            condition: self.requested.id(),
+            airspeed_kt: self.requested.airspeed_kt(),
             pair,
             output,
             input,
             role,
-            model: self.asked.model_name(role),
+            model: self.requested.model_name(role),
             ..BandwidthFinding::default()
         };
         match self.bandwidth(pair, role) {
@@ -218,7 +220,7 @@ impl<'a> ConditionBandwidths<'a> {
         pair: Pair,
         role: RequirementRole,
     ) -> Result<MeasuredBandwidth, NoBandwidth> {
-        let correction = match self.asked.correction(role) {
+        let correction = match self.requested.correction(role) {
             None => PairCorrection::NONE,
             Some(correction) => PairCorrection::from_correction(correction, pair)
                 .ok_or(NoBandwidth::NetGainNotPositive)?,
@@ -237,7 +239,7 @@ impl<'a> ConditionBandwidths<'a> {
         role: RequirementRole,
         index: usize,
     ) -> Result<&EvaluatedModel<'a>, NoBandwidth> {
-        if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
+        if role == RequirementRole::Physics || self.requested.result.coupled.is_none() {
             return Ok(&self.plain[&index]);
         }
         self.coupled.get(&index).ok_or(NoBandwidth::NotCoupled)
@@ -251,7 +253,7 @@ impl<'a> ConditionBandwidths<'a> {
         correction: PairCorrection,
         evaluation: Evaluation,
     ) -> Result<MeasuredBandwidth, AttitudeResponseError> {
-        let study = &self.asked.analysis.study;
+        let study = &self.requested.analysis.study;
         let band = study.settings.band;
         let channel = &study.dataset.outputs()[pair.output];
         let output = AttitudeOutput::classify(channel)?;
@@ -290,11 +292,11 @@ impl<'a> ConditionBandwidths<'a> {
 
     /// Adds the metrics' intervals; if there are none although a metric is defined, adds why.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
-        let level = self.asked.analysis.study.settings.uncertainty.level;
+        let level = self.requested.analysis.study.settings.uncertainty.level;
         let why = match finding.role {
             RequirementRole::Physics | RequirementRole::Corrected => {
                 self.add_swap_intervals(finding, bandwidth, level);
-                if self.asked.analysis.uncertainty.is_some() {
+                if self.requested.analysis.uncertainty.is_some() {
                     NoBandwidth::NoOtherModel
                 } else {
                     NoBandwidth::BarsNotComputed
@@ -359,7 +361,7 @@ impl<'a> ConditionBandwidths<'a> {
     fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
         let correction = match role {
             RequirementRole::Corrected => {
-                let leads = self.asked.result.correction.leads.as_ref();
+                let leads = self.requested.result.correction.leads.as_ref();
                 PairCorrection::from_figures(swap.figures.as_deref()?, pair, leads)?
             }
             _ => PairCorrection::NONE,
@@ -377,11 +379,11 @@ impl<'a> ConditionBandwidths<'a> {
 }
 
 /// Returns a condition's swaps; empty without error bars.
-fn swaps_of<'a>(asked: &RequestedCondition<'a>) -> &'a [ModelSwap] {
-    let Some(uncertainty) = asked.analysis.uncertainty.as_deref() else {
+fn swaps_of<'a>(requested: &RequestedCondition<'a>) -> &'a [ModelSwap] {
+    let Some(uncertainty) = requested.analysis.uncertainty.as_deref() else {
         return &[];
     };
-    match uncertainty.conditions.get(&asked.id()) {
+    match uncertainty.conditions.get(&requested.id()) {
         Some(condition) => &condition.swaps.swaps,
         None => &[],
     }
@@ -389,10 +391,10 @@ fn swaps_of<'a>(asked: &RequestedCondition<'a>) -> &'a [ModelSwap] {
 
 /// Returns a physics model with the couplings; `None` without couplings, and where they cannot be
 /// applied to it.
-fn coupled_dynamics(asked: &RequestedCondition<'_>, index: usize) -> Option<Dynamics> {
-    asked.result.coupled.as_ref()?;
-    let model = &asked.result.condition.bundle(BundleKind::Physics)[index];
-    let coupled = asked
+fn coupled_dynamics(requested: &RequestedCondition<'_>, index: usize) -> Option<Dynamics> {
+    requested.result.coupled.as_ref()?;
+    let model = &requested.result.condition.bundle(BundleKind::Physics)[index];
+    let coupled = requested
         .result
         .coupled_model(model.state_space()?, Pade::default())
         .ok()?;

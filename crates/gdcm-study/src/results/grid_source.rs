@@ -338,7 +338,7 @@ impl GridSource<'_> {
     /// from flight. Without a value, the first reason that applies: the condition has no modes;
     /// flight does not show this mode; the model has no paired mode; the verdict is uncertain.
     fn mode_cell(&self, condition: ConditionId, name: ModeName, role: RequirementRole) -> RoleCell {
-        if self.requirements.no_modes(condition).is_some() {
+        if self.requirements.missing_modes_reason(condition).is_some() {
             return RoleCell::absent(NotDetermined::NoModes);
         }
         let finding = self

@@ -19,9 +19,21 @@ use super::requirement_role::{RequirementRole, RoleModelError};
 pub struct MissingFinding {
     /// The condition; `None` for all conditions.
     pub condition: Option<ConditionId>,
-    /// Missing item: "all", "scheduled", "modes" or "time histories".
-    pub what: &'static str,
+    pub what: MissingPart,
     pub why: MissingReason,
+}
+
+/// Part of the requirements that is missing; exported by its name in lower case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MissingPart {
+    /// Every result in the condition.
+    All,
+    /// Values with the schedule.
+    Scheduled,
+    Modes,
+    #[serde(rename = "time histories")]
+    TimeHistories,
 }
 
 /// Why a result is missing.

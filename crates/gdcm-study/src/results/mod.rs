@@ -3,7 +3,6 @@
 
 pub mod analysis;
 pub mod applied_physics;
-pub mod asked_condition;
 pub mod assessment_table;
 pub mod caution;
 pub mod channel_time_skew;
@@ -36,6 +35,7 @@ pub mod record_simulations;
 pub mod remark;
 pub mod remark_kind;
 pub mod reported_error;
+pub mod requested_condition;
 pub mod required_bandwidth;
 pub mod required_modes;
 pub mod required_summary;

@@ -21,7 +21,9 @@ use gdcm_model::simulation::{Segment, ValidationSettings, ValidationWindow, vali
 use gdcm_sysid::spectra::preparation::segments_of;
 
 use super::analysis::{Analysis, ConditionAnalysis};
-use super::missing_finding::{MissingFinding, MissingReason, NoRoleModel, NotCompared};
+use super::missing_finding::{
+    MissingFinding, MissingPart, MissingReason, NoRoleModel, NotCompared,
+};
 use super::record_comparison::{
     AppliedTolerance, RecordComparison, Trend, common_windows, comparison_preparation,
 };
@@ -30,9 +32,6 @@ use super::time_histories::{
     HistoryFinding, HistoryRecord, HistoryRecords, TimeHistories, ToleranceFinding,
 };
 use crate::execution::Execution;
-
-/// Name of the missing item in [`MissingFinding`].
-const WHAT: &str = "time histories";
 
 /// A record prepared for simulation.
 struct PreparedRecord<'a> {
@@ -97,7 +96,7 @@ pub fn time_histories_of(
 fn missing_history(condition: Option<ConditionId>, why: MissingReason) -> MissingFinding {
     MissingFinding {
         condition,
-        what: WHAT,
+        what: MissingPart::TimeHistories,
         why,
     }
 }

@@ -15,8 +15,8 @@ use gdcm_model::response::Mode;
 use gdcm_model::response::mode::modes_of;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 
-use super::asked_condition::RequestedCondition;
 use super::missing_finding::NoModes;
+use super::requested_condition::RequestedCondition;
 use super::requirement_role::RequirementRole;
 
 /// Index of the physics model without couplings among the compared models.
@@ -24,17 +24,18 @@ const WITHOUT_COUPLINGS: usize = 0;
 /// Index of the physics model with couplings, if there are any, among the compared models.
 const WITH_COUPLINGS: usize = 1;
 
-/// Identified models' poles with their uncertainty, by condition; a dataset does not store them.
+/// Poles of models identified from flight records, with standard deviations, by condition. They are
+/// kept from an identification: a dataset stores the models without them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
+pub struct IdentifiedPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
-impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for KnownPoles {
+impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for IdentifiedPoles {
     fn from_iter<T: IntoIterator<Item = (ConditionId, Vec<PoleEstimate>)>>(found: T) -> Self {
         Self(found.into_iter().collect())
     }
 }
 
-impl KnownPoles {
+impl IdentifiedPoles {
     /// Returns a condition's poles; empty where no model was identified for it.
     fn poles(&self, condition: ConditionId) -> &[PoleEstimate] {
         match self.0.get(&condition) {
@@ -158,14 +159,14 @@ pub struct ModeFinding {
 /// [`NoModes`] if a model is a measured response, if its modes cannot be computed, or if the
 /// couplings cannot be applied.
 pub(crate) fn mode_findings(
-    asked: &RequestedCondition<'_>,
-    known: &KnownPoles,
+    requested: &RequestedCondition<'_>,
+    identified_poles: &IdentifiedPoles,
 ) -> Result<Vec<ModeFinding>, NoModes> {
     let [physics, identified] =
-        BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
+        BundleKind::BOTH.map(|kind| requested.result.representative_model(kind));
     let physics_modes = known_modes(physics)?;
     let identified_modes = known_modes(identified)?;
-    let coupled_modes = coupled_modes(asked, physics)?;
+    let coupled_modes = coupled_modes(requested, physics)?;
     let flown = ModelModes {
         modes: &identified_modes,
         states: &identified.states,
@@ -177,11 +178,11 @@ pub(crate) fn mode_findings(
             states: &physics.states,
         })
         .collect();
-    let study = &asked.analysis.study;
+    let study = &requested.analysis.study;
     let rows = compare_modes(
         flown,
         &models,
-        known.poles(asked.id()),
+        identified_poles.poles(requested.id()),
         study.settings.band,
         &study.requirements.mode_tolerances,
     );
@@ -192,8 +193,8 @@ pub(crate) fn mode_findings(
             Some(ModeNumbers::new(&mode, &physics.name))
         };
         findings.push(ModeFinding {
-            condition: asked.id(),
-            airspeed_kt: asked.airspeed_kt(),
+            condition: requested.id(),
+            airspeed_kt: requested.airspeed_kt(),
             number: findings.len() + 1,
             name: row.name,
             named_by: row.named_by,
@@ -215,16 +216,16 @@ pub(crate) fn mode_findings(
 /// Returns a physics model's modes with the study's couplings; `None` without couplings, and for a
 /// measured response.
 fn coupled_modes(
-    asked: &RequestedCondition<'_>,
+    requested: &RequestedCondition<'_>,
     physics: &Model,
 ) -> Result<Option<Vec<Mode>>, NoModes> {
     let Some(matrices) = physics.state_space() else {
         return Ok(None);
     };
-    if asked.result.coupled.is_none() {
+    if requested.result.coupled.is_none() {
         return Ok(None);
     }
-    let coupled = asked
+    let coupled = requested
         .result
         .coupled_model(matrices, Pade::default())
         .map_err(|why| NoModes::NotCoupled {
@@ -292,7 +293,7 @@ mod tests {
     fn modes_of_the_example_are_paired_and_named_once_and_within_the_distance() {
         let found = requirements_of(
             &EXAMPLE.analysis,
-            &KnownPoles::default(),
+            &IdentifiedPoles::default(),
             &Execution::sequential(),
         )
         .unwrap();
@@ -338,10 +339,10 @@ mod tests {
 
     #[test]
     fn a_mode_whose_deviation_is_beyond_the_tolerance_is_not_determined() {
-        let of = |known: &KnownPoles| {
+        let of = |known: &IdentifiedPoles| {
             requirements_of(&EXAMPLE.analysis, known, &Execution::sequential()).unwrap()
         };
-        let unknown = of(&KnownPoles::default());
+        let unknown = of(&IdentifiedPoles::default());
         let judged = |mode: &&ModeFinding| {
             matches!(mode.verdict, ModeVerdict::Within | ModeVerdict::Outside)
         };
@@ -363,7 +364,10 @@ mod tests {
                 sd_im: sd * pole.norm(),
                 determined: true,
             };
-            let found = of(&KnownPoles::from_iter([(mode.condition, vec![estimate])]));
+            let found = of(&IdentifiedPoles::from_iter([(
+                mode.condition,
+                vec![estimate],
+            )]));
             let same = found
                 .modes
                 .iter()

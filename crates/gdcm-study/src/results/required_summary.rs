@@ -8,7 +8,7 @@ use gdcm_method::requirements::summary::{Summary, SummarySource};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::response::GainDelay;
 
-use super::asked_condition::RequestedCondition;
+use super::requested_condition::RequestedCondition;
 use super::requirement_role::RequirementRole;
 
 /// Summary costs for a physics model against the identified representative (M17.4).
@@ -66,29 +66,29 @@ impl NoSummary {
 
 /// Computes the summary costs for a role's model against the identified representative.
 pub(super) fn summary_finding(
-    asked: &RequestedCondition<'_>,
+    requested: &RequestedCondition<'_>,
     role: RequirementRole,
 ) -> SummaryFinding {
-    let study = &asked.analysis.study;
-    let correction = asked.correction(role);
+    let study = &requested.analysis.study;
+    let correction = requested.correction(role);
     let multiplier = |pair: Pair| match correction {
         Some(correction) => correction.on(pair),
         None => Some(GainDelay::NONE),
     };
     let summary = Summary::compute(&SummarySource {
-        mismatch: &asked.result.comparison.representative.mismatch,
+        mismatch: &requested.result.comparison.representative.mismatch,
         correction: &multiplier,
         on_axis: &study.dataset.measuring_pairs(),
-        omega: &asked.analysis.omega,
+        omega: &requested.analysis.omega,
         average: study.settings.cost_average,
         validation: None,
         outputs: study.dataset.outputs(),
     });
     let mut finding = SummaryFinding {
-        condition: asked.id(),
-        airspeed_kt: asked.airspeed_kt(),
+        condition: requested.id(),
+        airspeed_kt: requested.airspeed_kt(),
         role,
-        model: asked.model_name(role),
+        model: requested.model_name(role),
         mean_j_on_axis: summary.cost.on_axis,
         mean_j_all: summary.cost.all,
         muad_share_on_axis: summary.muad.on_axis,

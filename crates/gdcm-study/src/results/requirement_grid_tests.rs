@@ -21,7 +21,7 @@ use super::time_histories::TimeHistories;
 use crate::decisions::requirement_settings::RequirementSettings;
 use crate::execution::Execution;
 use crate::jobs::couplings_tests::EXAMPLE;
-use crate::results::required_modes::KnownPoles;
+use crate::results::required_modes::IdentifiedPoles;
 use crate::results::requirements::requirements_of;
 use crate::results::time_histories::{HistoryFinding, ToleranceFinding};
 
@@ -310,8 +310,12 @@ fn a_missing_bandwidth_says_which_model_lacks_it() {
 #[test]
 fn a_quantity_has_one_row_and_each_condition_a_cell() {
     let analysis = &EXAMPLE.analysis;
-    let requirements =
-        requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+    let requirements = requirements_of(
+        analysis,
+        &IdentifiedPoles::default(),
+        &Execution::sequential(),
+    )
+    .unwrap();
     let grid = grid(&requirements, Vec::new());
     assert_eq!(grid.conditions.len(), analysis.conditions.len());
     for row in &grid.rows {

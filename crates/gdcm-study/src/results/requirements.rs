@@ -10,18 +10,21 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::progress::Cancelled;
 
 use super::analysis::Analysis;
-use super::asked_condition::RequestedCondition;
 use super::assessment_table::AssessedCorrection;
 use super::condition_bandwidths::bandwidth_findings;
-use super::missing_finding::{MissingFinding, MissingReason};
+use super::missing_finding::{MissingFinding, MissingPart, MissingReason};
+use super::requested_condition::RequestedCondition;
 use super::required_bandwidth::BandwidthFinding;
-use super::required_modes::{KnownPoles, ModeFinding, mode_findings};
+use super::required_modes::{IdentifiedPoles, ModeFinding, mode_findings};
 use super::required_summary::{SummaryFinding, summary_finding};
 use super::requirement_role::RequirementRole;
 use crate::execution::Execution;
 
+/// Number of progress steps that a condition counts for.
+const STEPS_PER_CONDITION: usize = 1;
+
 /// A response whose phase at the band's lowest frequency suggests a reversed channel in these
-/// roles' models.
+/// roles' models: 45 to 135 deg (`AttitudeResponse::reversed_phase_deg` in `gdcm-method`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReversedPhase {
     pub condition: ConditionId,
@@ -34,7 +37,9 @@ impl ReversedPhase {
     pub const CODE: &'static str = "reversed-phase";
 }
 
-/// Writes the condition, and the code as the text, which the export replaces by a sentence.
+/// Writes the condition, and the code as the text: the export, whose cautions have these two fields,
+/// replaces the code by a sentence. The sentence contains the pair and the roles; it needs the
+/// dataset's channel names.
 impl Serialize for ReversedPhase {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut caution = serializer.serialize_struct("ReversedPhase", 2)?;
@@ -65,11 +70,12 @@ pub struct Requirements {
 
 impl Requirements {
     /// Returns why a condition has no modes to compare; `None` where it has modes.
-    pub fn no_modes(&self, condition: ConditionId) -> Option<&MissingReason> {
+    pub fn missing_modes_reason(&self, condition: ConditionId) -> Option<&MissingReason> {
         self.missing
             .iter()
             .find(|missing| {
-                missing.condition == Some(condition) && matches!(missing.what, "modes" | "all")
+                missing.condition == Some(condition)
+                    && matches!(missing.what, MissingPart::Modes | MissingPart::All)
             })
             .map(|missing| &missing.why)
     }
@@ -87,23 +93,34 @@ impl Requirements {
     }
 }
 
+/// A condition's part in [`Requirements`].
+#[derive(Default)]
+struct ConditionFindings {
+    bandwidth: Vec<BandwidthFinding>,
+    modes: Vec<ModeFinding>,
+    summary: Vec<SummaryFinding>,
+    missing: Vec<MissingFinding>,
+    cautions: Vec<ReversedPhase>,
+}
+
 /// Computes the requirements that need no flight records, for every condition with a result (M17.1,
 /// M17.3, M17.4). Each condition is a progress step.
 ///
 /// Intervals are based on the analysis's error bars ([`Analysis::uncertainty`]). The uncertainty in
-/// the `known` poles determines whether the flight data suffice for a verdict on a mode.
+/// `identified_poles` determines whether the flight data suffice for a verdict on a mode. These
+/// poles were kept from an earlier identification; no records are read here.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.
 pub fn requirements_of(
     analysis: &Analysis,
-    known: &KnownPoles,
+    identified_poles: &IdentifiedPoles,
     execution: &Execution<'_>,
 ) -> Result<Requirements, Cancelled> {
     let settings = &analysis.study.settings;
     let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
-    let found = execution.each(ids.len(), 1, |index| {
-        condition_requirements(analysis, known, ids[index])
+    let conditions = execution.each(ids.len(), STEPS_PER_CONDITION, |index| {
+        condition_findings(analysis, identified_poles, ids[index])
     })?;
     let mut requirements = Requirements {
         band_rad_s: [settings.band.min(), settings.band.max()],
@@ -114,11 +131,11 @@ pub fn requirements_of(
     if let Err(error) = &analysis.schedule {
         requirements.missing.push(MissingFinding {
             condition: None,
-            what: "scheduled",
+            what: MissingPart::Scheduled,
             why: MissingReason::NoSchedule(*error),
         });
     }
-    for condition in found {
+    for condition in conditions {
         requirements.cautions.extend(condition.cautions);
         requirements.bandwidth.extend(condition.bandwidth);
         requirements.modes.extend(condition.modes);
@@ -129,42 +146,43 @@ pub fn requirements_of(
 }
 
 /// Computes a condition's findings; without a result, only the reason.
-fn condition_requirements(
+fn condition_findings(
     analysis: &Analysis,
-    known: &KnownPoles,
+    identified_poles: &IdentifiedPoles,
     id: ConditionId,
-) -> Requirements {
-    let mut found = Requirements::default();
+) -> ConditionFindings {
+    let mut found = ConditionFindings::default();
     let result = match analysis.result(id) {
         Ok(result) => result,
         Err(why) => {
             found.missing.push(MissingFinding {
                 condition: Some(id),
-                what: "all",
+                what: MissingPart::All,
                 why: MissingReason::NoResult(why),
             });
             return found;
         }
     };
-    let asked = RequestedCondition {
+    let requested = RequestedCondition {
         analysis,
         result,
+        // A missing schedule is reported once, in `requirements_of`.
         scheduled: AssessedCorrection::Scheduled
             .correction(analysis, result)
             .ok(),
     };
-    found.bandwidth = bandwidth_findings(&asked);
-    match mode_findings(&asked, known) {
+    found.bandwidth = bandwidth_findings(&requested);
+    match mode_findings(&requested, identified_poles) {
         Ok(modes) => found.modes = modes,
         Err(why) => found.missing.push(MissingFinding {
             condition: Some(id),
-            what: "modes",
+            what: MissingPart::Modes,
             why: MissingReason::NoModes(why),
         }),
     }
-    for role in asked.roles() {
+    for role in requested.roles() {
         if role != RequirementRole::Identified {
-            found.summary.push(summary_finding(&asked, role));
+            found.summary.push(summary_finding(&requested, role));
         }
     }
     found.cautions = reversed_phases(&found.bandwidth);

@@ -31,7 +31,7 @@ use crate::results::comparison::Mismatches;
 use crate::results::convention_doubt::ConventionDoubt;
 use crate::results::fitted_couplings::FittedCouplings;
 use crate::results::record_simulations::time_histories_of;
-use crate::results::required_modes::KnownPoles;
+use crate::results::required_modes::IdentifiedPoles;
 use crate::results::requirements::{Requirements, requirements_of};
 use crate::results::schedule_losses::schedule_cost_cautions;
 use crate::results::scheduled_conditions::{schedule_settings, scheduled_points};
@@ -265,12 +265,12 @@ impl Engine {
     pub fn requirements(
         &self,
         analysis: &Analysis,
-        known: &KnownPoles,
+        identified_poles: &IdentifiedPoles,
         progress: &dyn Progress,
     ) -> Result<Requirements, Cancelled> {
         let steps = analysis.conditions.len();
         let execution = Execution::new(self.executor(), progress, steps);
-        requirements_of(analysis, known, &execution)
+        requirements_of(analysis, identified_poles, &execution)
     }
 
     /// Simulates an analysis's models with `records`, and compares the results with the study's

@@ -31,11 +31,12 @@ use gdcm_model::executor::each;
 use super::cautions::IdentificationCaution;
 use super::model_cautions::ModelCautions;
 use super::record_fault::{ContradictingRecord, RecordFault};
-use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
+use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::descent::Fit;
 use crate::likelihood::gram_matrix::pseudo_inverse_root;
 use crate::likelihood::local_system::{LocalSystem, LocalSystems};
 use crate::likelihood::schur_model::SchurModel;
+use crate::likelihood::spectral_lines::{SpectralLines, whiten};
 use crate::options::Options;
 use crate::spectra::spectrum::Spectrum;
 

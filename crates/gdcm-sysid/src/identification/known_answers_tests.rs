@@ -7,7 +7,8 @@ use serde_json::Value;
 use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 
-use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::cost::Likelihood;
+use crate::likelihood::spectral_lines::SpectralLines;
 use crate::spectra::spectrum::Spectrum;
 
 /// Reads the file of reference results.

@@ -24,10 +24,11 @@ use super::prepared_data::PreparedData;
 use super::real_flight_tests::Generator;
 use crate::diagnostics::bands::{BandModels, TWO_SIDED_95};
 use crate::likelihood::balancing::{Coordinates, Gramians, balancing_coordinates};
-use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::cost::Likelihood;
 use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
 use crate::likelihood::schur_model::SchurModel;
+use crate::likelihood::spectral_lines::SpectralLines;
 use crate::options::Options;
 
 /// A neper in decibels.

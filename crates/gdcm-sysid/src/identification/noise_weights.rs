@@ -4,10 +4,11 @@
 use super::prepared_data::PreparedData;
 use super::search_records::search_segments;
 use crate::diagnostics::record_fits::fits_of_records;
-use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::cost::Likelihood;
 use crate::likelihood::descent::Fit;
 use crate::likelihood::noise_covariance::NoiseCovariance;
 use crate::likelihood::residual_noise::residual_noise;
+use crate::likelihood::spectral_lines::SpectralLines;
 
 /// Records keep their weights up to this ratio between their largest and smallest cost per degree
 /// of freedom.

@@ -14,11 +14,12 @@ use crate::identification::identify::identify;
 use crate::identification::known_answers_tests::{matrix, number, numbers, response, response_at};
 use crate::identification::prepared_data::PreparedData;
 use crate::likelihood::balancing::{Gramians, balancing_coordinates, without_last_states};
-use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::cost::Likelihood;
 use crate::likelihood::descent::{CONVERGED, Fit, Limits};
 use crate::likelihood::noise_covariance::NoiseCovariance;
 use crate::likelihood::residual_noise::residual_noise;
 use crate::likelihood::schur_model::SchurModel;
+use crate::likelihood::spectral_lines::SpectralLines;
 use crate::options::Options;
 use crate::spectra::preparation_settings::Preparation;
 

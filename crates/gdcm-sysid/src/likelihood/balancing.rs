@@ -17,9 +17,10 @@ use nalgebra::{DMatrix, DVector};
 
 use gdcm_model::executor::each;
 
-use super::cost::{Likelihood, SpectralLines, whiten};
+use super::cost::Likelihood;
 use super::frequency_table::OutputResolvents;
 use super::schur_model::SchurModel;
+use super::spectral_lines::{SpectralLines, whiten};
 
 /// Share of its mean that is added to a Gramian's diagonal, so that a state that the lines do not
 /// excite or show remains in the model.

@@ -17,12 +17,13 @@ use nalgebra::{DMatrix, DVector};
 
 use gdcm_model::executor::each;
 
-use super::cost::{Likelihood, SegmentCost, SpectralLines};
+use super::cost::{Likelihood, SegmentCost};
 use super::descent::Fit;
 use super::gram_matrix::scale_columns;
 use super::local_parameters::LocalParameters;
 use super::normal_equations::{EXACT, NormalEquations, products_with};
 use super::schur_model::SchurModel;
+use super::spectral_lines::SpectralLines;
 
 /// `G` and `g`: a step d in the parameters changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]

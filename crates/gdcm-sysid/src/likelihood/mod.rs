@@ -3,7 +3,8 @@
 //! | stage | files |
 //! |---|---|
 //! | a model, evaluated by its Schur form | `schur_model`, `frequency_table` |
-//! | cost over the spectral lines | `cost`, [`noise_covariance`], `residual_noise` |
+//! | weighted spectral lines | `spectral_lines`, [`noise_covariance`], `residual_noise` |
+//! | cost over the spectral lines | `cost`, `nuisance_columns` |
 //! | normal equations in all entries | `normal_equations`, `nuisance_elimination`, `gram_matrix` |
 //! | Levenberg-Marquardt in balanced coordinates | `descent`, `balancing` |
 //! | independent parameters at the minimum | `local_parameters`, `local_system` |
@@ -20,6 +21,8 @@ pub(crate) mod local_system;
 pub(crate) mod models_without_record;
 pub mod noise_covariance;
 pub(crate) mod normal_equations;
+mod nuisance_columns;
 mod nuisance_elimination;
 pub(crate) mod residual_noise;
 pub(crate) mod schur_model;
+pub(crate) mod spectral_lines;

@@ -21,10 +21,11 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::executor::{Executor, Sequential, each};
 
 use super::balancing::Gramians;
-use super::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
+use super::cost::{Likelihood, SegmentCost};
 use super::frequency_table::{FrequencyTable, OutputResolvents};
 use super::nuisance_elimination::{NuisanceSums, VectorProducts};
 use super::schur_model::SchurModel;
+use super::spectral_lines::{SpectralLines, whiten};
 
 /// Bin width in ln omega while descending.
 pub(crate) const BIN_WIDTH: f64 = 0.04;

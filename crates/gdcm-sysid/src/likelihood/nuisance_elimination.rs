@@ -16,9 +16,10 @@ use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::dataset::channel::ChannelSide;
 
-use super::cost::{DEPENDENT, SpectralLines};
 use super::gram_matrix::pseudo_inverse_root;
+use super::nuisance_columns::DEPENDENT;
 use super::schur_model::SchurModel;
+use super::spectral_lines::SpectralLines;
 
 /// Index of the scalar sigma = 1.
 const ONE: usize = 0;

@@ -24,9 +24,10 @@ use nalgebra::{Complex, DMatrix};
 use gdcm_model::executor::each;
 use gdcm_model::response::frequency_grid::log_spaced;
 
-use super::cost::{Likelihood, SegmentCost, SpectralLines};
+use super::cost::{Likelihood, SegmentCost};
 use super::noise_covariance::{NoiseCovariance, NoisePoint};
 use super::schur_model::SchurModel;
+use super::spectral_lines::SpectralLines;
 use crate::subspace::tried_orders::parameters_of_order;
 
 /// Number of frequencies at which the covariance is computed.

@@ -18,10 +18,11 @@ use gdcm_model::statistics::median;
 use super::planned_sweep::PlannedSweep;
 use crate::diagnostics::feedback::Feedback;
 use crate::likelihood::balancing::{Gramians, balancing_coordinates};
-use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::cost::Likelihood;
 use crate::likelihood::noise_covariance::{NoiseCovariance, NoisePoint};
 use crate::likelihood::normal_equations::{EXACT, NormalEquations};
 use crate::likelihood::schur_model::SchurModel;
+use crate::likelihood::spectral_lines::SpectralLines;
 use crate::spectra::scales::Scales;
 use crate::subspace::tried_orders::parameters_of_order;
 

@@ -28,9 +28,10 @@ use super::flight_information::FlightInformation;
 use super::planned_sweep::PlannedSweep;
 use crate::diagnostics::bands::TWO_SIDED_95;
 use crate::diagnostics::feedback::FeedbackLevel;
-use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines};
+use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::normal_equations::{EXACT, NormalEquations};
 use crate::likelihood::schur_model::SchurModel;
+use crate::likelihood::spectral_lines::SpectralLines;
 use crate::spectra::interpolation::Neighbours;
 use crate::spectra::spectrum::LineRange;
 

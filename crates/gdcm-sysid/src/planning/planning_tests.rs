@@ -21,9 +21,10 @@ use crate::identification::identify::identify;
 use crate::identification::known_flight::stable_feedback;
 use crate::identification::real_flight_tests::Generator;
 use crate::identification::{Identification, Options, Preparation};
-use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::cost::Likelihood;
 use crate::likelihood::normal_equations::{EXACT, NormalEquations};
 use crate::likelihood::schur_model::SchurModel;
+use crate::likelihood::spectral_lines::SpectralLines;
 use crate::spectra::preparation::segments_of;
 use crate::spectra::spectrum::LineRange;
 

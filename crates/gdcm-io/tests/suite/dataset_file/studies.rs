@@ -16,9 +16,10 @@ use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
 use gdcm_study::decisions::edit_refusal::EditRefusal;
-use gdcm_study::decisions::setting::{Kind, Setting, Value};
+use gdcm_study::decisions::setting::{Kind, Setting};
 use gdcm_study::decisions::setting_table;
 use gdcm_study::decisions::setting_table::SETTINGS;
+use gdcm_study::decisions::setting_value::Value;
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
 
@@ -75,17 +76,15 @@ fn decided(study: &mut Study, edits: &[Edit]) {
 fn value_of(setting: &Setting, [first, second]: [f64; 2]) -> Value {
     let within = |[least, most]: [f64; 2], at: f64| least + at * (most - least);
     match setting.kind {
-        Kind::Optional { .. }
-        | Kind::Range {
-            nothing: Some(_), ..
-        } if second > 0.7 => Value::Nothing,
+        Kind::Optional { .. } | Kind::Range { .. } if second > 0.7 => Value::Nothing,
         Kind::Number {
             range, whole: true, ..
         } => Value::Number(within(range, first).round()),
         Kind::Number { range, .. } | Kind::Optional { range, .. } => {
             Value::Number(within(range, first))
         }
-        Kind::Range { range, .. } => {
+        Kind::Range { .. } | Kind::Band { .. } => {
+            let range = setting.kind.range().unwrap();
             let lower = within(range, 0.9 * first);
             Value::Range([lower, within([lower, range[1]], 0.1 + 0.9 * second)])
         }

@@ -15,7 +15,7 @@ use gdcm_plot::figure::{
 };
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::required_modes::IdentifiedPoles;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, ConditionCurves, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhysicsCorrection, Study};
@@ -54,7 +54,7 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
         .unwrap();
     let requirements = Arc::new(
         engine
-            .requirements(&analysis, &KnownPoles::default(), &Unobserved)
+            .requirements(&analysis, &IdentifiedPoles::default(), &Unobserved)
             .unwrap(),
     );
     let couplings =

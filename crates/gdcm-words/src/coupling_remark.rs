@@ -178,8 +178,8 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
     )
 }
 
-/// Describes a feedback entry: "PED follows NY by 1.2 % per m/s², up to 5.0 % of PED at 2.1 rad/s:
-/// directional stiffness that the physics model does not represent correctly".
+/// Describes a feedback entry: "PED follows NY by 1.2 % per m/s², up to 5.0 % of the movement of PED
+/// at 2.1 rad/s: directional stiffness that the physics model does not represent correctly".
 fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare, meaning: FeedbackMeaning) -> String {
     let input = &dataset.inputs()[feedback.input];
     let output = &dataset.outputs()[feedback.output];
@@ -187,10 +187,14 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare, meaning: Feedback
     // A percentage is meaningful only between channels with the same unit.
     let moved = &dataset.inputs()[feedback.moved];
     let share = if moved.unit == input.unit {
-        format!("{} % of {}", percent(feedback.share), moved.name)
+        format!(
+            "{} % of the movement of {}",
+            percent(feedback.share),
+            moved.name
+        )
     } else {
         format!(
-            "{} {} per {} of {}",
+            "{} {} for each {} that {} moves",
             telling(feedback.share, 3),
             input.unit,
             moved.unit,
@@ -198,8 +202,8 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare, meaning: Feedback
         )
     };
     format!(
-        "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics \
-        model does not represent correctly.",
+        "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the \
+        physics model does not represent correctly.",
         input.name,
         output.name,
         with_minus_sign(&telling(feedback.entry, 3)),

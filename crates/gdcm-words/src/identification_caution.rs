@@ -124,7 +124,7 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
     match caution {
         RecordCaution::Resampled { record, percent } => ShortCaution::new(
             "Uneven sample times, interpolated",
-            format!("{record}, by {percent:.0} %"),
+            format!("{record}, the step varies by {percent:.0} %"),
         ),
         RecordCaution::SegmentDropped {
             record,

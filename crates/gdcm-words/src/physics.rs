@@ -10,7 +10,7 @@
 //! | rerun | physics model linearised with several parameters changed, to check the prediction |
 //! | step | position in the stepwise list, which adds the parameter that explains most next |
 //! | learned | share of a parameter's prior variance that the data remove |
-//! | channels can take | share of a parameter's effect that channel gains and delays can explain |
+//! | imitated by channels | share of a parameter's effect that channel gains and delays can explain |
 //! | pull | change in a parameter's value if a condition is left out of the fit |
 
 mod left_out_runs;
@@ -194,7 +194,7 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
             "not named: conditions left out could not be predicted".to_owned()
         }
         Some(WhyNotNamed::NothingExplained { .. }) => format!(
-            "not named: all parameters together explain less than {} of the misfit",
+            "no change proposed: all parameters together explain less than {} of the misfit",
             percent(LEAST_EXPLAINED)
         ),
         Some(WhyNotNamed::AtBound { z }) => format!(
@@ -213,7 +213,8 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
             None => "no change needed".to_owned(),
         },
         Some(WhyNotNamed::LittleGain { .. }) => format!(
-            "not named: a change of {change} hardly improves the prediction of conditions left out"
+            "no change proposed: {change} hardly improves the prediction of conditions left out of \
+            the fit"
         ),
     }
 }
@@ -241,7 +242,7 @@ fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
 
 /// Tabulates the parameters: change and half-width; plausible change; share of the misfit explained
 /// alone; step that adds the parameter to the fit, and share explained by this step; share of the
-/// prior variance removed by the data; share of the effect that channels can take; verdict.
+/// prior variance removed by the data; share of the effect that channels can imitate; verdict.
 /// `level` is the confidence level of the half-width, 0 to 1. The last rows are the parameters that
 /// are switched off.
 pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
@@ -255,8 +256,8 @@ pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
         "explained alone [%]".to_owned(),
         "step".to_owned(),
         "explained by step [%]".to_owned(),
-        "learned [%]".to_owned(),
-        "channels can take [%]".to_owned(),
+        "learned from data [%]".to_owned(),
+        "imitated by channels [%]".to_owned(),
         "verdict".to_owned(),
     ];
     let mut table = Table::new("Physics parameters", columns);

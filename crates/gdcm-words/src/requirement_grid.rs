@@ -93,7 +93,7 @@ pub fn group_description(group: RequirementGroup) -> &'static str {
         RequirementGroup::Bandwidth => "difference from the identified model",
         RequirementGroup::InTime => "peak error against the held-out record, in % of the tolerance",
         RequirementGroup::Modes => "difference from the identified mode",
-        RequirementGroup::Summary => "error against the identified model",
+        RequirementGroup::Summary => "agreement with the identified model",
     }
 }
 

@@ -195,7 +195,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "gain_objective",
         caption: "",
         label: "Objective of the gains",
-        help: "Objective that the gains minimise",
+        help: "Error measure that is minimised over the gains: of the ratios, or in dB",
         meanings: &[
             "Gains minimise squared errors of the ratios, eq. (7)",
             "Gains minimise squared errors in dB: a factor and its inverse count alike",

@@ -422,10 +422,10 @@ impl Side<'_> {
     }
 }
 
-/// Returns "Gain of LON: 1.059 was 1.023", or the same with the error bar's half-width instead.
+/// Returns "Gain of LON: 1.059, previously 1.023", or the same with the error bar's half-width instead.
 fn accessible_name(name: &str, text: &str, was: Option<&str>, half: Option<&str>) -> String {
     match (was, half) {
-        (Some(was), _) => format!("{name}: {text} was {was}"),
+        (Some(was), _) => format!("{name}: {text}, previously {was}"),
         (None, Some(half)) => format!("{name}: {text} {half}"),
         (None, None) => format!("{name}: {text}"),
     }

@@ -84,7 +84,7 @@ impl LimitEditor<'_> {
                 );
             }
             Requirement::Level(_) => {
-                self.note_ui(ui, "met at the level of the identified model");
+                self.note_ui(ui, "met if the level equals that of the identified model");
                 self.note_ui(ui, "set the levels in the limits menu");
             }
             Requirement::MeanJOnAxis => {

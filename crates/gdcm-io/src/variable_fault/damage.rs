@@ -33,7 +33,7 @@ pub enum Damage {
     ElementOutsideSparse,
     #[error("{} in {}", counted(*count, "value"), counted(*bytes, "byte"))]
     ValueCount { count: usize, bytes: usize },
-    #[error("records without a length for their field names")]
+    #[error("a struct without a length for its field names")]
     FieldNamesWithoutLength,
     #[error("field names that do not match their length")]
     FieldNamesLength,

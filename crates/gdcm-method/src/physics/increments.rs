@@ -151,7 +151,8 @@ pub enum IncrementError {
     },
     /// A model has other states than the base, or another number of inputs or outputs.
     #[error(
-        "expected the states, inputs and outputs of the model from which the runs differ, found others"
+        "the states, or the numbers of inputs and outputs, differ from those of the model with nominal \
+        parameters; write all models with the same states in the same order"
     )]
     States,
     /// A model is a measured response.

@@ -336,7 +336,7 @@ fn existing_words(state: &State) -> String {
         format!("{existing} of {count} files will be replaced")
     } else {
         format!(
-            "{existing} of {count} files exist; all names end in {}",
+            "{existing} of {count} files exist and are kept; the new names get the suffix {}",
             plan.number
         )
     }

@@ -154,7 +154,7 @@ impl CorrelationMatrix<'_> {
                 Some(share) => {
                     let percent = 100.0 * share;
                     format!(
-                        "Gains and delays of the channels can take over {percent:.0} % of the effect of {name}"
+                        "Gains and delays of the channels can imitate {percent:.0} % of the effect of {name}"
                     )
                 }
                 None => return,

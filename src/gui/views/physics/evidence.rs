@@ -250,7 +250,7 @@ fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings
     }
     if let Some(share) = diagnosis.channels_can_take {
         let percent = decimals(100.0 * share, 0);
-        table.row(["channels can take".to_owned(), format!("{percent} %")]);
+        table.row(["imitated by channels".to_owned(), format!("{percent} %")]);
     }
     if let Some(pair) = diagnosis.strongest_pair {
         let [first, second] = pair

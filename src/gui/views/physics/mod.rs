@@ -78,7 +78,7 @@ pub fn physics_pages(state: &State) -> Vec<PageEntry> {
             ),
             PhysicsPage::Correlation => (
                 "Correlation",
-                "Parameters that cannot be told apart, and the share of each that the channels can take over",
+                "Parameters that cannot be told apart, and the share of each that gains and delays can imitate",
             ),
             PhysicsPage::Conditions => (
                 "Conditions",

@@ -148,12 +148,17 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
     let mut assumed = Vec::new();
     for caution in &row.cautions {
         match caution {
-            LayoutCaution::UnitAssumed { channel, .. } => assumed.push(channel.as_str()),
+            LayoutCaution::UnitAssumed { channel, unit, .. } => {
+                assumed.push(format!("{channel} ({unit})"));
+            }
             other => parts.push(other.to_string()),
         }
     }
     if !assumed.is_empty() {
-        parts.push(format!("units of {} assumed", assumed.join(", ")));
+        let channels = assumed.join(", ");
+        parts.push(format!(
+            "units of {channels} assumed: confirm them in Columns"
+        ));
     }
     if parts.is_empty() {
         return "not checked by an up-to-date identification".to_owned();

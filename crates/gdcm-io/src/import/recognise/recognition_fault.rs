@@ -308,7 +308,10 @@ pub(crate) enum RecognitionFault {
         found: usize,
         expected: usize,
     },
-    #[error("{name}: expected the names of channels, found {found}")]
+    #[error(
+        "{name}: expected a list of channel names in the order of the matrices, such as [\"LON\", \"LAT\"], \
+        found {found}"
+    )]
     Labels {
         name: String,
         /// Description of the found value.

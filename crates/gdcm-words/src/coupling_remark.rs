@@ -346,7 +346,7 @@ mod tests {
         };
         let words = feedback_words(&old, &share, FeedbackMeaning::Coupling);
         assert!(
-            words.contains("up to 10.6 % of LON at 0.5 rad/s"),
+            words.contains("up to 10.6 % of the movement of LON at 0.5 rad/s"),
             "{words}"
         );
         let mut inputs = old.inputs().to_vec();
@@ -371,7 +371,7 @@ mod tests {
             FeedbackMeaning::Coupling,
         );
         assert!(
-            words.contains("up to 0.106 % per inch of LON at 0.5 rad/s"),
+            words.contains("up to 0.106 % for each inch that LON moves at 0.5 rad/s"),
             "{words}"
         );
     }

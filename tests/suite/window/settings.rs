@@ -146,7 +146,7 @@ fn the_result_and_the_dock_keep_the_values_at_the_opening() {
     let text = gdcm_model::number_format::decimals(before[1], 3);
     let name = window.get_by_label_contains("Gain of Q: ");
     let label = name.accesskit_node().label().unwrap_or_default();
-    assert!(label.ends_with(&format!("was {text}")), "{label}");
+    assert!(label.ends_with(&format!("previously {text}")), "{label}");
     let plots = gdcm::gui::views::net_gain::net_gain_plots(state_now);
     let marks = plots.figure.plots[0].panels[0].marks.iter();
     let previous_dots = marks

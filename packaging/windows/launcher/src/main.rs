@@ -90,6 +90,14 @@ fn show_error(message: &str) {
 mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt;
+    use std::sync::{Mutex, MutexGuard, PoisonError};
+
+    /// Lets one test at a time write and start programs: a program cannot be started while another
+    /// test's new process still holds it open for writing.
+    fn alone() -> MutexGuard<'static, ()> {
+        static STARTING: Mutex<()> = Mutex::new(());
+        STARTING.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 
     /// Writes a program that behaves as `script` says.
     fn program(folder: &Path, script: &str) -> PathBuf {
@@ -101,6 +109,7 @@ mod tests {
 
     #[test]
     fn the_arguments_are_passed_on_and_a_closed_window_is_a_success() {
+        let _alone = alone();
         let folder = tempfile::tempdir().unwrap();
         let program = program(folder.path(), "test \"$1\" = 'a study.json' && test $# = 1");
         assert_eq!(open_window(&program, vec!["a study.json".into()]), Ok(()));
@@ -109,6 +118,7 @@ mod tests {
 
     #[test]
     fn a_failure_returns_what_the_program_printed() {
+        let _alone = alone();
         let folder = tempfile::tempdir().unwrap();
         let failing = program(folder.path(), "echo 'error: no OpenGL' >&2; exit 1");
         assert_eq!(

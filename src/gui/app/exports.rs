@@ -20,6 +20,7 @@ use gdcm_study::results::export_note::ExportRemedy;
 use super::GdcmApp;
 use super::export_command_line::{CommandSource, export_command_line};
 use crate::gui::state::export_form::{ExportForm, ExportPlanJob};
+use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::Activity;
 use crate::message::Message;
 
@@ -44,11 +45,13 @@ impl GdcmApp {
         self.state.forms.export = form;
     }
 
-    /// Stores a dry run's outcome; writes the files if the engineer has chosen Export meanwhile.
+    /// Stores a dry run's outcome; writes the files if the engineer has chosen Export meanwhile, and
+    /// has not closed the dialog since.
     pub(super) fn take_export_plan(&mut self, job: ExportPlanJob, plan: ExportPlan) {
         self.state.forms.export.plan = Some((job, plan));
         self.state.forms.export.join_report_notes();
-        if std::mem::take(&mut self.state.forms.export.is_awaited) {
+        let is_awaited = std::mem::take(&mut self.state.forms.export.is_awaited);
+        if is_awaited && self.state.forms.shown == Some(FormKind::Export) {
             self.export();
         }
     }

@@ -116,10 +116,11 @@ fn conversion_notes(part: &Part) -> Vec<String> {
         notes.push(note.to_string());
     }
     if let Some(sample_time_s) = part.sample_time_s {
-        notes.push(format!(
-            "sample time {} s, as declared",
-            number(sample_time_s)
-        ));
+        notes.push(if sample_time_s > 0.0 {
+            format!("sample time {} s, as declared", number(sample_time_s))
+        } else {
+            "continuous time, as declared".to_owned()
+        });
     }
     for used in part.inputs.uses.iter().chain(&part.outputs.uses).flatten() {
         notes.extend(used.words.clone());

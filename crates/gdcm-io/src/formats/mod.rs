@@ -85,8 +85,9 @@ static FORMATS: [Importer; 14] = [
     DATAFLASH,
     BLACKBOX,
     FOREIGN_FORMAT,
-    MAT,
+    // Before MAT, which takes every file named .mat: Octave's `save` writes text unless told otherwise.
     OCTAVE_TEXT,
+    MAT,
     DATAFLASH_TEXT,
     JSON,
     MATLAB_STATEMENTS,
@@ -211,13 +212,10 @@ mod tests {
             format(b"A = [\n1 2\n3 4\n];", "a.m"),
             MATLAB_STATEMENTS.name
         );
-        assert_eq!(
-            format(
-                b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n",
-                "a.txt"
-            ),
-            OCTAVE_TEXT.name
-        );
+        for name in ["a.txt", "a.mat"] {
+            let text = b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n";
+            assert_eq!(format(text, name), OCTAVE_TEXT.name);
+        }
         let header = [&[b'M'; 124][..], &[0, 1, b'I', b'M']].concat();
         assert_eq!(format(&header, "no extension"), MAT.name);
     }

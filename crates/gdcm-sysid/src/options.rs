@@ -1,4 +1,7 @@
 //! Identification options (M14.9).
+//!
+//! *Laguerre poles* and *past windows* are settings of the subspace method (M14.3): the time scale
+//! of the functions on which it projects the signals, and how many projections predict the next.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::{FlightRecord, Signal};

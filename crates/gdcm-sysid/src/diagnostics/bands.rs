@@ -3,10 +3,12 @@
 //! ```text
 //! var Re(dH/H), Im(dH/H) = h' Cov h, h the real or imaginary part of the gradient of ln H_oi,
 //!     dH = [C R, I] d[A B; C D] [R B; I],  R = (j omega I - A)^-1
+//!     H_oi response of output o to input i,  Cov covariance of the parameters (`covariance`)
 //! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2
 //!     sd_GN^2 = that variance, from the fit alone
-//!     sd_order = rms of Re and Im ln(H_n'/H_n) over neighbouring orders n'
-//!     |G_b/G| the fed-back share of the response (M14.14, M14.17)
+//!     sd_order = rms of Re and Im ln(H_n'/H_n) over neighbouring orders n': on each side of n the
+//!        nearest order whose BIC is within 10 % (`order`)
+//!     |G_b/G| the fed-back share of the response (`feedback`; M14.14, M14.17)
 //! real part: log modulus in neper, imaginary part: phase in radians;   each sd at most 1e3
 //! ```
 //!
@@ -79,6 +81,7 @@ impl BandModels<'_> {
     ) -> PairBands {
         let count = points.len();
         let order = self.model.order();
+        // At each frequency, left is [C R, I]_o / H_oi and right is [R B; I]_i.
         let mut left = DMatrix::zeros(order + self.model.c().nrows(), count);
         let mut right = DMatrix::zeros(order + self.model.b().ncols(), count);
         for (k, point) in points.iter().enumerate() {

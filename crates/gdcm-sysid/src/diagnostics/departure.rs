@@ -1,6 +1,11 @@
 //! How far a model is from its measured points (M14.17).
 //!
+//! A *measured point* is the response at a frequency, estimated without a model from the spectral
+//! lines in a window around it (`local_polynomial`).
+//!
 //! ```text
+//! G, var G a point's response and its variance, G_model the model's response there, omega its
+//!    frequency
 //! at the points inside the fitted band whose window has a half-width of at most 0.6 omega
 //! T = mean |G_model - G|^2 / var G over five points, 1 on average if the model is exact
 //! D = mean |G_model / G - 1| over the same points

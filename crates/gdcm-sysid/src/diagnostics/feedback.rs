@@ -5,7 +5,7 @@
 //!     least squares over all records, every dec-th sample, no filter; N samples of a record
 //!     dec = round(0.25 / (omega2 dt)), at least 1;   omega2 upper band end, dt sample time
 //!
-//! 1  S(0, j) = sum_k x_k x_{k-j}', x = [u; y], k = p .. N - 1
+//! 1  S(i, j) = sum_k x_{k-i} x_{k-j}', x = [u; y], k = p .. N - 1: from i = 0 by the recursion
 //!    S(i+1, j+1) = S(i, j) + x_{p-1-i} x_{p-1-j}' - x_{N-1-i} x_{N-1-j}'
 //! 2  A, B from S with a ridge on unit columns; e from the records
 //! 3  V = (I - sum A_i e^(-j omega dt dec i))^-1 E on the lines: the effect of noise and gusts on y
@@ -174,12 +174,14 @@ impl Feedback {
         model: &SchurModel,
         executor: &dyn Executor,
     ) -> Option<Self> {
+        // Steps 1 to 5 with the first predictor.
         let thinned = ThinnedRecords::new(records, executor)?;
         let past = thinned.past(MOST_PAST);
         let feedback = thinned.measure(past, model, executor)?;
         if feedback.level() == FeedbackLevel::None {
             return Some(feedback);
         }
+        // Step 6: the longer predictor confirms a level, or lowers it.
         let longer = thinned.past(LONG_PAST.min(LONG_UNKNOWNS / thinned.channels()));
         if (longer as f64) < LONGER * past as f64 {
             return Some(feedback);
@@ -274,16 +276,19 @@ impl<'a> ThinnedRecords<'a> {
         model: &SchurModel,
         executor: &dyn Executor,
     ) -> Option<Feedback> {
+        // Steps 1 and 2.
         let predictor = Predictor::fit(&self.samples, self.inputs, past)?;
         let errors = each(
             executor,
             self.segments.iter().zip(&self.samples),
             |(segment, samples)| predictor.error_segment(segment, samples, self.step),
         );
+        // Step 3: E, then V.
         let mut disturbances = self.records.lines.spectra(&errors, executor);
         for spectrum in &mut disturbances {
             predictor.add_memory(spectrum, self.step as f64 * self.sample_time_s)?;
         }
+        // Steps 4 and 5.
         let omegas = log_spaced(self.records.band[0], self.records.band[1], POINTS);
         let fed_back = local_polynomial(&disturbances, &omegas, executor).ok()?;
         Some(Feedback::compare(model, &fed_back, self.records.coherence))
@@ -401,7 +406,8 @@ impl Predictor {
     }
 
     /// Returns the segment with the prediction errors as outputs: at every `step`-th sample,
-    /// multiplied by `step`, with zeros between.
+    /// multiplied by `step`, with zeros between. A line, `dt/sqrt(T)` times a sum over all samples,
+    /// is then that of the thinned errors.
     fn error_segment(&self, segment: &Segment, samples: &DMatrix<f64>, step: usize) -> Segment {
         let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
         for k in self.past..samples.ncols() {

@@ -1,16 +1,17 @@
 //! Compares records with each other: contradictions and their causes (M14.16).
 //!
 //! ```text
-//! G_r, g_r normal equations of record r, J Jacobian, e residual (`local_system`); phi dispersion
+//! theta independent entries of the model (`local_parameters`); phi dispersion (`Fit::dispersion`)
+//! G_r, g_r normal equations of record r in theta, J Jacobian, e residual (`local_system`)
 //! G = sum G_r,  g = sum g_r,  V'GV = I,  at the optimum before records are weighed by their noise,
 //!    which would hide the wrong record
 //! 1  a = V'G_r V = Q diag(eps) Q';  in the nu directions with 0.02 < eps < 0.98 both the
 //!    record and the others hold information
 //! 2  c = Q'(V'g_r - a V'g);   F_r = sum c^2 / (eps (1 - eps)) / (nu phi): 1 if the record agrees
 //!    with the others' model
-//! 3  a contradiction if the largest F exceeds 6, or 12 in gusts. Suspect: the record with the
-//!    largest F; and that with the second largest, if there is no third record or the largest is
-//!    less than 1.5 times the second
+//! 3  a contradiction if the largest F exceeds 6, or 12 in gusts (with a caution about feedback).
+//!    Suspect: the record with the largest F; and that with the second largest, if there is no
+//!    third record or the largest is less than 1.5 times the second
 //! 4  for each suspect, residual columns d with transient and theta projected out:
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
 //!      an input late -W H_j jw U_j,  a gain W e_o Y_o
@@ -143,6 +144,7 @@ impl<'a> RecordContrasts<'a> {
         is_in_gusts: bool,
         names: &ModelCautions<'_>,
     ) -> Option<IdentificationCaution> {
+        // Step 3.
         let mut worst = self.contrasts.clone();
         worst.sort_by(|a, b| b.contrast.total_cmp(&a.contrast));
         let first = worst.first()?;
@@ -161,6 +163,7 @@ impl<'a> RecordContrasts<'a> {
             suspects.push(second.record);
         }
         suspects.sort_unstable();
+        // Step 4 for each suspect.
         let mut records = Vec::with_capacity(suspects.len());
         for record in suspects {
             records.push(ContradictingRecord {
@@ -273,6 +276,7 @@ fn contrast(
     gradient: &DVector<f64>,
     dispersion: f64,
 ) -> Option<f64> {
+    // Step 1: `share` is a; step 2: `excess` is V'g_r - a V'g.
     let share = root.tr_mul(&(&own.matrix * root));
     let excess = root.tr_mul(&own.gradient) - &share * gradient;
     let eigen = share.try_symmetric_eigen(f64::EPSILON, 10_000)?;

@@ -1,4 +1,8 @@
 //! How well a model fits each record and each output, for the cautions and the report (M14.6).
+//!
+//! `J` is the weighted square of the residual over the spectral lines (`cost`); per degree of
+//! freedom it is 1 if only noise remains. A *held-out* record is not fitted, but reserved for
+//! validation.
 
 use nalgebra::{Complex, DMatrix};
 

@@ -1,4 +1,8 @@
 //! Assesses the recommended model: its uncertainty, and doubts about it (M14.5, M14.6, M14.10).
+//!
+//! The *bands* are the standard deviations of the responses over frequency. A *reference* is a
+//! recorded signal that drove the loop from outside (M14.15); the lines *as logged* are those not
+//! measured through it. *Reweighing* weighs each record by its own noise (`noise_weights`).
 
 use nalgebra::Complex;
 
@@ -71,16 +75,26 @@ pub(super) struct AssessedModel {
 }
 
 impl Assessment<'_> {
-    /// Computes covariance, bands, models fitted without one record each, fits, doubts and the
-    /// validation.
+    /// Computes the uncertainty, the fits, the doubts and the validation.
+    ///
+    /// ```text
+    /// 1  covariance, feedback, bands; the responses that are not identified
+    /// 2  a model without each record
+    /// 3  the fit to each record and output; contradictions between records
+    /// 4  cautions from all of these
+    /// 5  comparison with the held-out records in time
+    /// ```
     pub(super) fn assess(&self, progress: &Shares) -> Result<AssessedModel, IdentificationError> {
         let Refinement { fit, weights, .. } = self.refinement;
         let likelihood = &weights.likelihood;
+        // Step 1.
         progress.next(0.8, "uncertainty")?;
         let systems = LocalSystems::new(likelihood, fit).ok_or_else(|| self.data.no_model())?;
         let uncertainty = self.uncertainty(&systems)?;
+        // Step 2.
         progress.next(0.88, "models fitted without one record each")?;
         let without = without_each_record(likelihood, fit, &systems);
+        // Step 3.
         progress.next(0.93, "validation")?;
         let covariance = &uncertainty.covariance;
         let fits = RecordFits::new(
@@ -91,6 +105,7 @@ impl Assessment<'_> {
         )
         .ok_or_else(|| self.data.no_model())?;
         let contrasts = self.contrasts()?;
+        // Steps 4 and 5.
         let mut cautions = self.cautions(&uncertainty, &fits, contrasts.as_ref());
         let validation = self.validate(&mut cautions)?;
         Ok(AssessedModel {

@@ -1,4 +1,8 @@
 //! Compares Laguerre poles and past windows by the cost of their models (M14.3, M14.7).
+//!
+//! CT-PBSID projects the signals on Laguerre functions, whose time scale is the *Laguerre pole*
+//! (`laguerre`). The *past window* is how many projections predict the next (`ct_pbsid`). A
+//! *candidate* is a pair of both, and proposes a model of each order.
 
 use std::collections::BTreeMap;
 
@@ -72,6 +76,7 @@ impl SubspaceSettings {
         likelihood: &Likelihood,
         progress: &Shares,
     ) -> Result<Vec<Candidate>, Cancelled> {
+        // Steps 1 and 2, pole by pole.
         let Some(ranking) = Ranking::new(self, segments, likelihood, progress) else {
             return Ok(Vec::new());
         };
@@ -80,6 +85,7 @@ impl SubspaceSettings {
         for of_pole in each(likelihood.executor, numbers, |k| ranking.rank_pole(k)) {
             candidates.extend(of_pole?);
         }
+        // Step 3.
         candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         candidates.truncate(KEPT);
         Ok(candidates)
@@ -180,7 +186,7 @@ impl<'r> Ranking<'r> {
         })
     }
 
-    /// Computes a candidate for every past window with the pole at this index.
+    /// Computes a candidate for every past window with the pole at this index (steps 1 and 2).
     fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, Cancelled> {
         let executor = self.likelihood.executor;
         let poles = &self.settings.poles;

@@ -1,4 +1,8 @@
 //! Identifies a flight condition from its records (M14.5 to M14.7).
+//!
+//! CT-PBSID is a subspace method for continuous time ([`subspace`](crate::subspace)). Its models
+//! are then *refined*: their cost J over the spectral lines is minimised
+//! ([`likelihood`](crate::likelihood)).
 
 use std::sync::Arc;
 
@@ -121,10 +125,14 @@ pub fn identify(
 ) -> Result<Identification, IdentificationError> {
     options.check()?;
     let progress = Shares::new(progress);
+    // Step 1.
     progress.next(0.0, "records")?;
     let data = PreparedData::new(records, options, executor, &progress)?;
+    // Step 2.
     let proposal = propose(&data, options, &progress)?;
+    // Step 3.
     let refinement = refine(&data, &proposal, &progress)?;
+    // Step 4.
     let assessment = Assessment {
         records,
         options,

@@ -5,7 +5,8 @@
 //! noise of the outputs: S(omega) = N N^H + dt diag s_v^2,  N: response to the disturbances, of unit power density
 //!     (s_v standard deviations of the measurement noise, dt sample time)
 //! bound: standard deviations from the normal equations at a model, with weights from S
-//! ratio = median over responses and frequencies of |error| / (0.6745 sd of the bound)
+//! ratio = median over responses and frequencies of |error| / (0.6745 sd of the bound):
+//!     1 at the bound, because the median |x| of a normal x with sd 1 is 0.6745
 //! ```
 
 use nalgebra::{Complex, DMatrix};
@@ -176,7 +177,8 @@ pub(super) fn log_errors(
     response_at(found, omega).zip_map(&response_at(truth, omega), |own, known| (own / known).ln())
 }
 
-/// Errors over a set of flights, compared with the bound, and with the 95 % intervals.
+/// Errors over a set of flights, compared with the bound, and with the 95 % intervals. `held`
+/// counts the errors within their interval.
 #[derive(Default)]
 pub(super) struct Figures {
     /// `|error| / (0.6745 sd of the bound)` of each response and frequency.

@@ -1,4 +1,8 @@
 //! Selects the recommended model from those that CT-PBSID proposes (M14.7).
+//!
+//! CT-PBSID (`subspace`) proposes models for pairs of a Laguerre pole and a past window
+//! (`candidates`). A record's *noise factor* multiplies its noise power, so that records with
+//! unlike noise are weighed by their own (`noise_weights`).
 
 use std::collections::BTreeMap;
 
@@ -79,13 +83,20 @@ pub(crate) fn propose(
     })
 }
 
-/// Chooses the order, measures the noise over all records at its model, and descends to the
-/// minimum; if records get noise factors, also to the minimum without these.
+/// Chooses the order and refines its model.
+///
+/// ```text
+/// 1  the order, with its model (`order`)
+/// 2  weights from its residuals over all records, with noise factors if records are unlike
+/// 3  descent to the minimum of the cost with these weights
+/// 4  with noise factors: also to the minimum without them, where the records are compared
+/// ```
 pub(crate) fn refine_from<'a>(
     data: &PreparedData<'a>,
     starts: &BTreeMap<usize, Fit>,
     progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
+    // Step 1.
     progress.next(0.4, "order")?;
     let search = data
         .search_order(starts, progress)?
@@ -95,6 +106,7 @@ pub(crate) fn refine_from<'a>(
         .get(&search.order)
         .ok_or_else(|| data.no_model())?
         .clone();
+    // Step 2.
     progress.next(0.7, "refinement")?;
     let weights = search
         .weights
@@ -104,8 +116,10 @@ pub(crate) fn refine_from<'a>(
     let weights = weights
         .updated(data, &chosen)
         .ok_or_else(|| data.no_model())?;
+    // Step 3.
     let start = Fit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
     let fit = start.descended(&weights.likelihood, Limits::to(CONVERGED), progress)?;
+    // Step 4.
     let before_reweighing = match weights.ratio {
         Some(_) => {
             let start = Fit::start(&weights.without_factors, fit.model.clone())

@@ -1,5 +1,8 @@
 //! Line weights: from noise measured without a model, then from a model's residuals, with a factor
 //! for each record (M14.4, M14.20).
+//!
+//! A line's weight `W` whitens the noise covariance there (`noise_covariance`). A record's *noise
+//! factor* multiplies its noise power; the factors' geometric mean is 1.
 
 use super::prepared_data::PreparedData;
 use super::search_records::search_segments;

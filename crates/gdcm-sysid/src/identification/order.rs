@@ -4,6 +4,9 @@
 //! ```text
 //! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters (no coordinates),
 //!                                      m inputs, l outputs, J cost, N degrees of freedom
+//! delta^2 Newton decrement: the fall of J still expected in a descent (`descent`)
+//! static part of removed states: their effect in steady state (`balancing`)
+//!
 //! 1  top = order of the minimum BIC before any refinement
 //! 2  top model: noise from its residuals, descent, noise again, descent to the minimum (M14.20)
 //! 3  with the same weights: one state less (two for m + l > 6 and n > 8), with or without its
@@ -138,10 +141,10 @@ impl OrderSearch<'_> {
     }
 }
 
-/// Returns k, or k' of M14.21 if inputs miss samples: half of the states of each segment's transient
-/// then count as parameters as well. Beside a lightly damped mode, the transients of a mode that does
-/// not exist and the missing inputs together follow the noise. The half was found on 24 flights
-/// (seeds 5201 to 5224).
+/// Returns k, or k' of M14.21 if inputs miss samples: half of the states of each segment's
+/// transient then count as parameters as well. Beside a lightly damped mode, the transients of a
+/// mode that does not exist and the missing inputs together follow the noise. The half was found on
+/// 24 flights (seeds 5201 to 5224).
 pub(super) fn counted_parameters(model: &SchurModel, likelihood: &Likelihood) -> f64 {
     let k = model.parameters() as f64;
     if !likelihood.misses_inputs() {
@@ -194,16 +197,19 @@ impl<'a> PreparedData<'a> {
         starts: &BTreeMap<usize, Fit>,
         progress: &Shares,
     ) -> Result<Option<OrderSearch<'a>>, IdentificationError> {
+        // Step 1.
         let Some(mut top) = OrderSearch::first(starts, &self.likelihood) else {
             return Ok(None);
         };
         loop {
+            // Steps 2 and 3.
             let Some(descent) = self.descend_from(top, starts, progress)? else {
                 return Ok(None);
             };
             let Some(best) = order_of_least(&descent.criteria) else {
                 return Ok(None);
             };
+            // Step 4, or else step 5.
             let next = starts.range(top + 1..).next().map(|(order, _)| *order);
             let highest = descent.fits.keys().next_back().copied();
             match next {
@@ -375,8 +381,8 @@ impl Descent<'_> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Removes states from the refined model at `order` and refines the result; `None` if no model
-    /// is left.
+    /// Removes states from the refined model at `order` and refines the result (step 3); `None` if
+    /// no model is left.
     fn reduced(
         &self,
         order: usize,

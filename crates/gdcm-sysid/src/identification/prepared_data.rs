@@ -1,4 +1,9 @@
 //! Prepares the data to which models are fitted and by which they are assessed, in scaled units.
+//!
+//! A *segment* is a stretch of a record on a uniform grid, its *lines* are its spectrum at discrete
+//! frequencies (`spectrum`), and in *scaled units* each channel is divided by its rms (`scales`). A
+//! *reference* is a recorded signal that drove the loop from outside (M14.15); the *projections*
+//! are those of CT-PBSID (`subspace`). *Figures* are real values in the lines: two for each output.
 
 use std::f64::consts::{PI, TAU};
 
@@ -35,7 +40,8 @@ use crate::subspace::tried_orders::{Extent, VALUES_PER_UNKNOWN, parameters_of_or
 
 /// Number of frequencies at which the response is measured.
 const MEASURED_POINTS: usize = 40;
-/// Ratio of the highest line used for the measured response to the highest line that is fitted.
+/// Ratio of the highest line used for the measured response to the highest line that is fitted: the
+/// window around a point reaches beyond its frequency.
 const BEYOND: f64 = 1.3;
 /// Inputs depend on each other if their correlation matrix has a higher condition number than this.
 const COPY: f64 = 1e9;
@@ -107,6 +113,7 @@ impl<'a> PreparedData<'a> {
         executor: &'a dyn Executor,
         progress: &Shares,
     ) -> Result<Self, IdentificationError> {
+        // Step 1.
         check_held_out(records, options)?;
         let used = LineRange {
             lowest: options.lowest(),
@@ -127,10 +134,12 @@ impl<'a> PreparedData<'a> {
         if to_fit.is_empty() {
             return Err(IdentificationError::NothingToFit);
         }
+        // Step 2.
         let scales = Scales::from_segments(&to_fit)?;
         let segments = scale_all(&scales, &to_fit);
         check_inputs(&segments, options)?;
 
+        // Step 3.
         progress.next(0.02, "measured response")?;
         let filled_to_fit = scale_filled(&scales, &filled.to_fit);
         let lines = Lines::new(&segments, &filled_to_fit, used, executor);
@@ -148,11 +157,13 @@ impl<'a> PreparedData<'a> {
             let outputs = options.preparation.outputs.len();
             lines.measure_through_reference(&driven, outputs, executor)?
         };
+        // Step 4.
         let likelihood = weigh(&spectra, &measured, executor)?;
         let held_out_lines =
             used.filled_spectra(&scale_filled(&scales, &filled.held_out), executor);
         let held_out = weigh(&held_out_lines, &measured, executor)?;
 
+        // Step 5.
         progress.next(0.07, "low-pass")?;
         let cut_off = CutOff::choose(&segments, used.highest, executor);
         let mut cautions = model_cautions(prepared.cautions, options);

@@ -25,11 +25,13 @@ const LEAST_SHARE: f64 = 0.25;
 pub(crate) fn search_segments(spectra: &[Spectrum]) -> Vec<usize> {
     let mut records: Vec<usize> = spectra.iter().map(|spectrum| spectrum.record).collect();
     records.dedup();
+    // Steps 1 and 2.
     let mut used: BTreeSet<usize> = if records.len() <= ALL_UP_TO {
         records.into_iter().collect()
     } else {
         records.into_iter().step_by(ONE_OF).collect()
     };
+    // Step 3.
     let inputs = spectra
         .first()
         .map_or(0, |spectrum| spectrum.inputs.nrows());

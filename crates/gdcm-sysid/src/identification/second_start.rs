@@ -34,6 +34,7 @@ pub(crate) fn refine<'a>(
     let Some(starts) = starts_from_pieces(data, proposal, progress)? else {
         return Ok(first);
     };
+    // Steps 2 and 3.
     match refine_from(data, &starts, progress) {
         Ok(second) if deviance(&second) < deviance(&first) => Ok(second),
         Err(IdentificationError::Stopped(stopped)) => Err(stopped.into()),

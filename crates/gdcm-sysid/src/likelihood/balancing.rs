@@ -3,7 +3,7 @@
 //! ```text
 //! Wc = Re sum X X^H,         X = (j omega - A)^-1 B U
 //! Wo = Re sum (W C R)^H W C R,   R = (j omega - A)^-1
-//! U inputs at the lines, W whitening weights (`cost`)
+//! U inputs at the lines, W whitening weights (`cost`);  sums over all lines of all segments
 //! 1  Wc = L L',  Wo = M M', each with 1e-14 of its mean added to the diagonal
 //! 2  M' L = Q S V',  S descending, at least 1e-9 of its largest value
 //! 3  T = L V S^(-1/2),  T^-1 = S^(1/2) V' L^-1:   T^-1 Wc T^-T = T' Wo T = S
@@ -104,19 +104,21 @@ pub(crate) struct Coordinates {
 /// Returns the coordinates in which both Gramians are equal and diagonal (steps 1 to 3); `None` if
 /// a Gramian is not positive definite, or the iteration for the singular values does not converge.
 pub(crate) fn balancing_coordinates(gramians: &Gramians) -> Option<Coordinates> {
-    // L and M: what the inputs excite, and what the outputs show.
+    // Step 1: L and M, what the inputs excite, and what the outputs show.
     let reached = with_floor(gramians.controllability.clone())
         .cholesky()?
         .unpack();
     let seen = with_floor(gramians.observability.clone())
         .cholesky()?
         .unpack();
+    // Step 2.
     let decomposition = (seen.transpose() * &reached).try_svd(false, true, f64::EPSILON, 10_000)?;
     let directions = decomposition.v_t?;
     let largest = decomposition.singular_values.max();
     let roots = decomposition
         .singular_values
         .map(|value| value.max(LEAST_SINGULAR * largest).sqrt());
+    // Step 3.
     let mut transformation = &reached * directions.transpose();
     for (mut column, root) in transformation.column_iter_mut().zip(roots.iter()) {
         column.unscale_mut(*root);

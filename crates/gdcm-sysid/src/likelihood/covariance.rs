@@ -2,7 +2,9 @@
 //!
 //! ```text
 //! Cov theta = max(phi, 1) G^-1,   phi = J / (N - k)
-//!    theta: local parameters (`local_parameters`),   G: their normal matrix (`local_system`)
+//!    theta: local parameters, as many entries of [A B; C D] as the response has degrees of freedom
+//!    (`local_parameters`),   G: their normal matrix (`local_system`)
+//!    J cost, N degrees of freedom (`cost`), k parameters;   lambda a pole
 //! pole:      d lambda = w^H dA v,   w^H A = lambda w^H,  A v = lambda v,  w^H v = 1
 //! response:  dH = [C R, I] d[A B; C D] [R B; I],   R = (j omega - A)^-1
 //! ```

@@ -155,6 +155,7 @@ impl Fit {
                 Some(before) => costs[before] - self.cost,
                 None => f64::INFINITY,
             };
+            // The second limit in step 5.
             let steps_left = (MOST_STEPS + 1 - step) as f64;
             if self.cost - fall * steps_left / OBSERVED_STEPS as f64 > limits.hopeless_above
                 || !self.step(likelihood, limits, fall)
@@ -166,12 +167,14 @@ impl Fit {
         Ok(self)
     }
 
-    /// Takes a step (1 to 4); returns whether a further one may be worthwhile. `fall` is the
-    /// decrease in the cost over the last six steps, infinite before.
+    /// Takes a step (1 to 4, and the first limit in 5); returns whether a further one may be
+    /// worthwhile. `fall` is `F`, the decrease in the cost over the last six steps, infinite
+    /// before.
     fn step(&mut self, likelihood: &Likelihood, limits: Limits, fall: f64) -> bool {
         let Some(dispersion) = self.dispersion(likelihood) else {
             return false;
         };
+        // Step 1.
         self.balance(likelihood);
         let Some(system) =
             NormalEquations::new(likelihood, &self.model, &self.parts, bin_width(likelihood))
@@ -182,6 +185,7 @@ impl Fit {
         let scaled = ScaledSystem::new(system);
         let k_phi = self.model.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
+        // Step 2, and the first limit in step 5 after six slow steps.
         // With damping, g'd is a lower bound on delta^2, which is computed only where it may end
         // the descent.
         let square_at_least = direction
@@ -202,6 +206,7 @@ impl Fit {
                 return false;
             }
         }
+        // Steps 3 and 4.
         for _ in 0..=FAILURES {
             if let Some(direction) = direction
                 && self.try_step(likelihood, &scaled, &direction)

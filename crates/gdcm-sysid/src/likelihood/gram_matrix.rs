@@ -1,4 +1,5 @@
-//! Inverts Gram matrices whose columns may depend on each other.
+//! Inverts Gram matrices, `G = M'M` for a matrix M whose columns may depend on each other, and
+//! solves with positive definite ones.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -67,15 +68,17 @@ pub(crate) fn solve_positive_definite(
     for first in (0..size).step_by(PANEL) {
         let width = PANEL.min(size - first);
         let next = first + width;
+        // Step 1.
         let diagonal = matrix.view((first, first), (width, width)).into_owned();
         let lower = diagonal.cholesky()?.unpack();
         let below = size - next;
-        // L_ik' = L_kk^-1 A_ik'
+        // Step 2: L_ik' = L_kk^-1 A_ik'
         let turned = matrix.view((next, first), (below, width)).transpose();
         let factor = lower.solve_lower_triangular(&turned)?.transpose();
         matrix
             .view_mut((first, first), (width, width))
             .copy_from(&lower);
+        // Step 3.
         for column in (next..size).step_by(PANEL) {
             let columns = PANEL.min(size - column);
             let rows = factor.rows(column - next, size - column);

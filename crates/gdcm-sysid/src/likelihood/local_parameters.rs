@@ -43,8 +43,8 @@ pub(crate) struct LocalParameters {
 }
 
 impl LocalParameters {
-    /// Selects the entries for a model with the information matrix `G` in all entries, column after
-    /// column.
+    /// Selects the entries for a model (steps 1 and 2) with the information matrix `G` in all
+    /// entries, column after column.
     pub(crate) fn select(model: &SchurModel, matrix: &DMatrix<f64>) -> Self {
         let (outputs, inputs) = model.d().shape();
         let rows = model.order() + outputs;

@@ -66,11 +66,13 @@ impl LocalSystem {
     ///
     /// `None` if the matrix is not positive definite, or the step not finite.
     pub(crate) fn damped_step(&self, lambda: f64) -> Option<DVector<f64>> {
+        // Steps 1 and 2.
         let mut scaled = self.matrix.clone();
         let scales = scale_columns(&mut scaled);
         for (k, scale) in scales.iter().enumerate() {
             scaled[(k, k)] = if *scale > 0.0 { 1.0 + lambda } else { 1.0 };
         }
+        // Step 3.
         let step = scaled
             .cholesky()?
             .solve(&self.gradient.component_mul(&scales))

@@ -25,6 +25,7 @@ pub(crate) struct ModelWithoutRecord {
 /// normal systems.
 ///
 /// ```text
+/// G, g normal equations of all records at the fitted model, G_r, g_r of record r (`local_system`)
 /// (G' + lambda diag G') d = g - g_r,   G' = G - G_r: without the record r
 /// lambda = 1e-4, times 8 until the cost over the other records falls, at most 8 times;
 /// if it does not fall, the model is that fitted to all records

@@ -1,4 +1,7 @@
 //! The noise covariance over frequency, and the weights that follow from it (M14.2, M14.4).
+//!
+//! The *noise* is the part of the outputs' spectral lines that the inputs do not explain: sensor
+//! noise and gusts.
 
 use nalgebra::{Complex, DMatrix};
 

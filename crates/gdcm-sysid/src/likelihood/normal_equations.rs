@@ -56,6 +56,7 @@ impl NormalEquations {
         parts: &[SegmentCost],
         bin_width: f64,
     ) -> Option<Self> {
+        // Step 1.
         let resolvents = likelihood.resolvents(model);
         let binning = Binning::new(likelihood, bin_width);
         let products = binning.vector_products(likelihood, model);
@@ -78,6 +79,7 @@ impl NormalEquations {
                 segment.sums(line_bins, bin_count)
             },
         );
+        // Steps 2 and 4: sums over the segments.
         let outputs = model.d().nrows();
         let order = model.order();
         let size = order + model.d().ncols();
@@ -90,6 +92,7 @@ impl NormalEquations {
         }
         let mut matrix = kronecker_sum(&products, &squares, likelihood.executor);
         let whole_diagonal = matrix.diagonal();
+        // Step 3.
         let segments = likelihood.segments.iter().zip(&sums);
         let explained = each(likelihood.executor, segments, |(lines, sums)| {
             sums.nuisance.explained(&products, lines, model)

@@ -1,4 +1,8 @@
 //! A segment's nuisance columns, and their elimination from a vector: steps 1 to 3 in `cost`.
+//!
+//! A *nuisance column* of `T` is the whitened effect, on the segment's lines, of an unknown that is
+//! no parameter of the model: an entry of the transient tau, of the step c0 or of the drift c1, or
+//! the height of a *hat*, a triangle that describes missing samples (`gap_hat`).
 
 use nalgebra::{Complex, DMatrix, DVector};
 

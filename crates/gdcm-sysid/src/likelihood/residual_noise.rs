@@ -76,6 +76,7 @@ pub(crate) fn residual_noise(
     let taken_by_model = parameters as f64 / values as f64;
     let resolvents = likelihood.resolvents(model);
     let segments = likelihood.segments.iter().zip(parts);
+    // Step 1.
     let lines_of_segments = each(likelihood.executor, segments, |(segment, part)| {
         let shares = segment.transient_shares(model, &resolvents)?;
         residual_lines(segment, part, &shares, taken_by_model)
@@ -87,6 +88,7 @@ pub(crate) fn residual_noise(
     lines.sort_by(|a, b| a.log_omega.total_cmp(&b.log_omega));
     let lowest = lines.first()?.log_omega.exp();
     let highest = lines.last()?.log_omega.exp();
+    // Steps 2 and 3.
     let mut points = Vec::with_capacity(POINTS);
     for omega in log_spaced(lowest, highest, POINTS) {
         points.push(NoisePoint {
@@ -134,6 +136,7 @@ fn covariance_around(
         sums = WeightedSums::new(lines, log_omega, half_width, outputs);
     }
     let freedom = sums.freedom();
+    // Step 3.
     // The diagonal matrix counts as much as this many degrees of freedom: l in step 3.
     let diagonal_freedom = outputs as f64;
     let mut covariance = sums.products.unscale(sums.left);

@@ -21,6 +21,8 @@ pub(crate) struct Eigenvectors {
 /// ```text
 /// A = Q T Q^H,   C (j omega - A)^-1 = (C Q) (j omega - T)^-1 Q^H
 /// ```
+///
+/// T is triangular, so that an equation at a frequency is solved by substitution.
 #[derive(Clone, Debug)]
 pub(crate) struct SchurModel {
     a: DMatrix<f64>,
@@ -122,8 +124,8 @@ impl SchurModel {
         )
     }
 
-    /// Computes `X = (j omega - A)^-1 (B U + tau)` at many frequencies \[rad/s\]; `inputs` is U,
-    /// inputs x lines. n x lines.
+    /// Computes `X = (j omega - A)^-1 (B U + tau)` at many frequencies \[rad/s\], n x lines;
+    /// `inputs` is U, inputs x lines, and `transient` is tau, initial less final state (`cost`).
     pub(crate) fn states(
         &self,
         omega: &[f64],

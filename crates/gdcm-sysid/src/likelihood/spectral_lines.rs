@@ -1,4 +1,8 @@
 //! A segment's spectral lines, whitened by the noise covariance.
+//!
+//! U and Y are the spectra of the inputs and the outputs, and W makes the noise at a line white,
+//! with unit variance in real and imaginary part (`noise_covariance`). A *hat* describes missing
+//! samples (`gap_hat`); tau, c0 and c1 are a segment's transient, step and drift (`cost`).
 
 use nalgebra::{Complex, DMatrix};
 

@@ -4,7 +4,14 @@
 //! ```text
 //! G = sum over lines of Re(V^H V (x) conj(S) S'),   phi = max(J / (N - k), 1)     (M14.19, M14.25)
 //! information = G / phi,   noise of a line = phi Cv
+//!
+//! V S: derivative of the whitened model output by the entries of [A B; C D] (`normal_equations`)
+//! J cost, N degrees of freedom (`cost`), k parameters;   Cv noise covariance (`noise_covariance`)
 //! ```
+//!
+//! A *standard sweep* is the sweep that predictions start from: as strong and as long as the
+//! strongest flown for its input. A *reference* is a recorded signal that drove the loop from
+//! outside (M14.15).
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -147,8 +154,8 @@ fn balanced(likelihood: &Likelihood, model: &SchurModel) -> Option<SchurModel> {
     model.in_coordinates(&coordinates.transformation, &coordinates.inverse)
 }
 
-/// Returns the range of the lines used \[rad/s\], from the first that a record of this length has,
-/// but at most from half its upper end.
+/// Returns the range of the lines used \[rad/s\]. It begins at the first line that a record of this
+/// length has, if that is higher, but at most at half its upper end.
 fn sweep_band(lines: [f64; 2], length_s: f64) -> [f64; 2] {
     let first = FIRST_LINE * TAU / length_s;
     [lines[0].max(first).min(0.5 * lines[1]), lines[1]]

@@ -1,4 +1,7 @@
 //! Tables of the confidence intervals predicted after further sweeps.
+//!
+//! The standard table takes one, two and four *standard sweeps* of each input: sweeps as strong and
+//! as long as the strongest flown for that input (`flight_information`).
 
 use gdcm_model::dataset::Pair;
 

@@ -1,19 +1,32 @@
-//! Predicts standard deviations after further sweeps.
+//! Predicts standard deviations after further sweeps (M14.25: `docs/identification.md`).
 //!
 //! ```text
-//! G, G_j information from the flown records and from planned sweep j, which is flown r_j times
+//! Theta = [A B; C D] the entries of the identified model;  R = (j omega I - A)^-1
+//! H = C R B + D its response;  H_oi output o, input i;  [..]_o row o, [..]_i column i
+//! U, Y spectra of the inputs and the outputs;  tau transient: initial less final state (`cost`)
+//! G, G_j Fisher information about Theta (`normal_equations`) from the flown records and from
+//!    planned sweep j, which is flown r_j times
+//! phi dispersion: cost per degree of freedom, at least 1; it scales the assumed noise power to
+//!    that of the residual
+//! N changes of the state coordinates, which H does not show, so that G is singular along them
+//! sd_now, sd standard deviation of ln H_oi as reported now (`bands`), and after the sweeps
+//!
 //! 1  G_j: U from the sweep's samples, Y = H U, tau = 0 (the sweep begins and ends in trim), the
 //!    other inputs 0, the noise that of the flown records
-//! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   N the changes of coordinates,
-//!    c such that c N N' and G/phi have the same trace
-//! 3  h = gradient of ln H_oi:  dH = [C R, I]_o dTheta [R B; I]_i     (M14.25)
+//! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   c such that c N N' and G/phi have the same trace:
+//!    c N N' makes T regular along N
+//! 3  h = gradient of ln H_oi in Theta:  dH = [C R, I]_o dTheta [R B; I]_i
 //!    var = h' T^-1 h, the same as h' (...)^+ h: h is orthogonal to N, and N' G = 0
+//!    var_now likewise, without the planned sweeps
 //! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = b^2 / 2,  b the fed-back share (M14.17)
+//!    f at most sd_now;  var / var_now at most 1
 //! ```
 //!
-//! Step 4 keeps the fed-back share of the response if it is visible: further flights of the same
-//! kind do not change it. Otherwise it is due to noise, as are the differences between neighbouring
-//! orders: both fall with the fit's variance.
+//! Why step 4 has two parts: `sd_now` contains the variance of the fit, the spread between
+//! neighbouring model orders, and the fed-back share, by which gusts and noise reach the response
+//! through feedback. A visible fed-back share remains, because further flights of the same kind do
+//! not change it. The spread between orders, and a share that is not visible (f = 0), are due to
+//! noise: they fall with the variance of the fit.
 
 use std::cell::OnceCell;
 
@@ -38,7 +51,7 @@ use crate::spectra::spectrum::LineRange;
 /// Share of the diagonal added to the information: a direction about which the flights say nothing
 /// keeps a large but finite variance.
 const FLOOR: f64 = 1e-12;
-/// Largest standard deviation of `ln H`.
+/// Largest standard deviation of `ln H` \[neper and rad\], as in `bands`.
 const UNKNOWN: f64 = 1e3;
 
 /// Half-width of a response's 95 % interval at a frequency.
@@ -52,7 +65,7 @@ pub struct ResponseInterval {
 pub struct FlightPlanner<'a> {
     information: &'a FlightInformation,
     model: SchurModel,
-    /// `G/phi + c N N'`.
+    /// `G/phi + c N N'`, whereas [`FlightInformation`] holds `G/phi` alone.
     flown: DMatrix<f64>,
     executor: &'a dyn Executor,
     /// The flown records' factored information, computed at its first use.
@@ -63,7 +76,8 @@ pub struct FlightPlanner<'a> {
 #[derive(Clone)]
 pub(super) struct SweepInformation(pub(super) DMatrix<f64>);
 
-/// A planned sweep with the number of times that it is flown, which may be a fraction.
+/// A planned sweep with the number of times that it is flown. A fraction stands for another
+/// amplitude: a sweep with a times the amplitude brings `a^2` times the information.
 pub(super) struct Repeated<'p> {
     pub(super) information: &'p SweepInformation,
     pub(super) times: f64,
@@ -77,11 +91,13 @@ pub(super) struct LogVariance {
 }
 
 impl<'a> FlightPlanner<'a> {
-    /// Prepares the predictions; `None` if an iteration does not converge.
+    /// Prepares the predictions with the flown records' part of `T` (step 2); `None` if the Schur
+    /// iteration for the model does not converge.
     #[must_use]
     pub fn new(information: &'a FlightInformation, executor: &'a dyn Executor) -> Option<Self> {
         let model = SchurModel::from_state_space(&information.model)?;
         let changes = coordinate_changes(&model);
+        // c N N'.
         let mut fixed = &changes * changes.transpose();
         let ratio = information.flown.trace() / fixed.trace();
         if ratio.is_finite() && ratio > 0.0 {
@@ -102,8 +118,8 @@ impl<'a> FlightPlanner<'a> {
         self.information
     }
 
-    /// Computes the information from a single sweep (step 1); `None` if it has no lines, or if an
-    /// iteration does not converge.
+    /// Computes the information from a single sweep (step 1); `None` if it has no lines in the
+    /// range used, or under the conditions of [`SpectralLines::new`] and [`NormalEquations::new`].
     pub(super) fn sweep_information(&self, sweep: &PlannedSweep) -> Option<SweepInformation> {
         let (outputs, inputs) = self.model.d().shape();
         let scale = *self.information.scales.inputs.get(sweep.input)?;
@@ -112,6 +128,9 @@ impl<'a> FlightPlanner<'a> {
         let segment = sweep.segment(inputs, outputs, scale);
         let spectra = range.spectra(std::slice::from_ref(&segment), self.executor);
         let lines = SpectralLines::new(spectra.first()?, &self.information.noise)?;
+        // Y = H U and tau = 0 leave no residual. The matrix G_j does not depend on the residual,
+        // but only on U, on tau and on the values of missing samples, of which a planned sweep has
+        // none.
         let part = SegmentCost {
             cost: 0.0,
             transient: DVector::zeros(self.model.order()),
@@ -150,7 +169,8 @@ impl<'a> FlightPlanner<'a> {
         }
     }
 
-    /// Predicts a response's interval (step 4).
+    /// Predicts a response's interval (steps 3 and 4). Half-widths are 1.96 sd, so that step 4
+    /// holds for them as it does for sd.
     pub(super) fn interval(
         &self,
         after: &FactoredInformation,
@@ -168,8 +188,11 @@ impl<'a> FlightPlanner<'a> {
         })
     }
 
-    /// Returns the interval's limit for infinitely many flights: the share visibly fed back. It is
-    /// 0 for an input that was not swept, because a sweep exceeds what is fed back into it.
+    /// Returns the interval's limit for infinitely many flights, 1.96 f (step 4): the share visibly
+    /// fed back.
+    ///
+    /// It is 0 without a visible share, and for an input that was not swept: that share was
+    /// measured without a sweep, and a planned sweep exceeds what is fed back into the input.
     #[must_use]
     pub fn interval_limit(&self, pair: Pair, omega: f64) -> ResponseInterval {
         let was_swept = self
@@ -189,8 +212,9 @@ impl<'a> FlightPlanner<'a> {
         }
     }
 
-    /// Returns the gradient of `ln H` in all entries of `[[A, B], [C, D]]`: columns for its real
-    /// and imaginary part.
+    /// Returns `h`, the gradient of `ln H_oi` in all entries of `[[A, B], [C, D]]` (step 3):
+    /// columns for its real part (log modulus) and its imaginary part (phase). The entries run
+    /// column after column, as in [`NormalEquations`].
     pub(super) fn log_gradient(&self, pair: Pair, omega: f64) -> DMatrix<f64> {
         let order = self.model.order();
         let (outputs, inputs) = self.model.d().shape();
@@ -199,6 +223,7 @@ impl<'a> FlightPlanner<'a> {
         let mut moved = DMatrix::zeros(inputs, 1);
         moved[pair.input] = Complex::from(1.0);
         let states = self.model.states(&[omega], &moved, &DVector::zeros(order));
+        // [C R, I]_o, then [R B; I]_i.
         let mut rows: Vec<Complex<f64>> = cr.row(pair.output).iter().copied().collect();
         rows.resize(order + outputs, Complex::default());
         rows[order + pair.output] = Complex::from(1.0);
@@ -218,7 +243,7 @@ impl<'a> FlightPlanner<'a> {
     }
 }
 
-/// The lower Cholesky factor of an information matrix with columns scaled to unit length.
+/// The lower Cholesky factor of `T`, with columns scaled to unit length (step 2).
 pub(super) struct FactoredInformation {
     /// Factors that scale the columns.
     scales: DVector<f64>,
@@ -243,7 +268,7 @@ impl FactoredInformation {
         })
     }
 
-    /// Computes the variances along a gradient with two columns; `None` if one is not finite.
+    /// Computes `var` along a gradient with two columns (step 3); `None` if one is not finite.
     pub(super) fn variance(&self, gradient: &DMatrix<f64>) -> Option<LogVariance> {
         let mut scaled = gradient.clone();
         for mut column in scaled.column_iter_mut() {
@@ -262,8 +287,8 @@ impl FactoredInformation {
     }
 }
 
-/// Returns an interval's half-width when the fit's variance falls to a share of its present value
-/// (step 4).
+/// Returns an interval's half-width when the fit's variance falls to the share `var / var_now` of
+/// its present value (step 4).
 fn reduced(now: f64, fed_back: f64, share: f64) -> f64 {
     let fixed = fed_back.min(now).powi(2);
     (fixed + (now.powi(2) - fixed) * share.clamp(0.0, 1.0)).sqrt()

@@ -1,5 +1,16 @@
 //! Finds out how to reach a wanted interval: by more, longer or stronger sweeps, or by a narrower
 //! band.
+//!
+//! A *target* is the wanted half-width \[dB\] of a response's 95 % interval at a frequency. Each of
+//! four ways is examined alone, and the least amount that reaches the target is found by bisection
+//! (`least_number`):
+//!
+//! ```text
+//! more      sweeps like the given one, up to a given number
+//! longer    one sweep of 5 s, 10 s, ... 300 s
+//! stronger  one sweep with 0.05, 0.1, ... 3 times the amplitude; information grows with its square
+//! narrower  sweeps from half to twice the target's frequency, up to the same number
+//! ```
 
 use gdcm_model::dataset::Pair;
 

@@ -4,6 +4,8 @@
 //! u(t) = A sin theta(t),   d theta/dt = omega_1 + K(t) (omega_2 - omega_1),   0 <= t < T
 //! K(t) = C2 (e^(C1 t/T) - 1),   C1 = 4,   C2 = 1/(e^C1 - 1) = 0.0187
 //!
+//! A amplitude, theta phase, T length, omega_1 and omega_2 ends of the band;  K rises from 0 to 1
+//!
 //! |U(omega)|^2 ~ pi A^2 / (2 C1 (omega - omega_1 + C2 (omega_2 - omega_1)))
 //! ```
 //!

@@ -1,4 +1,8 @@
-//! Advises which sweeps to fly for responses that are not identified.
+//! Advises which sweeps to fly for responses that are not identified: those whose standard
+//! deviation exceeds 3 dB in the middle of the band (M14.5).
+//!
+//! For each input with such responses, the advice is the least number of standard sweeps
+//! (`flight_information`) after which the widest of their intervals is narrow enough.
 
 use gdcm_model::dataset::Pair;
 

@@ -1,4 +1,7 @@
 //! A record's column, used as a channel.
+//!
+//! A *remedy* ([`ChannelRemedy`]) is a correction to a channel in one record, which disagrees with
+//! the others without it: a factor on its samples, and a delay to remove (M14.16).
 
 use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::names::channel_rule::ChannelRule;

@@ -8,7 +8,8 @@ use super::stamped_channel::StampedChannel;
 
 /// Ratio of the highest spectral line used to the upper end of the band (M14.9).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
-/// Minimum number of samples per period of the highest line, in a channel and at a requested rate.
+/// Minimum number of samples per period of the highest line, in a channel and at a requested rate:
+/// with fewer, the band is not visible.
 const NEEDED: f64 = 2.5;
 /// Minimum number of samples per period of the highest line, on a clock without a requested rate.
 const LEAST_ON_CLOCK: f64 = 4.0;
@@ -51,10 +52,10 @@ impl CommonClock {
     /// ```
     ///
     /// # Errors
-    /// [`ResamplingError::TooSlow`] for a channel or a requested rate with fewer than 2.5 whi/2π samples
-    /// in a second; [`ResamplingError::NoCommonTime`] for channels that share no time;
-    /// [`ResamplingError::TooMany`] for more than ten million samples; [`ResamplingError::TooFew`] without
-    /// channels.
+    /// [`ResamplingError::TooSlow`] for a channel or a requested rate with fewer than 2.5 whi/2π
+    /// samples in a second; [`ResamplingError::NoCommonTime`] for channels that share no time;
+    /// [`ResamplingError::TooMany`] for more than ten million samples; [`ResamplingError::TooFew`]
+    /// without channels.
     pub fn choose(
         channels: &[StampedChannel],
         band_end: Option<f64>,

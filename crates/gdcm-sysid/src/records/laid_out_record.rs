@@ -1,5 +1,9 @@
 //! A record with its channels' columns, and the information in its name: as proposed, as stored in
 //! a dataset, or as edited by the user.
+//!
+//! A *layout* assigns a record's columns to its time and channels ([`RecordLayout`]). A *remedy*
+//! ([`ChannelRemedy`]) is a factor on a channel's samples and a delay to remove, in one record. The
+//! dataset stores remedies, but no layout, in the record's *entry* ([`ConditionRecord`]).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

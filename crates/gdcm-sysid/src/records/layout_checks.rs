@@ -1,4 +1,7 @@
 //! Checks on the columns chosen from a record: problems that prevent their use, and cautions.
+//!
+//! A *rule* ([`ChannelRule`]) describes a channel to read: its name and unit, and its names in
+//! files.
 
 use gdcm_model::names::channel_rule::ChannelRule;
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
@@ -17,8 +20,8 @@ use super::time_base::TimeBase;
 const LONGEST_DELAY_S: f64 = 10.0;
 
 impl RecordLayout {
-    /// Returns all problems with the chosen columns; empty if [`RecordLayout::flight_record`] returns
-    /// a record.
+    /// Returns all problems with the chosen columns; empty if [`RecordLayout::flight_record`]
+    /// returns a record.
     ///
     /// ```text
     /// 1  time: none chosen; a sample time that is not positive; stamps that do not increase, or
@@ -28,7 +31,9 @@ impl RecordLayout {
     /// 4  without these: clocks that cannot be combined (M14.11)
     /// ```
     pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
+        // Step 1.
         let mut problems = self.time_problems(table);
+        // Step 2.
         for ChannelUse { side, rule, used } in self.uses(channels) {
             match used {
                 Some(used) => problems.extend(channel_problem(table, rule, used)),
@@ -39,6 +44,7 @@ impl RecordLayout {
                 }),
             }
         }
+        // Steps 3 and 4.
         problems.extend(self.shared_columns(table, channels));
         if problems.is_empty()
             && let Some(Err(error)) = Resampling::new(self, table, channels)

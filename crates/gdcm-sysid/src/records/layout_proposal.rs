@@ -1,4 +1,8 @@
 //! Proposed columns for a record's time and channels.
+//!
+//! A *rule* ([`ChannelRule`]) describes a channel to read: its name, its unit, its names in files
+//! (*aliases*), and its unit in files that give none. A *topic* is a group of columns that share
+//! stamps of their own.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_rule::ChannelRule;
@@ -74,6 +78,7 @@ impl RecordLayout {
             mut problems,
             ..
         } = proposer;
+        // Step 5.
         let is_reported = !problems.is_empty();
         for problem in layout.problems(table, channels) {
             let is_missing = matches!(

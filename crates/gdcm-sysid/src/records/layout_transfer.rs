@@ -1,6 +1,7 @@
 //! Transfers a layout, the user's edits or remedies to another record.
 //!
-//! Columns are matched by name.
+//! Columns are matched by name. A *remedy* ([`ChannelRemedy`]) is a factor on a channel's samples
+//! and a delay to remove, in one record only.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ChannelRemedy;

@@ -1,4 +1,8 @@
 //! A record's columns, assigned to its time and channels.
+//!
+//! A *rule* ([`ChannelRule`]) describes a channel to read: its name and unit, and its names in
+//! files. A *remedy* ([`ChannelRemedy`]) is a factor on a channel's samples and a delay to remove,
+//! in one record.
 
 use std::collections::BTreeMap;
 

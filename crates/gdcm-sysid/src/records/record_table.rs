@@ -1,4 +1,7 @@
 //! A record as stored in its file: columns with samples.
+//!
+//! A *topic* is a group of columns in a log that share stamps of their own, such as those of one
+//! sensor.
 
 use std::sync::Arc;
 

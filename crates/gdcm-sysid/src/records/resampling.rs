@@ -1,4 +1,7 @@
 //! Resamples columns with separate clocks to a common clock (M14.11).
+//!
+//! A *topic* is a group of columns that share stamps of their own. An input is *held* if it keeps
+//! its value until the next sample, as a digital command does.
 
 use nalgebra::DMatrix;
 
@@ -72,6 +75,7 @@ impl Resampling {
         table: &RecordTable,
         channels: &RecordChannels,
     ) -> Option<Result<Self, ResamplingError>> {
+        // Step 1.
         let chosen = channel_columns(layout, table, channels)?;
         let settings = &channels.resampling;
         let has_several_clocks =
@@ -79,6 +83,7 @@ impl Resampling {
         if chosen.is_empty() || !(has_several_clocks || settings.rate_hz.is_some()) {
             return None;
         }
+        // Step 2.
         let table_time_s = layout.time?.times_s(table);
         let mut held = Vec::new();
         let mut stamped = Vec::new();
@@ -95,6 +100,7 @@ impl Resampling {
                 Err(error) => return Some(Err(error)),
             }
         }
+        // Step 3.
         let clock = match CommonClock::choose(&stamped, settings.band_end, settings.rate_hz) {
             Ok(clock) => clock,
             Err(error) => return Some(Err(error)),

@@ -1,5 +1,14 @@
 //! Splits a table that holds several records: by a column that numbers them, or where its stamps
 //! restart.
+//!
+//! ```text
+//! the first that applies to a table without topics (columns with stamps of their own):
+//! by column  a column named like a record number, with several runs of equal integers
+//! by time    stamps restart: they decrease and stay below the earlier stamp for 10 samples, since
+//!            a shorter decrease is an error in the stamps
+//! none       the table is one record
+//! each record has at least 20 samples, or the table is not split so
+//! ```
 
 use std::ops::Range;
 

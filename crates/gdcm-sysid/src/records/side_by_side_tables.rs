@@ -1,4 +1,6 @@
 //! Recognises tables side by side in one table, each preceded by its own stamp column.
+//!
+//! Each becomes a *topic*: a group of columns that share stamps of their own.
 
 use std::sync::Arc;
 
@@ -26,7 +28,9 @@ impl RecordTable {
     /// ```
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {
+        // Step 1.
         let stamp_columns = self.stamp_columns();
+        // Step 2.
         if !self.named || self.has_topics() || !self.has_samples_behind(&stamp_columns) {
             return self;
         }
@@ -40,6 +44,7 @@ impl RecordTable {
         if !are_clocks_of_topics(&clocks) {
             return self;
         }
+        // Step 3.
         for (index, clock) in clocks.iter().enumerate() {
             let first = stamp_columns[index] + 1;
             let end = match stamp_columns.get(index + 1) {

@@ -1,4 +1,5 @@
-//! Where a record's sample times come from: a stamp column, a sample time, or topics.
+//! Where a record's sample times come from: a stamp column, a sample time, or topics (groups of
+//! columns that share stamps of their own).
 
 use gdcm_model::names::time_name::time_name_rank;
 
@@ -39,6 +40,7 @@ impl TimeRank {
         let by_name = if table.named {
             time_name_rank(&candidate.name)?
         } else if column == 0 {
+            // Any rank: this column is the only candidate.
             2
         } else {
             return None;

@@ -1,5 +1,6 @@
 //! Joins topic tables into one record: their columns side by side, each with its topic's stamps.
 //!
+//! A *topic* is a group of columns in a log that share stamps of their own; here each has a table.
 //! A table's name becomes part of its column names. A dataset keeps the joined record's name, from
 //! which it is joined again.
 
@@ -64,9 +65,11 @@ pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
         source,
         ..RecordTable::new(common_name(tables), Vec::new())
     };
+    // Steps 1 and 2.
     let names = topic_names(tables);
     let prefix = common_prefix(&names);
     let seconds = seconds_by_name(tables);
+    // Step 3.
     let mut taken = Vec::new();
     let mut left_out = Vec::new();
     for (table, name) in tables.iter().zip(&names) {
@@ -80,6 +83,7 @@ pub(super) fn join_topics(tables: &[RecordTable]) -> RecordTable {
         }
         joined.modes.extend(table.modes.iter().cloned());
     }
+    // Step 4.
     joined.notes.push(format!(
         "one record from {}: {}",
         counted(taken.len(), "topic"),

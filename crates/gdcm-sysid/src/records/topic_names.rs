@@ -1,4 +1,7 @@
 //! Names for topics and their logs, from file and variable names.
+//!
+//! A *topic* is a group of columns that share stamps of their own, and a *log* is the record that
+//! its topics form together. Here each topic is a file or a variable.
 
 use std::collections::BTreeMap;
 

@@ -61,6 +61,7 @@ impl Clipping {
         }
         let flat_elsewhere: Vec<usize> =
             elsewhere.into_iter().filter(|length| *length > 1).collect();
+        // Step 1, then steps 2 and 3.
         let shortest = SHORTEST.max(OVER_USUAL * usual_length(&flat_elsewhere));
         let at_limit: usize = at_ends
             .into_iter()

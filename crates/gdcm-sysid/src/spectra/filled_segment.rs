@@ -1,4 +1,8 @@
-//! A segment whose missing samples are filled by straight lines and remain unknown (M14.21).
+//! A segment whose longer gaps are filled by straight lines, but remain unknown (M14.21).
+//!
+//! Short gaps are bridged before (`valid_samples`), and the bridge counts as measured. Here a
+//! straight line is only the beginning: *hats*, triangles in the gap (`gap_hat`), are added to it,
+//! whose heights are estimated together with each model.
 
 use nalgebra::DVectorViewMut;
 
@@ -156,8 +160,8 @@ mod tests {
 
     #[test]
     fn a_record_is_cut_where_the_hats_are_a_tenth_of_the_values() {
-        // 66 s have 2 2 166 = 664 real values up to 16 rad/s, 664 / 10 / 2 = 33 hats in each output:
-        // gaps of up to 79 samples (ceil(2 16 0.04 80 / pi) = 33).
+        // 66 s have 2 2 166 = 664 real values up to 16 rad/s, 664 / 10 / 2 = 33 hats in each
+        // output: gaps of up to 79 samples (ceil(2 16 0.04 80 / pi) = 33).
         for (samples, parts) in [(79, 1), (84, 2)] {
             let mut record = record();
             record.outputs.rows_mut(750, samples).fill(f64::NAN);

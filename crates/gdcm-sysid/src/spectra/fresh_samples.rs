@@ -1,5 +1,8 @@
 //! Reduces a channel to the samples at which it was updated: stairs keep their first sample only.
 //! Used by the searches for spikes and rate limits, which compare neighbouring samples.
+//!
+//! *Stairs* are runs of equal samples in a channel that moves: it is held, or logged more often
+//! than it changes (`stairs`).
 
 use gdcm_model::statistics::median;
 

@@ -1,7 +1,9 @@
 //! Missing samples as unknowns in the likelihood (M14.21).
 //!
+//! A *hat* is a triangle in a gap, whose height is estimated together with each model (`cost`).
+//!
 //! ```text
-//! true signal = signal filled by a straight line + sum_q c_q hat_q
+//! true signal = signal filled by a straight line + sum_q c_q hat_q,   c_q the heights
 //! dt sample time, T length of the segment, whi highest line used, gap = missing samples times dt
 //! hat_q: linear B-splines, zero at both ends of the gap, at most pi/(2 whi) apart
 //!     count = ceil(2 whi (gap + dt) / pi), at most one a sample

@@ -1,6 +1,8 @@
 //! Reads a record's samples on its uniform grid, and divides them into parts in which missing
 //! samples can be estimated (M14.1, M14.21).
 //!
+//! A *stretch* is the grid points between two gaps in the stamps (`record_clock`).
+//!
 //! ```text
 //! row   all channels' values at a grid point;   hole: consecutive rows in which a value is missing
 //! run   consecutive rows between holes
@@ -165,6 +167,7 @@ impl GridRows {
 
     /// Divides the rows into parts (steps 1 and 2); without `lines`, at every hole.
     pub(crate) fn parts(&self, lines: Option<LineRange>, sample_time_s: f64) -> Vec<RowRange> {
+        // Step 1.
         let runs = self.runs(0..self.count());
         let Some(lines) = lines else {
             return runs;
@@ -185,6 +188,7 @@ impl GridRows {
         if !runs.is_empty() {
             open.push(0..runs.len());
         }
+        // Step 2.
         while let Some(range) = open.pop() {
             let rows = runs[range.start].start..runs[range.end - 1].end;
             let holes = range.start..range.end - 1;

@@ -1,5 +1,5 @@
 //! Measures the frequency response from spectral lines without a model, by the local polynomial
-//! method.
+//! method (M14.2): [`local_polynomial`] has the steps.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -142,7 +142,7 @@ impl LocalFit {
         &self.power / self.window.count as f64
     }
 
-    /// Returns `Cov V` at a line (step 4), outputs x outputs.
+    /// Returns `Cv` at a line (step 4), outputs x outputs; complex, before the real part is taken.
     pub(crate) fn covariance(&self) -> DMatrix<Complex<f64>> {
         let residual = self.r.view(
             (self.unknowns(), self.unknowns()),

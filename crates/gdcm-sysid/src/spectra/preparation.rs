@@ -1,4 +1,7 @@
 //! Cuts flight records as logged into segments on a uniform grid (M14.1, M14.21).
+//!
+//! A *run* is consecutive grid points at which every channel has a value, and a *segment* is a run
+//! that is long enough. A *hat* is an unknown for missing samples (`gap_hat`).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::{Executor, each};
@@ -38,13 +41,14 @@ pub struct Prepared {
 /// (M14.1).
 ///
 /// ```text
-/// for each record
+/// for each record, with the grid t_0 + k dt from its first stamp t_0
 /// 1  dt = median stamp difference; if over 5 % of the differences are more than 20 % off the
 ///    multiples of dt, an error unless allowed
 /// 2  for each channel the samples that count: finite, not frozen; fresh if the sensor is slow
 ///    (valid_samples, frozen_outputs); between them, the gaps (gap_search)
 /// 3  value of a channel at t: the straight line at t + shift between two samples that are at most
-///    (bridge + 1.5) dt apart, for fresh samples (bridge + 1.5) times the sensor's sample time
+///    (bridge + 1.5) dt apart, for fresh samples (bridge + 1.5) times the sensor's sample time;
+///    shift: how late the channel is stamped; bridge: number of missing samples that is bridged
 /// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least the
 ///    minimum segment length (10 s by default)
 /// then, over all records
@@ -191,9 +195,11 @@ fn prepare_record(
     lines: Option<LineRange>,
 ) -> Result<PreparedRecord, PreparationError> {
     check_shape(record, preparation)?;
+    // Step 1.
     let clock = Clock::new(record, preparation.longest_bridge)?;
     let mut cautions = Vec::new();
     cautions.extend(check_jitter(record, &clock, preparation.resample)?);
+    // Step 2.
     let channels = valid_samples(record, &clock, preparation);
     let mut gaps = record_gaps(&clock, &channels);
 
@@ -207,6 +213,7 @@ fn prepare_record(
         dropped: Vec::new(),
         longest_s: 0.0,
     };
+    // Step 3, then steps 4 to 6.
     for rows in grid_rows(&clock, &channels, preparation.inputs.len()) {
         parts.add(&rows);
     }

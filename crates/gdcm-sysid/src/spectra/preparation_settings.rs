@@ -1,4 +1,6 @@
 //! Settings for preparing flight records: the channels, their delays, gaps (M14.1).
+//!
+//! *Stairs* are runs of equal samples in a channel that moves; [`Hold`] says what they mean.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Signal;
@@ -81,7 +83,8 @@ pub struct Preparation {
     /// Whether an output's samples are used while it is constant and another channel moves;
     /// otherwise they are a gap.
     pub keep_frozen: bool,
-    /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record.
+    /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record,
+    /// unless their samples can be estimated (M14.21).
     pub longest_bridge: usize,
     /// Minimum segment length \[s\].
     pub least_segment_s: f64,

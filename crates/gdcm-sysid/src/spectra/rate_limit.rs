@@ -64,6 +64,7 @@ pub(crate) struct RateLimit {
 impl RateLimit {
     /// Finds the rate limit in a record's samples (steps 1 to 5); `None` if there is none.
     pub(crate) fn find(samples: Vec<Sample>) -> Option<Self> {
+        // Step 1.
         let fresh = FreshSamples::new(samples);
         let slopes = slopes(&fresh);
         let steepest = slopes.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
@@ -72,11 +73,14 @@ impl RateLimit {
             .map(|slope| slope.abs())
             .filter(|slope| *slope > MOVING * steepest)
             .collect();
+        // Step 2.
         if moving.len() < LEAST_MOVING {
             return None;
         }
         let near = quantile(&mut moving, STEEPEST);
+        // Step 3.
         let finest = TOLERANCE.max(fresh.log_step() / (near * fresh.sample_time_s));
+        // Steps 4 and 5.
         for multiple in MULTIPLES {
             let tolerance = multiple * finest;
             if tolerance > COARSEST {

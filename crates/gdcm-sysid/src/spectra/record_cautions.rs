@@ -259,12 +259,15 @@ pub(crate) fn channel_cautions(
 ) -> Vec<RecordCaution> {
     let mut cautions = Vec::new();
     for (signal, channel) in preparation.channels() {
+        // Step 1.
         let spikes = RecordSpikes::of_channel(records, &signal);
         for record in &spikes {
             cautions.extend(record.caution(&signal));
         }
+        // Steps 2 and 3.
         cautions.extend(unit_caution(&signal, channel, segments, &spikes));
         cautions.extend(stairs_caution(&signal, channel, records));
+        // Steps 4 and 5.
         match signal.role {
             ChannelSide::Input => cautions.extend(rate_caution(&signal, &spikes)),
             ChannelSide::Output => {
@@ -273,6 +276,7 @@ pub(crate) fn channel_cautions(
             }
         }
     }
+    // Step 6.
     cautions.extend(correlation_cautions(segments, preparation));
     cautions
 }

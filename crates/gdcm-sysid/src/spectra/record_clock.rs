@@ -28,7 +28,8 @@ pub(crate) struct Clock {
     pub rows: Vec<usize>,
     /// Stamps in these rows \[s\], relative to the first stamp.
     pub times: Vec<f64>,
-    /// Stamps further apart than this \[s\] have a gap between them that is not bridged.
+    /// Stamps further apart than this \[s\] have a gap between them that is not bridged: one step
+    /// more than the bridged samples, and half a step of tolerance.
     pub longest_step_s: f64,
 }
 

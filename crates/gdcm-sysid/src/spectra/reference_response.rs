@@ -84,11 +84,14 @@ impl Instrument {
             .copied()
             .filter(|omega| (used.lowest..=used.highest).contains(omega))
             .collect();
+        // Step 1.
         let fits = local_fits(lines, &omegas, HALF_WIDTH, executor)?;
+        // Step 2.
         let points: Vec<InstrumentPoint> = fits
             .iter()
             .map(|fit| InstrumentPoint::new(fit, outputs))
             .collect();
+        // Step 3.
         let spectra = lines
             .iter()
             .map(|lines| {

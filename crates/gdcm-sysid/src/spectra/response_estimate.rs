@@ -1,4 +1,7 @@
 //! The frequency response measured without a model, and its reliability (M14.2).
+//!
+//! A *point* is an estimate at a frequency, from the spectral lines in a window around it, by a
+//! local polynomial with the constant term `G0` (`local_polynomial`).
 
 use nalgebra::{Complex, DMatrix, DVector};
 

@@ -21,8 +21,8 @@ pub(crate) const FIRST_LINE: f64 = 1.5;
 /// omega_k = 2 pi k / T,   T = N dt,   k >= 1
 /// ```
 ///
-/// There is no window. The mean is removed only for accuracy: the lines from k = 1 on do not
-/// contain it.
+/// There is no window: the transient terms of the fits take its place (M14.2, M14.4). The mean is
+/// removed only for accuracy: the lines from k = 1 on do not contain it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Record index, from 0.

@@ -1,7 +1,8 @@
-//! Each channel's valid samples, and the straight lines between them (M14.1).
+//! Each channel's valid samples, with straight lines that bridge short gaps (M14.1).
 //!
-//! A sample is valid if it is finite and not frozen and, for a slow sensor, fresh. The straight
-//! lines bridge short gaps.
+//! A sample is valid if it is finite and not frozen and, for a slow sensor, fresh. Gaps of at most
+//! [`Preparation::longest_bridge`] samples (3 by default) are bridged, and the bridge then counts
+//! as measured. Longer gaps are left to `filled_segment`, where the missing samples remain unknown.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::{FlightRecord, Signal};

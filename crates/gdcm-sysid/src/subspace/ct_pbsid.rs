@@ -1,5 +1,9 @@
 //! Computes models of all orders from the data matrix's triangular factor: CT-PBSID (M14.3).
 //!
+//! Predictor-based subspace identification (PBSID) fits a predictor, finds states in its map from
+//! the past to the future, and fits a model to the states. In continuous time (CT), Laguerre
+//! projections take the place of past samples.
+//!
 //! ```text
 //! z_k = [u~_k; y~_k]: k-th Laguerre projections of the inputs u and the outputs y (`data_matrix`)
 //! p past window, q channels (inputs and outputs), l outputs, n order

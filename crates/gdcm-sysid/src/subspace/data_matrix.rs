@@ -1,5 +1,9 @@
 //! Computes the data matrix for CT-PBSID, from Laguerre projections of inputs and outputs, and its
 //! triangular factor (M14.3).
+//!
+//! A *projection* of a signal is the integral of its future from an instant on, weighted with a
+//! Laguerre function, whose time scale is the *Laguerre pole* (`laguerre`). CT-PBSID (`ct_pbsid`)
+//! predicts the last projections from those before.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,6 +1,8 @@
-//! Removes modes far above the band, but keeps their static gain.
+//! Removes modes far above the band, but keeps their static gain: such modes are images of the
+//! Laguerre filters (M14.3).
 //!
 //! ```text
+//! (A, B, C, D) the model; a mode is fast if its eigenvalue has a modulus above the limit
 //! without fast modes the model is returned as it is
 //! 1  Q = [Q1 Q2] orthonormal, Q1 spans the slow modes:   Q' A Q = [A1 A12; 0 A2]
 //! 2  A1 X - X A2 = -A12:  the states x1 - X x2 and x2 are decoupled
@@ -30,12 +32,15 @@ pub(crate) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<State
     if slow == 0 {
         return None;
     }
+    // Step 1.
     let basis = real_basis(&schur.q, slow);
     let q1 = basis.columns(0, slow);
     let q2 = basis.columns(slow, order - slow);
     let a1 = q1.transpose() * a * q1;
     let a2 = q2.transpose() * a * q2;
+    // Step 2.
     let x = solve_sylvester(&a1, &a2, &(q1.transpose() * a * q2))?;
+    // Steps 3 and 4.
     let b2 = q2.transpose() * b;
     let c2 = c * (q1 * &x + q2);
     let b1 = q1.transpose() * b - &x * &b2;

@@ -50,7 +50,7 @@ impl LaguerreBank {
         projections
     }
 
-    /// Runs the first filter backwards over `input`.
+    /// Runs the first filter backwards over `input` (steps 3 and 5).
     fn first_filter(self, input: &[f64], output: &mut [f64]) {
         let mut before = 0.0;
         let mut state = 0.0;
@@ -61,7 +61,7 @@ impl LaguerreBank {
         }
     }
 
-    /// Runs an all-pass filter backwards over `input`.
+    /// Runs an all-pass filter backwards over `input` (steps 4 and 5).
     fn all_pass(self, input: &[f64], output: &mut [f64]) {
         let mut before = 0.0;
         let mut state = 0.0;

@@ -1,4 +1,5 @@
-//! Finds poles that change little while the order rises, for the stabilisation diagram (M14.3).
+//! Finds poles that change little while the order rises, for the stabilisation diagram (M14.3): the
+//! poles of the unrefined models at all orders.
 
 use nalgebra::Complex;
 

@@ -54,6 +54,7 @@ impl TriangularFactor {
         for first in (0..columns).step_by(PANEL) {
             let width = PANEL.min(columns - first);
             let t = self.reflect_panel(&mut rows, first, width);
+            // Step 3.
             let rest = columns - first - width;
             if rest == 0 {
                 return;

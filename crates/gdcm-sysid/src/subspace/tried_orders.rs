@@ -2,7 +2,8 @@
 //!
 //! A data matrix (`data_matrix`) has a column for each channel and each of the projections 0 to
 //! `past`, and a row for each instant. A model with n states needs a map to the future (`ct_pbsid`)
-//! with at least n rows.
+//! with at least n rows. The *past window* is the number of projections from which the next is
+//! predicted.
 
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,8 @@
-//! Mixing and feedback (M16).
+//! Mixing and feedback (M16: `docs/couplings.md`).
+//!
+//! Couplings are two constant matrices around the physics model H: a mixing M of the inputs u and a
+//! feedback K of the outputs y to the inputs, `y = H (M u + K y)`. They are fitted in five solves
+//! with improving weights.
 
 use std::sync::Arc;
 

@@ -1,4 +1,8 @@
-//! Error bars (M13).
+//! Error bars (M13: `docs/error-bars.md`).
+//!
+//! In the reference, q is a result for a response: the logarithm of its net gain, or its delay in
+//! s. Its standard deviations are `u_phys`, from substituting the other physics models (other
+//! trims), and `u_id`, from substituting the other identified models.
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent, student_quantile};
 use gdcm_model::dataset::{ConditionId, Pair};

@@ -1,5 +1,9 @@
 //! The whole method on the reference dataset, against independent code (M3 to M12): a function for
 //! each comparison in [`CHECKS`](super::CHECKS).
+//!
+//! In the reference, G and D are the gain and the delay that would match a single response (M6),
+//! `k` and `tau` those of the channels (M8, M9) within their bounds `lb` and `ub` (M7), and J is
+//! the cost, the distance between two responses (M4).
 
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
 use gdcm_study::ConditionAnalysis;

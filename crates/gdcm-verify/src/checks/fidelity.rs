@@ -1,4 +1,7 @@
 //! Cost, coherence and envelopes (M4, MUAD).
+//!
+//! The cost J is the distance between two responses. Envelopes of maximum unnoticeable added
+//! dynamics (MUAD) bound the difference of two models that a pilot does not notice.
 
 use gdcm_method::fidelity::coherence_weights::coherence_weight;
 use gdcm_method::fidelity::{Cost, CostAverage, Muad};

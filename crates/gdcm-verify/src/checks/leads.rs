@@ -1,4 +1,8 @@
-//! Lead filters, and problems with signed delays (M15).
+//! Lead filters, and problems with signed delays (M15: `docs/lead.md`).
+//!
+//! A channel's delay may be negative: a lead, which a filter gives that rises above the band. Its
+//! *band delay* is the delay that fits its phase in the band best, and the *lead time* is its lead
+//! at low frequency.
 
 use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::correction::{Bounds, Outcome, Problem};

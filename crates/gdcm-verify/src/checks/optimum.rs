@@ -1,4 +1,16 @@
 //! Gains and delays (M8, M9).
+//!
+//! ```text
+//! eq. (7)   min sum w_oi (G_oi - k_o k_i)^2 + alpha sum (k_o - 1)^2
+//!           with k_o k_i = G_oi where held, lb <= k <= ub
+//! eq. (11)  min sum w_oi (D_oi - tau_o - tau_i)^2 + alpha sum tau_o^2
+//!           with tau_o + tau_i = D_oi where held, 0 <= tau <= ub
+//! o output, i input;  w 1 if the response is fitted, else 0;  alpha a setting
+//! G, D the gain and the delay that match a single response;  k, tau those of the channels
+//! ```
+//!
+//! Held values that the bounds or loops of held responses do not allow are replaced by the closest
+//! *targets* in a first stage; a solution is then not `matched`.
 
 use gdcm_method::correction::solve::solve;
 use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget, Solution};

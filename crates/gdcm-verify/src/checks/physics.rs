@@ -1,4 +1,7 @@
-//! Named physics parameters (M18).
+//! Named physics parameters (M18: `docs/physics.md`).
+//!
+//! A *run* is the physics model linearised anew with one parameter moved; z is a parameter's change
+//! over its plausible standard deviation. The fit is repeated in *passes*.
 
 use std::sync::Arc;
 

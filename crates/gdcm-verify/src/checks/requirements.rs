@@ -1,4 +1,7 @@
-//! Bandwidth and phase delay (M17).
+//! Bandwidth and phase delay (M17: `docs/requirements.md`).
+//!
+//! Both are read from an attitude response: `omega_180` and `omega_phase` where its phase falls
+//! through -180 and -135 deg, `omega_gain` where its magnitude is 6 dB above that at `omega_180`.
 
 use nalgebra::Complex;
 

@@ -1,4 +1,4 @@
-//! Figures that tests record for the page.
+//! Figures that tests record for the page `docs/verification.md`, one JSON line each.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

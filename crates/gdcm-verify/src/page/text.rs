@@ -1,4 +1,5 @@
-//! The page as Markdown.
+//! The page `docs/verification.md` as Markdown, from its tables (`rows`) and recorded figures
+//! (`figures`).
 
 use std::fmt::Write;
 
@@ -65,8 +66,8 @@ const NOT_VERIFIED: &str = "
   table on any machine.
 ";
 
-/// Returns the page: comparisons of `gdcm verify`, comparisons that only tests make, certified optima,
-/// coverage of intervals, the evidence by section, peers, and what is not verified.
+/// Returns the page: comparisons of `gdcm verify`, comparisons that only tests make, certified
+/// optima, coverage of intervals, the evidence by section, peers, and what is not verified.
 ///
 /// # Errors
 /// [`FigureFault::Missing`] if a row has no figure.
